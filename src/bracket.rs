@@ -1,31 +1,31 @@
-//! Roots and borders of one number, by three methods, each with what it asks for and what it guarantees.
+//! Finds roots and borders of one number by three methods, each with its requirements and guarantees.
 //!
-//! | method | asks for | guarantees |
+//! | method | requires | guarantees |
 //! |---|---|---|
-//! | [`halve`] | a yes or no that differs at the ends | a bracket as narrow as was asked for, with one change in it; bisection |
-//! | `regula_falsi` | signs that differ at the ends | a bracket as narrow as rounding lets the sign be known, in fewer steps where the function is smooth (Dowell and Jarratt 1971) |
-//! | `secants` | two guesses close by | nothing: that the last point is a root is for the caller to see |
+//! | [`halve`] | a yes or no that differs at the ends | a bracket of the required width, with one change in it; bisection |
+//! | `regula_falsi` | signs that differ at the ends | a bracket as narrow as rounding allows, in fewer steps if smooth (Dowell and Jarratt 1971) |
+//! | `secants` | two guesses close by | nothing: the caller must check that the last point is a root |
 //!
 //! The event loop has methods of its own: a contact takes two or three of Halley's steps inside a certified bracket, with the
-//! cam and the follower evaluated once for value, slope and curvature, and a closure would cost as much as a step. So has
-//! the fall to a level, whose Newton steps know the velocity.
+//! cam and the follower evaluated once for value, slope and curvature, and a closure would cost as much as a step. The fall
+//! to a level has a method of its own, too: its Halley steps use the known velocity and acceleration.
 
 use std::ops::RangeInclusive;
 
-/// When a bracket is narrow enough.
+/// Width at which a bracket is narrow enough.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Width {
-    /// As a part of its second end.
+    /// Relative to the second end.
     Relative(f64),
     /// In the unit of its ends.
     Absolute(f64),
-    /// After so many halvings: a guess for a method that goes on from there.
+    /// After this many halvings: a guess for a method that continues from there.
     Halvings(u32),
 }
 
-/// Halves the bracket `[from, to]`, of which `is_beyond` holds at `to` and not at `from`, until it is narrow enough.
+/// Halves the bracket `[from, to]` until it is narrow enough. `is_beyond` must be true at `to` and false at `from`.
 ///
-/// `is_beyond` is asked at neither end. Either end may be the larger.
+/// `is_beyond` is called at neither end. Either end may be the larger.
 pub fn halve<E>(
     [mut from, mut to]: [f64; 2],
     width: Width,
@@ -42,7 +42,7 @@ pub fn halve<E>(
             return Ok([from, to]);
         }
         let middle = 0.5 * (from + to);
-        // Toward 0 the relative width stays as it is until there is no number in between.
+        // Toward 0 the relative width stays the same until there is no number in between.
         if middle == from || middle == to {
             return Ok([from, to]);
         }
@@ -55,7 +55,7 @@ pub fn halve<E>(
     }
 }
 
-/// A point at which a function was evaluated: where, its value there, and what came with it.
+/// A point at which a function was evaluated: its place, its value, and further data.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Seen<P> {
     pub at: f64,
@@ -63,18 +63,19 @@ pub(crate) struct Seen<P> {
     pub with: P,
 }
 
-/// Secants that keep the bracket `ends`, in rising order; where an end stays twice its weight is halved, so that both come in.
+/// Finds a root by secants that keep the bracket `ends`, in rising order. If an end stays twice, its weight is halved, so that both ends
+/// move in.
 ///
-/// Ends at a root, at a bracket of `width`, or where `value` gives nothing. Where rounding decides the signs the bracket goes
-/// out again from the point nearest to a root. Its ends, and that point, of all but the first end.
+/// Ends at a root, at a bracket of `width`, or where `value` returns none. Where rounding decides the signs, the bracket is widened again
+/// from the point nearest to a root. Returns the bracket's ends, and that nearest point, which is never the first end.
 pub(crate) fn regula_falsi<P: Clone, E>(
     ends: [Seen<P>; 2],
     width: f64,
     mut value: impl FnMut(f64) -> Result<Option<(f64, P)>, E>,
 ) -> Result<([Seen<P>; 2], Seen<P>), E> {
-    /// Bisection would take fifty.
+    /// Step limit; bisection would take fifty.
     const STEPS: usize = 60;
-    /// Near a root a function is a line: twice as far it is twice as large, but for what rounding adds.
+    /// Accepted ratios of values at a doubled distance: near a root a function is a line, so the ratio is 2 except for rounding.
     const LARGER: RangeInclusive<f64> = 1.5..=3.0;
     let outer = ends.clone();
     let [mut low, mut high] = ends;
@@ -102,7 +103,7 @@ pub(crate) fn regula_falsi<P: Clone, E>(
     }
     let mut sure = |end: &Seen<P>, direction: f64| -> Result<Seen<P>, E> {
         let mut reach = 0.5 * width;
-        // The last two points. Values of an ulp and of two have the ratio 2 by chance, so that one ratio alone tells nothing.
+        // The last two points. Values of one and two ulps have the ratio 2 by chance, so one ratio alone proves nothing.
         let mut nearer: [Option<Seen<P>>; 2] = [None, None];
         loop {
             let at = best.at + direction * reach;
@@ -122,9 +123,9 @@ pub(crate) fn regula_falsi<P: Clone, E>(
     Ok(([sure(&outer[0], -1.0)?, sure(&outer[1], 1.0)?], best))
 }
 
-/// Secants from two guesses and their values, at most `steps` of them: up to a root, or to a step of less than the part `width`
-/// of where it begins. The last two points, of which the second is the nearer, and whether it has come so far; a root
-/// that is met exactly stands for both.
+/// Finds a root by at most `steps` secants from two guesses and their values: up to a root, or to a step of less than the fraction `width`
+/// of its starting point. Returns the last two points, of which the second is the nearer, and whether the search converged. A root that is
+/// met exactly is returned as both points.
 pub(crate) fn secants<E>(
     [mut last, mut here]: [(f64, f64); 2],
     steps: usize,

@@ -1,17 +1,17 @@
-//! A number and how well it is known.
+//! A number with its uncertainty.
 
 /// A number that was measured, by runs or by extrapolation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
-    /// The number.
+    /// Estimated value.
     pub value: f64,
-    /// How far it may be off; not a number where that is not known.
+    /// Uncertainty of the value; NaN if it is unknown.
     pub error: f64,
-    /// What the error is.
+    /// Kind of the error.
     pub error_is: ErrorIs,
 }
 
-/// What the error of an [`Estimate`] is.
+/// Kind of the error of an [`Estimate`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ErrorIs {
     /// The standard error of a mean or of a fit's coefficient.
@@ -21,7 +21,8 @@ pub enum ErrorIs {
 }
 
 impl Estimate {
-    /// The mean of the means over equal parts of a run, with its standard error; neither is a number for fewer than two parts.
+    /// Mean of the means over equal parts of a run, with its standard error. The error is NaN for fewer than two parts; without parts the
+    /// mean is NaN, too.
     pub fn of_parts(means: &[f64]) -> Self {
         let count = means.len() as f64;
         let value = means.iter().sum::<f64>() / count;
@@ -29,7 +30,7 @@ impl Estimate {
         Self { value, error: (variance / count).sqrt(), error_is: ErrorIs::Standard }
     }
 
-    /// The mean of independent estimates of one number, with the error that theirs leave it.
+    /// Mean of independent estimates of one number, with the error that follows from theirs.
     pub fn mean(of: &[Self]) -> Self {
         let count = of.len() as f64;
         let value = of.iter().map(|one| one.value).sum::<f64>() / count;
@@ -37,15 +38,15 @@ impl Estimate {
         Self { value, error, error_is: ErrorIs::Standard }
     }
 
-    /// The share of those that do something, with its standard error if they were drawn by chance: that of one more which does
-    /// and one more which does not, since none of few is not certainly none of all.
+    /// Share of `number` out of `of`, with its standard error if the cases were drawn at random. The error is computed with one more case
+    /// of each kind, since none out of a few does not prove none at all.
     pub(crate) fn share(number: usize, of: usize) -> Self {
         let (number, of) = (number as f64, of as f64);
         let likely = (number + 1.0) / (of + 2.0);
         Self { value: number / of, error: (likely * (1.0 - likely) / of).sqrt(), error_is: ErrorIs::Standard }
     }
 
-    /// What an extrapolation leads to.
+    /// Result of an extrapolation.
     pub(crate) fn extrapolated(value: f64, error: f64) -> Self {
         Self { value, error, error_is: ErrorIs::Correction }
     }

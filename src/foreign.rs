@@ -1,17 +1,17 @@
-//! Text that somebody else wrote, as it is shown: a name in a file, a path, a word of the command line.
+//! Prepares text by others for display: a name in a file, a path, a word of the command line.
 //!
-//! What would steer a terminal or a browser is written out, and what is long is cut in the middle. Documents for programs, JSON and CSV, have it as
-//! it is.
+//! Characters that would steer a terminal or a browser are written out, and long text is cut in the middle. Documents for programs, JSON
+//! and CSV, keep the text unchanged.
 
 use std::borrow::Cow;
 
-/// The most of a value that is shown, and of a sentence that has values in it, characters.
+/// Largest displayed length of a value, and of a sentence with values in it, characters.
 const VALUE: usize = 60;
 const SENTENCE: usize = 2000;
-/// What stands for what is left out.
+/// Mark in place of the omitted part.
 const CUT: &str = "...";
 
-/// Whether a letter does something else than stand there: control characters, and those that turn the direction of writing.
+/// Whether a letter is not merely displayed: control characters, and those that change the direction of writing.
 fn steers(letter: char) -> bool {
     letter.is_control() || matches!(letter, '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
 }
@@ -35,22 +35,22 @@ fn cut(text: Cow<'_, str>, most: usize) -> Cow<'_, str> {
     ends.concat().into()
 }
 
-/// A page, or a part of one: lines and tabulators stay.
+/// Makes a page, or a part of one, safe to display: lines and tabulators stay.
 pub(crate) fn visible(text: &str) -> Cow<'_, str> {
     written_out(text, |letter| matches!(letter, '\n' | '\t'))
 }
 
-/// A complaint, which has values in it.
+/// Makes an error message that contains values safe to display.
 pub(crate) fn sentence(text: &str) -> Cow<'_, str> {
     cut(visible(text), SENTENCE)
 }
 
-/// A value, in one line.
+/// Makes a value safe to display, in one line.
 pub(crate) fn value(text: &str) -> Cow<'_, str> {
     cut(written_out(text, |_| false), VALUE)
 }
 
-/// Text of a file in which every letter is where it was, in bytes, and none does anything: for a drawing that points into it.
+/// Makes the text of a file safe to display with every letter at its place, in bytes, for a drawing that points into it.
 pub(crate) fn in_place(text: &str) -> String {
     let mut letters = text.chars().peekable();
     let mut seen = String::with_capacity(text.len());

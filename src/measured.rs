@@ -1,8 +1,8 @@
-//! What the rows of a table tell of their own accuracy, and the cams that they may as well be of.
+//! Accuracy of a cam given by the rows of a table, estimated from the rows themselves, and the cams that are equally likely.
 //!
-//! The best guess at the cam is the smoothing spline. Tables of its lifts with the noise that the rows have, smoothed alike, are as
-//! likely as the table that was measured: what they differ by is how well anything is known that depends on the cam, and what they
-//! are off on the whole is what smoothing itself does.
+//! The best guess at the cam is the smoothing spline. Tables of its lifts with the noise of the rows, smoothed in the same way, are as
+//! likely as the measured table. Their spread gives the uncertainty of everything that depends on the cam; their common offset is the
+//! effect of the smoothing itself.
 
 use rayon::prelude::*;
 use serde::Serialize;
@@ -11,49 +11,49 @@ use crate::cam::{Cam, Fit, Stray, fit, spread, strays};
 use crate::model::{Model, ModelError, Reading, Row, Smoothing, TableProfile, Tolerance};
 use crate::tolerance;
 
-/// How well a measured cam is known.
+/// Accuracy of a measured cam.
 #[derive(Clone, Debug, Serialize)]
 pub struct Measured {
-    /// How the rows were understood.
+    /// Interpretation of the rows.
     pub reading: Reading,
-    /// The step of the decimal grid that all lifts lie on, m; none where there is none above the rounding of a double.
+    /// Step of the decimal grid on which all lifts lie, m; none if there is none above the rounding of a double.
     pub step_m: Option<f64>,
-    /// The standard deviation of the rows about a smooth motion, m, by generalised cross-validation; not a number where it is unknown.
+    /// Standard deviation of the rows about a smooth motion, m, by generalised cross-validation; NaN if it is unknown.
     pub noise_m: f64,
-    /// Why the noise is unknown, of a spline through the rows: no smooth motion could be fitted to them.
+    /// Why the noise is unknown, for a spline through the rows: no smooth motion could be fitted to them.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub noise_unknown: Option<String>,
-    /// Rows that are far from where the rows beside them say.
+    /// Rows far from the value that their neighbours suggest.
     pub strays: Vec<Stray>,
-    /// How far the cam is from a row at most, m.
+    /// Largest distance of the cam from a row, m.
     pub largest_distance_m: f64,
-    /// Whether the rows have noise that moves what depends on the second derivative.
+    /// Whether the noise of the rows changes results that depend on the second derivative.
     pub is_noisy: bool,
-    /// Whether it is a smoothing spline.
+    /// Whether the cam is a smoothing spline.
     pub is_smoothed: bool,
-    /// Where the second derivative jumps, of a smoothing spline, degrees.
+    /// Places of the jumps of a smoothing spline's second derivative, degrees.
     pub corners_deg: Vec<f64>,
     /// Whether the corners were found in the rows, not given.
     pub corners_are_found: bool,
-    /// Where the lift stays, of a smoothing spline, from and to, degrees.
+    /// Dwells of a smoothing spline, from and to, degrees.
     pub dwells_deg: Vec<[f64; 2]>,
     /// Whether the dwells were found in the rows, not given.
     pub dwells_are_found: bool,
-    /// Its largest second derivative, m/rad^2.
+    /// Largest second derivative of the cam, m/rad^2.
     pub largest_curvature: f64,
-    /// How far that may be off, m/rad^2; not a number where the noise is unknown.
+    /// Uncertainty of the largest second derivative, m/rad^2; NaN if the noise is unknown.
     pub curvature_error: f64,
 }
 
 impl Measured {
-    /// A measured cam that leaves what is asked of it open.
+    /// Returns the measured cam if its noise makes results uncertain.
     pub fn noisy(measured: &Option<Self>) -> Option<&Self> {
         measured.as_ref().filter(|cam| cam.is_noisy)
     }
 
-    /// Whether rounding is all the noise that there is.
+    /// Whether the noise is rounding alone.
     pub fn is_rounded(&self) -> bool {
-        /// Beyond which the noise is more than that, in standard deviations of the rounding.
+        /// Noise above which it is more than rounding, in standard deviations of the rounding.
         const MORE: f64 = 1.5;
         self.step_m.is_some_and(|step| self.noise_m <= MORE * step / 12.0_f64.sqrt())
     }
@@ -62,26 +62,26 @@ impl Measured {
 /// A model with its cam.
 pub type LikelyCam = (Model, Cam);
 
-/// The best guess at a measured cam, and others that are as likely, as models.
+/// The best guess at a measured cam, and other cams that are equally likely, as models.
 #[derive(Clone, Debug)]
 pub struct Likely {
-    /// What is known of the model's cam.
+    /// Accuracy of the model's cam.
     pub measured: Measured,
-    /// The model with the smoothing spline; none where the rows have no noise that a spline through them would follow.
+    /// Model with the smoothing spline; none if the rows have no noise that a spline through them would follow.
     pub best: Option<LikelyCam>,
-    /// The same with ten times its weight on the rows, of a cam with corners.
+    /// Model with ten times the best guess's weight on the rows, for a cam with corners.
     pub closer: Option<LikelyCam>,
     /// Models of tables that might have been measured.
     pub others: Vec<LikelyCam>,
 }
 
-/// Tables that might have been measured: the largest of so many deviations is near two standard deviations.
+/// Number of tables that might have been measured: the largest of so many deviations is near two standard deviations.
 const TABLES: u64 = 16;
 
 impl Likely {
-    /// The accuracy of the cam of a model; none where that is not of a table, or of one with too few rows to tell.
+    /// Estimates the accuracy of a model's cam. None if the cam is not given by a table, or if the table has too few rows.
     ///
-    /// A spline through the rows needs no smoothing: where no smooth motion can be fitted to them, only their noise is unknown.
+    /// A spline through the rows needs no smoothing: if no smooth motion can be fitted to them, only their noise is unknown.
     pub fn of(model: &Model) -> Result<Option<Self>, ModelError> {
         let Some(profile) = model.table().filter(|table| table.may_be_smoothed()) else { return Ok(None) };
         let own = profile.spline.smoothing();
@@ -114,14 +114,14 @@ impl Likely {
         Ok(Self { measured, best: None, closer: None, others: Vec::new() })
     }
 
-    /// The accuracy by the smoothing spline near the rows.
+    /// Estimates the accuracy from the smoothing spline near the rows.
     fn fitted(model: &Model, profile: &TableProfile, own: Option<&Smoothing>) -> Result<Self, ModelError> {
         let fitted = fit(model, profile, own.unwrap_or(&Smoothing::default()))?;
         let half_step = profile.reading.half_step();
         let noise = if fitted.noise.is_finite() { fitted.noise } else { 0.0 };
         let lifts = fitted.lifts(profile);
         let size = lifts.iter().fold(0.0_f64, |size, lift| size.max((lift - lifts[0]).abs()));
-        // Evenly spread, as rounding is.
+        // Uniformly distributed, as rounding is.
         let spread = half_step.max(3.0_f64.sqrt() * noise);
         let is_noisy = spread > tolerance::NOISE_SEEN.value * size;
         let (corners, are_found) = (fitted.corners_deg(), own.is_none_or(|own| own.corners_deg.is_none()));
@@ -153,9 +153,9 @@ impl Likely {
         Ok(Self { measured, best, closer, others })
     }
 
-    /// How far numbers that depend on the cam may be off: by how far they are from those of the best guess, by twice what they differ
-    /// by, at most, among those that are as likely, and by what corners do to them. `of` tells the numbers of a model, none of one that has none; where
-    /// more than a few have none, nothing is known.
+    /// Returns the uncertainties of numbers that depend on the cam, with three terms: their distance from the numbers of the best guess,
+    /// twice the largest deviation among the equally likely cams, and the effect of corners. `of` returns the numbers of a model, or none;
+    /// if more than a few models have none, the result is none.
     pub fn error<const N: usize>(
         &self,
         numbers: [f64; N],
@@ -164,26 +164,26 @@ impl Likely {
         self.errors(&numbers, |model, cam| of(model, cam).map(Vec::from))?.try_into().ok()
     }
 
-    /// The same of as many numbers as there are.
+    /// Returns the uncertainties of any count of numbers, as [`Self::error`] does.
     pub fn errors(&self, numbers: &[f64], of: impl Fn(&Model, &Cam) -> Option<Vec<f64>> + Sync) -> Option<Vec<f64>> {
         self.spread(numbers, (self.others.len(), 0, 2.0), of)
     }
 
-    /// The same of a number that runs tell, which takes long: of few of the tables, of which one may be told wrongly. The next to
+    /// Returns the uncertainty of a number found by slow runs, from a few of the tables, one of which may give a wrong number. The second
     /// largest of so few deviations is less than half as large as the largest of all.
     pub fn error_by_runs(&self, number: f64, of: impl Fn(&Model, &Cam) -> Option<f64> + Sync) -> Option<f64> {
         const FEW: usize = 4;
         self.spread(&[number], (FEW, 1, 4.5), |model, cam| of(model, cam).map(|number| vec![number]))?.pop()
     }
 
-    /// By so many tables, of which so many that differ most are left out, and so many times by what the others differ by.
+    /// Estimates the uncertainties from `tables` tables, without the `left_out` largest deviations, scaled by `times`.
     fn spread(
         &self,
         numbers: &[f64],
         (tables, left_out, times): (usize, usize, f64),
         of: impl Fn(&Model, &Cam) -> Option<Vec<f64>> + Sync,
     ) -> Option<Vec<f64>> {
-        /// One in so many of the tables may do without.
+        /// One in this many tables may lack the numbers.
         const WITHOUT: usize = 8;
         let others = &self.others[..tables.min(self.others.len())];
         let Some((best, cam)) = &self.best else { return Some(vec![0.0; numbers.len()]) };
@@ -205,7 +205,7 @@ impl Likely {
     }
 }
 
-/// A number of [-1, 1] for a table and a row: SplitMix64 (Steele, Lea and Flood 2014), the same on every machine.
+/// Pseudorandom number in [-1, 1] for a table and a row: SplitMix64 (Steele, Lea and Flood 2014), the same on every machine.
 fn even(table: u64, row: u64) -> f64 {
     let mut bits = ((table << 32) + row + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
     bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -214,9 +214,9 @@ fn even(table: u64, row: u64) -> f64 {
     (bits >> 11) as f64 / 2.0_f64.powi(52) - 1.0
 }
 
-/// The second derivatives of a cam, m/rad^2, at angles all round.
+/// Second derivatives of a cam, m/rad^2, at angles all round.
 fn curvatures(cam: &Cam) -> Vec<f64> {
-    /// Four to a degree, and none at a row of whole degrees.
+    /// Four per degree, and none at a row of whole degrees.
     const ANGLES: u32 = 1439;
     let angle = |part: u32| std::f64::consts::TAU * (f64::from(part) + 0.5) / f64::from(ANGLES);
     (0..ANGLES).map(|part| cam.lift(angle(part)).curvature).collect()
@@ -260,30 +260,30 @@ fn measured(
     }
 }
 
-/// What is odd about the rows of a table, or about what is asked of a spline near them.
+/// Remarks on the rows of a table, or on the settings of a spline near them.
 #[derive(Clone, Debug, Default)]
 pub struct Remarks {
-    /// Rows that are far from where the rows beside them say.
+    /// Rows far from the value that their neighbours suggest.
     pub strays: Vec<Stray>,
-    /// A tolerance and what the rows spread by, m, where that is far less.
+    /// A tolerance and the spread of the rows, m, if the spread is far smaller.
     pub loose: Option<[f64; 2]>,
-    /// Where the rows are otherwise than corners or dwells that were given.
+    /// Where the rows contradict the given corners or dwells.
     pub contradicted: Option<Contradicted>,
 }
 
-/// A row that what was given keeps the cam away from.
+/// A row far from the cam because of the given corners or dwells.
 #[derive(Clone, Copy, Debug)]
 pub struct Contradicted {
     /// The field that was given.
     pub field: &'static str,
     /// The row's angle, degrees.
     pub cam_angle_deg: f64,
-    /// How far the cam is from it, m.
+    /// Distance of the cam from the row, m.
     pub off_m: f64,
 }
 
 impl Remarks {
-    /// On the cam of a model; none on one that is no table.
+    /// Checks the cam of a model; no remarks on a cam that is not a table.
     pub fn on(model: &Model) -> Result<Self, ModelError> {
         let Some(profile) = model.table() else { return Ok(Self::default()) };
         let Some(own) = profile.spline.smoothing() else {
@@ -300,14 +300,14 @@ impl Remarks {
     }
 }
 
-/// Where a smoothing spline is far from the rows, within some m of which it is meant to be.
+/// Finds where a smoothing spline is far from the rows; it is meant to be within `within` m of them.
 fn contradicted(
     model: &Model,
     profile: &TableProfile,
     own: &Smoothing,
     within: f64,
 ) -> Result<Option<Contradicted>, ModelError> {
-    /// Of the tolerance, or of what the rows spread by: noise keeps within two of these.
+    /// Distance that counts as far, over the tolerance or the spread of the rows: noise stays within two of these.
     const FAR: f64 = 10.0;
     let field = match (&own.corners_deg, &own.dwells_deg) {
         (_, Some(dwells)) if !dwells.is_empty() => "cam.dwells_deg",
@@ -322,21 +322,21 @@ fn contradicted(
     Ok(worst.filter(is_far).map(|(cam_angle_deg, off_m)| Contradicted { field, cam_angle_deg, off_m }))
 }
 
-/// What the noise of a table leaves open of its cam.
+/// Uncertainty of a cam from the noise of its table.
 #[derive(Clone, Debug)]
 pub enum Openness {
-    /// As it is told by cams that are as likely.
+    /// Estimated from equally likely cams.
     Told(Box<Measured>),
-    /// Of a table of too many rows to be told at once: what its rows spread by, m.
+    /// Spread of the rows, m, of a table with too many rows for a quick estimate.
     Noise(f64),
     /// No smooth motion could be fitted to the rows, for this reason.
     Unknown(String),
 }
 
 impl Openness {
-    /// On the cam of a model; none where the rows have no noise.
+    /// Estimates the uncertainty of a model's cam; none if the rows have no noise.
     pub fn of(model: &Model) -> Result<Option<Self>, ModelError> {
-        /// Of more rows it takes longer than many a command does.
+        /// Number of rows above which the estimate takes longer than many commands.
         const MOST_ROWS: usize = 4000;
         let Some(profile) = model.table().filter(|profile| profile.may_be_smoothed()) else { return Ok(None) };
         let spread = spread(profile);

@@ -1,17 +1,17 @@
-//! How far long work has come, told to whoever waits for it.
+//! Reports the progress of long work to an observer.
 //!
-//! A computation that may take longer than a second takes a [`Watch`] and tells it what it is at; what becomes of that is
-//! not its business. Nothing that is computed depends on who watches.
+//! A computation that may take longer than a second takes a [`Watch`] and reports its progress to it. The use of these reports is not its
+//! business. No result depends on the observer.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Whoever wants to know how far a computation has come; told from any thread.
+/// Observer of a computation's progress; called from any thread.
 pub trait Watch: Sync {
-    /// `done` of `total` pieces are done, and `what`, in a few words, is what it is at; a total of 0 is not known.
+    /// Reports that `done` of `total` pieces are done; `what` describes the present work in a few words. A total of 0 means unknown.
     fn at(&self, what: &str, done: u64, total: u64);
 }
 
-/// Pieces of work that are done in any order, on any thread.
+/// Counter of pieces of work that are done in any order, on any thread.
 pub struct Pieces<'a> {
     watch: &'a dyn Watch,
     what: &'a str,
@@ -20,18 +20,18 @@ pub struct Pieces<'a> {
 }
 
 impl<'a> Pieces<'a> {
-    /// None of them done yet.
+    /// Starts with no piece done.
     pub fn new(watch: &'a dyn Watch, what: &'a str, total: usize) -> Self {
         watch.at(what, 0, total as u64);
         Self { watch, what, done: AtomicU64::new(0), total: AtomicU64::new(total as u64) }
     }
 
-    /// So many more have turned up.
+    /// Adds `count` pieces to the total.
     pub fn more(&self, count: usize) {
         self.total.fetch_add(count as u64, Ordering::Relaxed);
     }
 
-    /// Does one of them, and says that it is done.
+    /// Does one piece, and reports it as done.
     pub fn each<T>(&self, piece: impl FnOnce() -> T) -> T {
         let result = piece();
         let total = self.total.load(Ordering::Relaxed);
@@ -40,7 +40,7 @@ impl<'a> Pieces<'a> {
     }
 }
 
-/// Nobody.
+/// An observer that ignores all reports.
 #[derive(Clone, Copy, Debug)]
 pub struct Unwatched;
 

@@ -1,7 +1,7 @@
-//! The numbers that the paper prints, each with what was found about it.
+//! The numbers that the paper prints, each with the finding about it.
 //!
-//! The digits stand in `golden/published`, as printed; the findings stand here. A printed number that was found wrong must
-//! stay wrong: if a computed number ever agrees with it, the verification fails, as it does where a right one disagrees.
+//! The digits are in `golden/published`, as printed; the findings are here. A printed number that was found wrong must stay wrong: if a
+//! computed number ever agrees with it, the verification fails, as it does if a right one disagrees.
 
 use serde::{Deserialize, Serialize};
 
@@ -16,19 +16,19 @@ use crate::tolerance::Comparison;
 /// The printed digits.
 const PRINTED: &str = include_str!("../golden/published/osorio-2008.json");
 
-/// What was found about a printed number or a statement.
+/// Finding about a printed number or a statement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Deserialize, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
-    /// It is right.
+    /// Right.
     Holds,
-    /// It says what is meant by something: there is nothing to check.
+    /// A definition: there is nothing to check.
     Definition,
-    /// Right in part, or roughly: what is not is told.
+    /// Right in part, or roughly; the note says which part is not.
     InPart,
-    /// A slip of the pen: digits, a sign, brackets; what was built on the right form stands.
+    /// A misprint: digits, a sign, brackets; results built on the right form stand.
     Misprint,
-    /// What it says is wrong.
+    /// The statement is wrong.
     Refuted,
     /// Not decided by this program.
     Open,
@@ -37,16 +37,16 @@ pub enum Verdict {
 named!(Verdict);
 
 impl Verdict {
-    /// All of them, the ones to read first in front.
+    /// All verdicts, those to read first in front.
     pub(crate) const WORST_FIRST: [Self; 6] =
         [Self::Refuted, Self::Misprint, Self::InPart, Self::Open, Self::Definition, Self::Holds];
 
-    /// Whether something else is right instead.
+    /// Whether there is a correction.
     pub(crate) fn has_correction(self) -> bool {
         matches!(self, Self::Refuted | Self::Misprint | Self::InPart)
     }
 
-    /// Whether what is said is wrong: by a slip of its own, or by one that was made before.
+    /// Whether the statement is wrong: by a slip of its own, or by an earlier one.
     pub(crate) fn is_wrong(self) -> bool {
         matches!(self, Self::Refuted | Self::Misprint)
     }
@@ -55,19 +55,19 @@ impl Verdict {
 /// A printed number beside the computed one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PrintedNumber {
-    /// Where it stands in the paper.
+    /// Place in the paper.
     pub place: String,
     /// The digits as printed.
     pub printed: Vec<String>,
-    /// The same entries, computed.
+    /// The entries as computed.
     pub computed: Vec<f64>,
     /// The comparison.
     pub agreement: Agreement,
-    /// What was found before.
+    /// The earlier finding.
     pub verdict: Verdict,
-    /// What is wrong, in words; empty where nothing is.
+    /// Description of the error; empty if there is none.
     pub note: &'static str,
-    /// Whether the comparison came out as the finding says.
+    /// Whether the comparison agrees with the finding.
     pub as_found: bool,
 }
 
@@ -89,8 +89,7 @@ document!(PrintedNumber as number {
 const ESTIMATE: &str = "holds as an estimate, to 4.3e-7 of each entry or better; that it shares five decimals, as the paper says, is \
                         a statement of its own, and is refuted";
 
-/// Of which printed numbers there is something to say: the quantity, what was found, and what is wrong with it, or how it holds
-/// where that is not plain. All else holds.
+/// Printed numbers with a remark: the quantity, the finding, and the error, or how it holds if that is not obvious. All other numbers hold.
 static REMARKS: [(Quantity, Verdict, &str); 6] = [
     (Quantity::BHat(Minus), Verdict::Holds, ESTIMATE),
     (Quantity::BHat(Plus), Verdict::Holds, ESTIMATE),
@@ -124,7 +123,7 @@ struct Number {
 /// Why the printed numbers were not compared.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PublishedError {
-    /// The model is another one.
+    /// The model is not the paper's.
     #[error("the paper prints numbers for another follower or cam")]
     OtherModel,
     /// The built-in model does not read.
@@ -133,12 +132,12 @@ pub enum PublishedError {
     /// The built-in digits do not read.
     #[error("golden/published: {0}")]
     Digits(String),
-    /// A printed quantity that is not computed, or of which something is said and that is not printed.
+    /// A printed quantity is not computed, or a quantity with a remark is not printed.
     #[error("golden/published: not printed, or not computed: {0}")]
     Unmatched(String),
 }
 
-/// Every printed number against the computed one; only for a model with the paper's follower and cam.
+/// Compares every printed number with the computed one; only for a model with the paper's follower and cam.
 pub fn compare_published(
     model: &Model,
     at: &CornerImpact,
@@ -167,7 +166,7 @@ fn hold_against(number: Number, computed: &[(Quantity, Vec<f64>)]) -> Result<Pri
     let comparison = match quantity {
         Quantity::AHat(_) | Quantity::BHat(_) => Comparison::PrintedEstimate,
         _ => {
-            // Entries without a decimal point stand beside ones that have it, or are meant as exact.
+            // Entries without a decimal point are next to entries with one, or are meant as exact.
             let decimals = digits.iter().map(|(_, decimals)| *decimals).max().filter(|most| *most > 0);
             Comparison::Printed { decimals: decimals.unwrap_or(u32::MAX) }
         }
@@ -185,7 +184,7 @@ fn hold_against(number: Number, computed: &[(Quantity, Vec<f64>)]) -> Result<Pri
     })
 }
 
-/// A printed number and how many decimals it has; one entry is printed with a decimal comma.
+/// Reads a printed number and its number of decimals; one entry is printed with a decimal comma.
 fn read_digits(text: &str) -> Result<(f64, u32), PublishedError> {
     let text = text.replace(',', ".");
     let value = text.parse().map_err(|_| PublishedError::Digits(format!("not a number: {text}")))?;

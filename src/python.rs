@@ -1,10 +1,10 @@
-//! Runs one script of `derivations/`: JSON in, JSON out, errors that carry the command and what the script said.
+//! Runs one script of `derivations/`: JSON in, JSON out; errors contain the command and the script's message.
 //!
-//! The scripts get a model's numbers and nothing that this program computed. They are part of the program: for each run they
-//! are written to a private temporary folder, run there, and removed, whatever signal ends the program. The current folder holds what somebody else wrote, and
-//! nothing of it is run or imported: the private folder is the script's own current folder, so that a relative entry of PATH
-//! or PYTHONPATH leads there, too. The interpreter is `$CORNER_IMPACT_PYTHON`; else the one that has loaded this library, if one
-//! has; else that of the `.venv` of the folder in which this program was built, if it is still there; else `python3` of the PATH.
+//! The scripts get a model's numbers and nothing that this program computed. They are part of the program: for each run they are written to
+//! a private temporary folder, run there, and removed, whatever signal ends the program. The current folder may contain files of others,
+//! and nothing of it is run or imported: the private folder is the script's own current folder, so that a relative entry of PATH or
+//! PYTHONPATH leads there, too. The interpreter is `$CORNER_IMPACT_PYTHON`; else the one that has loaded this library, if one has; else
+//! that of the `.venv` of the folder in which this program was built, if it still exists; else `python3` of the PATH.
 
 use std::io::{Read, Write};
 use std::path::PathBuf;
@@ -15,7 +15,7 @@ use std::time::{Duration, Instant};
 use crate::file::{Scratch, Started};
 use crate::stop;
 
-/// The scripts, with the modules that they import and the file that they read, by their places in the project.
+/// The scripts, the modules that they import and the file that they read, by their paths in the project.
 const FILES: [(&str, &str); 24] = [
     ("derivations/arithmetic.py", include_str!("../derivations/arithmetic.py")),
     ("derivations/balls/__init__.py", include_str!("../derivations/balls/__init__.py")),
@@ -43,10 +43,10 @@ const FILES: [(&str, &str); 24] = [
     ("golden/derived/corner_map.json", include_str!("../golden/derived/corner_map.json")),
 ];
 
-/// The interpreter that `make` sets up, with all the packages that the scripts need.
+/// Interpreter that `make` sets up, with all packages that the scripts need.
 const OF_THE_BUILD: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/.venv/bin/python");
 
-/// A script still running after this long is stopped: the slowest takes seconds.
+/// Time after which a running script is stopped: the slowest takes seconds.
 const TIME_LIMIT: Duration = Duration::from_secs(120);
 
 /// Why a script has no result.
@@ -67,7 +67,7 @@ pub(crate) enum PythonError {
     Output { command: String, error: String },
 }
 
-/// What helps where Python, or a package of it, is not there.
+/// Remedy if Python, or a package of it, is missing.
 fn remedy(of_the_command: &str) -> String {
     match HOST.get() {
         None => format!("{of_the_command}, and `verify --no-external` does without"),
@@ -89,7 +89,7 @@ pub(crate) fn run<T: serde::de::DeserializeOwned>(script: &str, input: &serde_js
         // -B: no compiled copies in a folder that is removed.
         .args(["-B", &script])
         .current_dir(folder.path())
-        // Would keep the scripts from importing each other.
+        // This variable would keep the scripts from importing each other.
         .env_remove("PYTHONSAFEPATH")
         // The matrices of the scripts are too small for threads, which would only wait for each other.
         .env("OPENBLAS_NUM_THREADS", "1")
@@ -111,15 +111,15 @@ pub(crate) fn run<T: serde::de::DeserializeOwned>(script: &str, input: &serde_js
     serde_json::from_str(&stdout).map_err(|error| PythonError::Output { command, error: error.to_string() })
 }
 
-/// What came of a child.
+/// Outcome of a child process.
 struct Talk {
-    /// How it ended; nothing where it had to be stopped.
+    /// Exit status; none if the child had to be stopped.
     status: Option<ExitStatus>,
     stdout: String,
     stderr: String,
 }
 
-/// Feeds `input`, collects both streams, and stops a child that does not end within a time.
+/// Feeds `input`, collects both streams, and stops a child that exceeds the time `limit`.
 fn talk(mut child: Child, input: Vec<u8>, limit: Duration) -> std::io::Result<Talk> {
     let pipes = (child.stdin.take(), child.stdout.take(), child.stderr.take());
     // Ends with whoever waits for it; its pipes are closed then, and those who read them end, too.
@@ -157,10 +157,10 @@ fn collect(mut pipe: impl Read) -> String {
     String::from_utf8_lossy(&bytes).into_owned()
 }
 
-/// The interpreter that this library is loaded by.
+/// The interpreter that has loaded this library.
 static HOST: OnceLock<PathBuf> = OnceLock::new();
 
-/// Says which interpreter has loaded this library; the first word counts.
+/// Sets the interpreter that has loaded this library; only the first call counts.
 pub fn loaded_by(interpreter: PathBuf) {
     let _ = HOST.set(interpreter);
 }

@@ -1,4 +1,4 @@
-//! A model whole: what its fields say, and what of the follower needs the cam.
+//! Builds a complete model from its fields, including those of the follower that depend on the cam.
 
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -16,35 +16,35 @@ impl Model {
         Self::parse(&file, &text)
     }
 
-    /// The paper's model, which needs no file.
+    /// Returns the paper's model, which needs no file.
     pub fn built_in() -> Result<Self, ModelError> {
         Self::parse(Self::BUILT_IN, OSORIO_2008)
     }
 
-    /// Checks the text of a model file; `file` is the name that complaints carry.
+    /// Checks the text of a model file; `file` is its name in error messages.
     pub fn parse(file: &str, text: &str) -> Result<Self, ModelError> {
         Self::written(file, text)?.sprung()
     }
 
-    /// Checks a document with the fields of a model file; `name` is the name that complaints carry.
+    /// Checks a document with the fields of a model file; `name` is its name in error messages.
     pub fn of_document(name: &str, document: &serde_json::Value) -> Result<Self, ModelError> {
         Self::written_as(name, document)?.sprung()
     }
 
-    /// The same model with another number in `field`, a dotted path, checked as the file is.
+    /// Returns the model with another number in `field`, a dotted path, checked like a file.
     pub fn with_number(&self, field: &str, number: f64) -> Result<Self, ModelError> {
         self.rewritten(field, number)?.sprung()
     }
 
-    /// The same model with other numbers, of `[study]` as well, each named as for [`Self::path_of`], checked together as the
-    /// file is; they become a part of its name.
+    /// Returns the model with other numbers, also of `[study]`, each named as for [`Self::path_of`]. They are checked together like a file,
+    /// and become a part of the model's name.
     pub fn changed<N: Clone + Into<Numeral>>(&self, numbers: &[(String, N)]) -> Result<Self, ModelError> {
         let numbers: Vec<_> = numbers.iter().map(|(name, number)| (name.clone(), number.clone().into())).collect();
         self.renamed(&numbers)?.sprung()
     }
 
-    /// The same model with a smoothing spline near other lifts at the angles of its table, m, of a weight by its logarithm, with
-    /// corners at these places, or near them, and these dwells, degrees.
+    /// Returns the model with a smoothing spline near other lifts, m, at the angles of its table. The spline has a weight given by its
+    /// logarithm, corners at or near these places, and these dwells, degrees.
     pub(crate) fn with_lifts(
         &self,
         lifts: &[f64],
@@ -55,24 +55,23 @@ impl Model {
         self.relifted(lifts, corners, dwells, weight)?.sprung()
     }
 
-    /// Whether follower and cam are the paper's, whatever the model is called.
+    /// Whether follower and cam are the paper's, under any name of the model.
     pub fn is_the_papers(&self) -> Result<bool, ModelError> {
         let paper = Self::built_in()?;
         Ok(self.follower == paper.follower && self.cam == paper.cam && self.units.length == paper.units.length)
     }
 
-    /// What is odd about numbers in the units that are said, or in those that are taken where none is, at speeds, rpm, that are asked for
-    /// or those of `[study]`: a question for the user, no reason to refuse. Only sizes are looked at that no machine has which turns and
-    /// presses as it should.
+    /// Returns a doubt about numbers, in the units that are stated or assumed, at the given speeds, rpm, or those of `[study]`. The doubt
+    /// is a question for the user and no reason to refuse. Only sizes that no working machine has are questioned.
     pub fn doubt(&self, rpm: Option<[f64; 2]>) -> Result<Option<String>, ModelError> {
-        /// m: of a cam that somebody turns.
+        /// Largest rise of a cam that somebody turns, m.
         const LARGEST_RISE: f64 = 5.0;
-        /// Weights that a spring presses with.
+        /// Largest spring force, in weights of the follower.
         const MOST_WEIGHTS: f64 = 2000.0;
-        /// The cam's speed over the frequency of follower and spring, and a spring's compression over the rise.
+        /// Largest ratio of the cam's speed to the frequency of follower and spring, and of a spring's compression to the rise.
         const MOST_TIMES: f64 = 15.0;
         const MOST_RISES: f64 = 100.0;
-        /// m/s^2, of weights, also where the model has no gravity; and the most that a machine is in.
+        /// Gravity, m/s^2, for weights, also if the model has none; and the largest gravity of a machine.
         const GRAVITY: f64 = 9.81;
         const MOST_GRAVITY: f64 = 1000.0;
         /// From N/m to N/mm.
@@ -114,14 +113,14 @@ impl Model {
         Ok(Some(format!("{meant} [units] says what numbers are in")))
     }
 
-    /// The follower of this model, with its spring, on the cam of another one.
+    /// Puts this model's follower, with its spring, on the cam of another model.
     pub(crate) fn on_cam_of(&self, other: &Self) -> Result<Self, ModelError> {
         let mut model = other.clone();
         (model.follower, model.preload, model.study) = (self.follower, self.preload, self.study);
         model.sprung()
     }
 
-    /// The model with the spring slack where its preload says: `k (c_min - rest_position) = preload`.
+    /// Sets the rest position of the spring from the preload: `k (c_min - rest_position) = preload`.
     fn sprung(mut self) -> Result<Self, ModelError> {
         if let Some(preload) = self.preload {
             let lowest = Cam::new(&self)?.lowest().value;
@@ -134,7 +133,7 @@ impl Model {
         Ok(self)
     }
 
-    /// Refuses numbers that what is made of them leaves the range of a double with.
+    /// Refuses numbers from which the computed quantities would leave the range of a double.
     fn sized(&self) -> Result<(), ModelError> {
         let (most, least) = (tolerance::LEAST_SIZE.value.recip(), tolerance::LEAST_SIZE.value);
         let Follower { mass, damping, stiffness, gravity, rest_position, .. } = self.follower;

@@ -1,4 +1,4 @@
-//! The stroboscopic map, from the follower's state at a cam angle to its state a revolution later; and traces of a motion.
+//! The stroboscopic map, from the follower's state at a cam angle to its state one revolution later; and traces of a motion.
 
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
@@ -13,13 +13,13 @@ use crate::tolerance;
 /// The map of one revolution, from the section at a cam angle back to it.
 #[derive(Clone, Debug)]
 pub struct StroboscopicMap {
-    /// What turns.
+    /// The machine.
     pub machine: Machine,
     /// The section, rad, in `[0, 2 pi)`.
     pub cam_angle: f64,
 }
 
-/// What one revolution did.
+/// Result of one revolution.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Return {
     /// The state on the section, one revolution later.
@@ -36,7 +36,7 @@ impl Return {
 }
 
 impl StroboscopicMap {
-    /// One revolution from `state`: eq:lmap_g.
+    /// Maps `state` over one revolution: eq:lmap_g.
     pub fn apply(&self, state: State) -> Result<Return, SimulateError> {
         let mut events = Vec::new();
         let state = self.machine.turn(self.cam_angle, state, TAU, |event| {
@@ -46,7 +46,7 @@ impl StroboscopicMap {
         Ok(Return { state, events })
     }
 
-    /// `revolutions` from `state`: the state after them, and how they carry a small deviation, `d(q, v)/d(q0, v0)`, 2x2.
+    /// State after `revolutions` from `state`, and the propagator of a small deviation, `d(q, v)/d(q0, v0)`, 2x2.
     pub fn carry(&self, state: State, revolutions: u64) -> Result<(State, Matrix2<f64>), SimulateError> {
         let mut motion = self.machine.start(self.cam_angle, state)?;
         let mut variation = Variation::new(&self.machine, &motion);
@@ -55,10 +55,9 @@ impl StroboscopicMap {
         Ok((motion.state, variation.matrix()))
     }
 
-    /// The motion near `guess` that repeats after `revolutions`, stable or not, by Newton's method; `None` where that finds
-    /// none.
+    /// Finds the motion near `guess` that repeats after `revolutions`, stable or not, by Newton's method; `None` if the method finds none.
     pub fn periodic(&self, guess: State, revolutions: u64) -> Result<Option<Periodic>, SimulateError> {
-        /// Newton's method doubles the digits: a guess that is any good needs six steps or so.
+        /// Newton's method doubles the digits: a useful guess needs about six steps.
         const STEPS: usize = 20;
         let omega = self.machine.angular_velocity();
         let size = |dx: Vector2<f64>| Vector2::new(dx[0], dx[1] / omega).norm();
@@ -66,7 +65,7 @@ impl StroboscopicMap {
         for _ in 0..STEPS {
             let (end, matrix) = match self.carry(state, revolutions) {
                 Ok(carried) => carried,
-                // A step that led below the cam leads nowhere.
+                // A step below the cam leads nowhere.
                 Err(SimulateError::BelowCam { revolution: 0, .. }) => return Ok(None),
                 Err(error) => return Err(error),
             };
@@ -85,17 +84,17 @@ impl StroboscopicMap {
     }
 }
 
-/// The first impact after the follower leaves the cam at `cam_angle`, rad, in `[0, 2 pi)`, with a relative velocity, m/s, zero or
-/// more: the impact map. `None` where there is none to come, or for very long.
+/// The impact map: the first impact after the follower leaves the cam at `cam_angle`, rad, in `[0, 2 pi)`, with a relative velocity, m/s,
+/// zero or more. `None` if there is no further impact, or none for very long.
 pub fn next_impact(machine: &Machine, cam_angle: f64, relative_velocity: f64) -> Result<Option<Event>, SimulateError> {
-    /// Revolutions without an impact after which none is waited for.
+    /// Revolutions without an impact after which the search ends.
     const PATIENCE: u64 = 100_000;
     if !(relative_velocity >= 0.0) {
         return Ok(None);
     }
     let mut motion = machine.start_on_cam(cam_angle, relative_velocity)?;
     loop {
-        // A cam that does not let go within a turn never does.
+        // A cam that does not release the follower within a turn never does.
         let goal = motion.after(if motion.contact { 1 } else { PATIENCE });
         let mut last = None;
         let _ = machine.advance(&mut motion, goal, &mut |event: &Event| {
@@ -110,17 +109,17 @@ pub fn next_impact(machine: &Machine, cam_angle: f64, relative_velocity: f64) ->
     }
 }
 
-/// A motion that repeats.
+/// A periodic motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Periodic {
-    /// Its state on the section.
+    /// State on the section.
     pub state: State,
-    /// How one period carries a small deviation: its eigenvalues are the multipliers.
+    /// Propagator of a small deviation over one period; its eigenvalues are the multipliers.
     pub matrix: Matrix2<f64>,
 }
 
 impl Periodic {
-    /// det(I + A): 0 where a multiplier is -1, and the motion flips to one of twice the period.
+    /// det(I + A): 0 if a multiplier is -1, where the motion flips to one of twice the period.
     pub fn flip(&self) -> f64 {
         1.0 + self.matrix.trace() + self.matrix.determinant()
     }
@@ -133,7 +132,7 @@ pub struct Sample {
     pub turned: f64,
     /// The cam's angle, rad, in `[0, 2 pi)`.
     pub cam_angle: f64,
-    /// The follower.
+    /// State of the follower.
     pub state: State,
     /// The cam's lift, m.
     pub lift: f64,
@@ -143,12 +142,12 @@ pub struct Sample {
     pub gap: f64,
     /// Whether the follower sticks to the cam.
     pub contact: bool,
-    /// What the cam presses with for each kilogram of the follower, m/s^2; 0 where it does not touch.
+    /// Contact force per kilogram of the follower, m/s^2; 0 without contact.
     pub pressing: f64,
 }
 
-/// `samples` moments, evenly spaced in angle, of every one of `revolutions` from `motion` on; and the events in between,
-/// each with a sample of its own right before and right after.
+/// Samples a motion at `samples` moments per revolution, evenly spaced in angle, over `revolutions` from `motion` on. Returns also the
+/// events in between, each with a sample of its own right before and right after.
 pub fn trace(
     machine: &Machine,
     mut motion: Motion,
@@ -186,7 +185,7 @@ pub fn trace(
         for event in &events[before..] {
             let at = |velocity: f64, contact: bool| {
                 let state = State { position: event.position, velocity };
-                // The cam lets go where it presses no more.
+                // Contact ends where the cam no longer presses.
                 let sticks = contact && event.kind == EventKind::Stick;
                 Sample {
                     turned: event.turned_since(0.0),

@@ -1,15 +1,15 @@
-//! How work that takes long is ended before its end, by whoever waits for it.
+//! Ends long work early, at the request of the caller.
 //!
-//! A program ends with its signals, and needs none of this. Where another program calls the library, [`unless`] does work
-//! under a question, which the loops of the simulator and of the searches put again and again by [`heed`]. Where the answer is
-//! yes, the work is unwound to where it began, and everything that it holds is dropped on the way: no search takes the end
-//! for a run that failed, and no result carries it. Threads that work is shared with get the question by [`carried`].
+//! A program ends by its signals and needs none of this. If another program calls the library, [`unless`] runs work under a question, which
+//! the loops of the simulator and of the searches repeat by [`heed`]. If the answer is yes, the work is unwound to its beginning, and
+//! everything that it holds is dropped on the way. So no search takes the stop for a failed run, and no result carries it. Threads that
+//! share the work get the question by [`carried`].
 
 use std::cell::{Cell, RefCell};
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::Arc;
 
-/// Whether work is to end; put on every thread that does some of it.
+/// Question whether work is to end; put on every thread that does some of it.
 pub type Question = Arc<dyn Fn() -> bool + Send + Sync>;
 
 thread_local! {
@@ -17,13 +17,13 @@ thread_local! {
     static PASSED: Cell<u32> = const { Cell::new(0) };
 }
 
-/// What unwinds.
+/// Payload of the unwinding.
 struct Stopped;
 
-/// The result of some work; none where the answer to `question` was yes before its end.
+/// Runs some work and returns its result; none if the answer to `question` was yes before its end.
 pub fn unless<T>(question: Question, work: impl FnOnce() -> T) -> Option<T> {
     let before = QUESTION.replace(Some(question));
-    // What the work leaves half done is its own, and goes with it.
+    // State that the work leaves half done is its own, and is dropped with it.
     let outcome = catch_unwind(AssertUnwindSafe(work));
     QUESTION.set(before);
     match outcome {
@@ -33,7 +33,7 @@ pub fn unless<T>(question: Question, work: impl FnOnce() -> T) -> Option<T> {
     }
 }
 
-/// Ends the work here where it is to end; for loops, each round.
+/// Ends the work here if it is to end; to be called in each round of a loop.
 #[inline]
 pub fn heed() {
     /// Rounds between two questions: a question may cost as much as a round.
@@ -45,7 +45,7 @@ pub fn heed() {
     }
 }
 
-/// The same, for rounds that take a millisecond or more.
+/// Ends the work here if it is to end, asking at every call; for rounds that take a millisecond or more.
 #[cold]
 pub fn ask() {
     // The answer may come from work of its own, under another question.
@@ -55,7 +55,7 @@ pub fn ask() {
     }
 }
 
-/// Work for another thread, under the question of this one.
+/// Wraps work for another thread, under the question of this one.
 pub fn carried<T>(work: impl FnOnce() -> T) -> impl FnOnce() -> T {
     let question = QUESTION.with_borrow(Clone::clone);
     move || {

@@ -1,4 +1,4 @@
-//! Points counted on a grid finer than print: any number of them in bounded memory.
+//! Points counted on a grid finer than print: any number of points in bounded memory.
 
 use crate::elementary;
 use serde::{Serialize, Serializer};
@@ -8,27 +8,27 @@ use super::layout::{LARGEST, widened};
 /// Cells across and up: three to a unit of a full-width figure, about 300 to the inch in print.
 const CELLS: [usize; 2] = [1800, 1200];
 
-/// How many shades a cell may have.
+/// Number of shades of a cell.
 pub(crate) const SHADES: u8 = 5;
 
-/// How many points are kept before a range is chosen for them.
+/// Number of points that are kept before a range is chosen for them.
 const KEPT: usize = 4096;
 
-/// The grid never covers more than this many times the range that it started with: a first speed's points may all be one,
-/// to rounding, and any later range shows all of them; only what would make a range overflow is left out.
+/// Largest growth of the grid, as a multiple of its initial range. The limit only leaves out points that would make a range overflow:
+/// even if a first speed's points all agree to rounding, any later range shows all of them.
 const GROWTH: f64 = 1e18;
 
-/// How many points fell into each cell of a grid over fixed ranges; points may be pushed for ever.
+/// Counts of points in the cells of a grid over fixed ranges; the number of points is unlimited.
 ///
-/// The finer the ranges fit what is shown, the finer it is drawn: [`Cloud`] finds the vertical one by itself.
+/// The closer the ranges fit the data, the finer the picture: [`Cloud`] finds the vertical range by itself.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Density {
     x: [f64; 2],
     y: [f64; 2],
     columns: usize,
     rows: usize,
-    /// `[cell, count]` where there are any; a cell is its row, from below, times the columns, plus its column. A count
-    /// stops at 65535: shades go by its logarithm, and two bytes a cell are half the memory of a picture.
+    /// Serialized as `[cell, count]` for occupied cells; a cell is its row, from below, times the columns, plus its column. A count
+    /// stops at 65535: shades depend on its logarithm, and two bytes a cell are half the memory of a picture.
     #[serde(serialize_with = "occupied")]
     counts: Vec<u16>,
     outside: u64,
@@ -38,20 +38,20 @@ fn occupied<S: Serializer>(counts: &[u16], serializer: S) -> Result<S::Ok, S::Er
     serializer.collect_seq(counts.iter().enumerate().filter(|(_, count)| **count > 0))
 }
 
-/// Where `value` lies in `range`, of one; nothing outside it, nor what is not a number.
+/// Relative position of `value` in `range`; `None` outside it, or if `value` is not a number.
 fn share(value: f64, [low, high]: [f64; 2]) -> Option<f64> {
     let share = (value - low) / (high - low);
     (0.0..=1.0).contains(&share).then_some(share)
 }
 
 impl Density {
-    /// An empty grid over these ranges, the lower end first. Nothing falls into a grid whose ranges are none.
+    /// Creates an empty grid over these ranges, the lower end first. A grid with invalid ranges counts no points.
     pub fn new(x: [f64; 2], y: [f64; 2]) -> Self {
         let [columns, rows] = CELLS;
         Self { x, y, columns, rows, counts: vec![0; columns * rows], outside: 0 }
     }
 
-    /// Counts a point; one outside the ranges is only counted as such.
+    /// Counts a point; a point outside the ranges only adds to the count of those.
     pub fn push(&mut self, x: f64, y: f64) {
         match share(x, self.x).zip(share(y, self.y)) {
             Some((right, up)) => {
@@ -64,7 +64,7 @@ impl Density {
         }
     }
 
-    /// Counts every cell that the straight line between two points runs through; of a long line `most` of them, evenly.
+    /// Counts the cells along the straight line between two points; of a long line, `most` of them, evenly spaced.
     pub(crate) fn join(&mut self, from: [f64; 2], to: [f64; 2], most: usize) {
         let wide = (to[0] - from[0]).abs() / (self.x[1] - self.x[0]) * self.columns as f64;
         let high = (to[1] - from[1]).abs() / (self.y[1] - self.y[0]) * self.rows as f64;
@@ -75,7 +75,7 @@ impl Density {
         }
     }
 
-    /// The ranges that it covers, across and up.
+    /// Ranges of the grid, across and up.
     pub(crate) fn ranges(&self) -> [[f64; 2]; 2] {
         [self.x, self.y]
     }
@@ -84,7 +84,7 @@ impl Density {
         [self.columns, self.rows]
     }
 
-    /// The middle of each cell that has a point, and how many it has.
+    /// The centre of each occupied cell, and its count.
     pub(crate) fn counted(&self) -> impl Iterator<Item = ([f64; 2], u16)> {
         let middle = |index: usize, count: usize, [low, high]: [f64; 2]| {
             low + (high - low) * (index as f64 + 0.5) / count as f64
@@ -96,17 +96,17 @@ impl Density {
         })
     }
 
-    /// How many cells have a point.
+    /// Number of occupied cells.
     pub fn occupied(&self) -> usize {
         self.counts.iter().filter(|count| **count > 0).count()
     }
 
-    /// How many points were outside the ranges or not numbers.
+    /// Number of points outside the ranges or not a number.
     pub fn outside(&self) -> u64 {
         self.outside
     }
 
-    /// The lowest and highest of the rows that have points, as values; nothing where none has.
+    /// Vertical range of the occupied rows, in data values; `None` if no cell is occupied.
     pub fn extent(&self) -> Option<[f64; 2]> {
         let has =
             |row: &usize| self.counts[row * self.columns..(row + 1) * self.columns].iter().any(|count| *count > 0);
@@ -115,14 +115,14 @@ impl Density {
         Some([at(low), at(high + 1)])
     }
 
-    /// A shade for each cell, by the logarithm of the count. With `spread`, a point also shades the eight cells around it, so that
-    /// single points are still seen in print.
+    /// Computes a shade for each cell from the logarithm of its count. With `spread`, a point also shades the eight cells around it, so
+    /// that single points remain visible in print.
     pub(crate) fn shades(&self, spread: bool) -> Shades {
-        // How many cells have each count: sorted, they would take as much memory as the grid.
+        // Histogram of the counts: sorting them would take as much memory as the grid.
         let most = self.counts.iter().max().copied().unwrap_or(0);
         let mut cells = vec![0_u32; usize::from(most) + 1];
         self.counts.iter().for_each(|count| cells[usize::from(*count)] += 1);
-        // Periodic motions fall into few cells many times: the densest tenth may not push the rest into the faintest shade.
+        // Periodic motions put many points into few cells: the densest tenth must not push the others into the faintest shade.
         let mut denser = self.occupied() / 10;
         let full = (1..cells.len()).rev().find(|count| {
             let here = cells[*count] as usize;
@@ -139,7 +139,7 @@ impl Density {
         let reach = usize::from(spread);
         let mut packed = Vec::with_capacity(self.columns.div_ceil(2) * self.rows);
         for row in 0..self.rows {
-            // The shade of the most is the strongest of the shades.
+            // The largest count has the strongest shade.
             let near = row.saturating_sub(reach)..(row + reach + 1).min(self.rows);
             let mut upright = vec![0; self.columns];
             for counts in self.counts.chunks(self.columns).skip(near.start).take(near.len()) {
@@ -155,7 +155,7 @@ impl Density {
         Shades { columns: self.columns, packed }
     }
 
-    /// Twice the range upwards or downwards at half the resolution, so that `y` comes nearer.
+    /// Doubles the range upwards or downwards at half the resolution, so that it approaches `y`.
     fn double(&mut self, upwards: bool) {
         let span = self.y[1] - self.y[0];
         let mut counts = vec![0_u16; self.counts.len()];
@@ -170,8 +170,8 @@ impl Density {
     }
 }
 
-/// A shade for each cell of a grid, 0 for none, else 1 to [`SHADES`]: two in a byte, as a picture is drawn beside the counts of its
-/// grid, and as a PNG of few colours holds them.
+/// Shades of a grid's cells, 0 for empty, else 1 to [`SHADES`]. Two share a byte to save memory, since the counts of the grid are in memory
+/// too, and as in a PNG of few colours.
 pub(crate) struct Shades {
     columns: usize,
     packed: Vec<u8>,
@@ -182,17 +182,17 @@ impl Shades {
         self.columns
     }
 
-    /// The rows from below, two cells in a byte.
+    /// Rows from below, two cells in a byte.
     pub(crate) fn rows(&self) -> std::slice::Chunks<'_, u8> {
         self.packed.chunks(self.columns.div_ceil(2))
     }
 
-    /// The cells of a row.
+    /// Cells of a row.
     pub(crate) fn cells(&self, row: &[u8]) -> impl Iterator<Item = u8> {
         row.iter().flat_map(|pair| [pair >> 4, pair & 15]).take(self.columns)
     }
 
-    /// The full shade wherever there is any.
+    /// Gives every occupied cell the full shade.
     pub(crate) fn solid(mut self) -> Self {
         let full = |shade: u8| if shade == 0 { 0 } else { SHADES };
         self.packed.iter_mut().for_each(|pair| *pair = (full(*pair >> 4) << 4) | full(*pair & 15));
@@ -200,7 +200,7 @@ impl Shades {
     }
 }
 
-/// Points whose vertical range is not known beforehand: a [`Density`] that starts from the first few thousand and grows.
+/// Points whose vertical range is unknown at first: a [`Density`] that starts from the first few thousand and grows.
 #[derive(Clone, Debug)]
 pub struct Cloud {
     x: [f64; 2],
@@ -209,7 +209,7 @@ pub struct Cloud {
 }
 
 impl Cloud {
-    /// No points yet; `x` is the horizontal range.
+    /// Creates an empty cloud; `x` is the horizontal range.
     pub fn new(x: [f64; 2]) -> Self {
         Self { x, kept: Vec::new(), grid: None }
     }
@@ -233,13 +233,13 @@ impl Cloud {
         }
     }
 
-    /// The grid of every point so far.
+    /// Returns the grid of all points.
     pub fn finish(mut self) -> Density {
         self.settle();
         self.grid.map_or_else(|| Density::new(self.x, [0.0, 1.0]), |(grid, _)| grid)
     }
 
-    /// Chooses a range from the points kept, with a little room.
+    /// Chooses a range from the kept points, slightly widened.
     fn settle(&mut self) {
         if self.grid.is_some() {
             return;

@@ -4,7 +4,7 @@ use std::fmt::{self, Write};
 
 use super::{Colour, Marker, Stroke};
 
-/// Coordinates far outside the page are cut here.
+/// Limit of coordinates far outside the page, which are clamped to it.
 pub(super) const FAR: f64 = 1e5;
 
 pub(super) fn stroked(out: &mut impl Write, path: &str, how: Stroke, colour: Colour) -> fmt::Result {
@@ -20,7 +20,7 @@ pub(super) fn stroked(out: &mut impl Write, path: &str, how: Stroke, colour: Col
 }
 
 pub(super) fn markers(out: &mut impl Write, points: &[[f64; 2]], marker: Marker, colour: Colour) -> fmt::Result {
-    /// More markers than this are small, or they would hide what they mark.
+    /// Number of markers above which they are small, so that they do not hide the data.
     const MANY: usize = 40;
     let small = points.len() > MANY;
     let shape = match (marker, small) {
@@ -65,7 +65,7 @@ pub(super) fn fill(colour: Colour) -> String {
     format!(r#"class="f-{class}" fill="{light}""#)
 }
 
-/// Text that XML takes for text; characters that it has no place for are left out.
+/// Escapes text for XML; characters that XML does not allow are left out.
 pub(crate) fn escaped(text: &str) -> String {
     let mut escaped = String::new();
     for letter in text.chars() {

@@ -1,7 +1,7 @@
-//! The letters of a figure: whose they are, and a font of those alone that a figure has.
+//! The letters of a figure: their fonts, and subsets of fonts with only the glyphs that a figure uses.
 //!
-//! A file that is to look the same everywhere brings its letters with it. Of a font of TrueType outlines it brings those that
-//! are used; the numbers of its glyphs stay, so that the font's own tables of letters and widths hold.
+//! A file that is to look the same everywhere embeds its letters. Only the used glyphs of a TrueType font are embedded.
+//! Glyph numbers stay the same, so that the font's own tables of letters and widths remain valid.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -10,36 +10,36 @@ use std::sync::Arc;
 use resvg::usvg::fontdb::{Database, Family, ID, Query, Source};
 use resvg::usvg::{GlyphId, Group, Node, Options, Tree};
 
-/// Stands for the raised minus, which the program's own letters lack: one letter from other letters would take its whole line there.
+/// Replacement of the raised minus, which the built-in font lacks: one letter from another font would change the font of its whole line.
 const RAISED_MINUS: &str = r#"<tspan baseline-shift="35%" font-size="70%">−</tspan>"#;
 
-/// The letters of figures: one family, and the program's own for what it has not.
+/// Fonts of figures: one family, and the built-in font for letters that it lacks.
 #[derive(Clone, Debug)]
 pub struct Fonts {
     database: Arc<Database>,
     family: String,
 }
 
-/// Letters that are not there.
+/// Reason why a font is not available.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FontError {
-    /// A family that this machine has not.
+    /// A family that is not installed on this machine.
     #[error("no font \"{0}\" is installed: give the name of one that is, or the file (.ttf, .otf) of one")]
     Family(String),
-    /// A file that is none of a font.
+    /// A file that is not a font.
     #[error("{0}: cannot be read as a font")]
     File(String),
 }
 
 impl Default for Fonts {
-    /// The program's own, for machines that have none.
+    /// The built-in font, for machines without fonts.
     fn default() -> Self {
         Self::with(Database::new(), None)
     }
 }
 
 impl Fonts {
-    /// Those of a family that is installed, or of a font's file.
+    /// Fonts of an installed family, or of a font file.
     pub fn named(name: &str) -> Result<Self, FontError> {
         let mut database = Database::new();
         if name.contains(['/', '\\']) || [".ttf", ".otf", ".ttc"].iter().any(|end| name.to_lowercase().ends_with(end)) {
@@ -54,7 +54,7 @@ impl Fonts {
         let family = family.ok_or_else(|| FontError::Family(name.into()))?;
         let query = Query { families: &[Family::Name(&family)], ..Query::default() };
         let face = database.query(&query).and_then(|id| database.face(id)).cloned();
-        // That face alone: another of the machine's is no letter's second choice.
+        // Use this face only: no letter falls back on another font of the machine.
         let mut alone = Database::new();
         face.ok_or_else(|| FontError::Family(name.into())).map(|face| alone.push_face_info(face))?;
         Ok(Self::with(alone, Some(family)))
@@ -63,7 +63,7 @@ impl Fonts {
     fn with(mut database: Database, family: Option<String>) -> Self {
         let own = [epaint_default_fonts::UBUNTU_LIGHT, epaint_default_fonts::HACK_REGULAR];
         let mut first = None;
-        // The second only for what the first has no glyph of: a model's name may have any.
+        // The second font is used only for letters that the first one lacks: a model's name may have any letters.
         for font in own {
             let ids = database.load_font_source(Source::Binary(Arc::new(font)));
             first = first.or_else(|| Some(database.face(*ids.first()?)?.families.first()?.0.clone()));
@@ -73,27 +73,27 @@ impl Fonts {
         Self { database: Arc::new(database), family }
     }
 
-    /// The name of the family.
+    /// Name of the family.
     pub fn family(&self) -> &str {
         &self.family
     }
 
-    /// An SVG as it is drawn with these letters.
+    /// Parses an SVG for drawing with these fonts.
     pub(super) fn tree(&self, svg: &str) -> Result<Tree, resvg::usvg::Error> {
         let options = Options { fontdb: Arc::clone(&self.database), ..Options::default() };
         Tree::from_str(&svg.replace('⁻', RAISED_MINUS), &options)
     }
 }
 
-/// The glyphs of a font that a figure has, each with the text that it stands for.
+/// Glyphs of a font in a figure, each with the text that it represents.
 pub(super) type Glyphs = BTreeMap<u16, String>;
 
-/// A glyph's number: fonts have fewer than 65536.
+/// Number of a glyph: fonts have fewer than 65536.
 pub(super) fn number(glyph: GlyphId) -> u16 {
     u16::try_from(glyph.0).unwrap_or(0)
 }
 
-/// The fonts of a figure and their glyphs, in the order in which they come.
+/// Fonts of a figure and their glyphs, in order of first use.
 pub(super) fn used(tree: &Tree) -> Vec<(ID, Glyphs)> {
     let mut fonts = Vec::new();
     gather(tree.root(), &mut fonts);
@@ -118,26 +118,26 @@ fn gather(group: &Group, fonts: &mut Vec<(ID, Glyphs)>) {
     }
 }
 
-/// A font cut down to some glyphs, and what a page needs to know of it.
+/// A font reduced to some glyphs, with the data that a page needs.
 pub(super) struct Cut {
-    /// The file.
+    /// Contents of the font file.
     pub(super) data: Vec<u8>,
-    /// Whether its outlines are TrueType's, else those of PostScript.
+    /// Whether the outlines are TrueType; otherwise PostScript.
     pub(super) is_true_type: bool,
-    /// Parts of a font's square.
+    /// Units of a font's em square.
     pub(super) units_per_em: f32,
-    /// The box around every glyph: left, bottom, right, top.
+    /// Bounding box of all glyphs: left, bottom, right, top.
     pub(super) around: [i16; 4],
-    /// Above and below the base line.
+    /// Extent above and below the base line.
     pub(super) ascent: [i16; 2],
     widths: Vec<u8>,
     long_widths: u16,
 }
 
 impl Cut {
-    /// How far a glyph takes the line on.
+    /// Advance width of a glyph.
     pub(super) fn width(&self, glyph: u16) -> u16 {
-        // Glyphs after the last width have that one.
+        // Glyphs after the last width share it.
         u16_at(&self.widths, 4 * usize::from(glyph.min(self.long_widths.saturating_sub(1)))).unwrap_or(0)
     }
 }
@@ -150,13 +150,13 @@ fn u32_at(data: &[u8], at: usize) -> Option<usize> {
     Some(u32::from_be_bytes(data.get(at..at + 4)?.try_into().ok()?) as usize)
 }
 
-/// Tables that a reader of a file needs, by name; what places letters in other ways is left out, as are outlines that move.
+/// Names of the tables that a reader of the file needs. Tables for other placement of letters and for variable outlines are left out.
 const KEPT: [&[u8; 4]; 14] = [
     b"OS/2", b"CFF ", b"cmap", b"cvt ", b"fpgm", b"glyf", b"head", b"hhea", b"hmtx", b"kern", b"loca", b"maxp",
     b"name", b"prep",
 ];
 
-/// The face of a font's file with the outlines of `glyphs` alone; nothing where it is broken.
+/// Reduces a face of a font file to the outlines of `glyphs`; `None` if the file is broken.
 pub(super) fn cut(data: &[u8], index: u32, glyphs: &Glyphs) -> Option<Cut> {
     let start = if data.starts_with(b"ttcf") { u32_at(data, 12 + 4 * index as usize)? } else { 0 };
     let count = usize::from(u16_at(data, start + 4)?);
@@ -169,7 +169,7 @@ pub(super) fn cut(data: &[u8], index: u32, glyphs: &Glyphs) -> Option<Cut> {
     let (head, line) = (table(b"head")?, table(b"hhea")?);
     let mut tables: BTreeMap<&[u8], Vec<u8>> =
         KEPT.into_iter().filter_map(|name| Some((name.as_slice(), table(name)?.to_vec()))).collect();
-    // Version 3: without names of glyphs.
+    // Version 3: without glyph names.
     let post = table(b"post").and_then(|post| post.get(4..32)).unwrap_or(&[0; 28]);
     tables.insert(b"post", [[0, 3, 0, 0].as_slice(), post].concat());
     let outlines = table(b"glyf").zip(table(b"loca"));
@@ -192,14 +192,14 @@ pub(super) fn cut(data: &[u8], index: u32, glyphs: &Glyphs) -> Option<Cut> {
     })
 }
 
-/// The outlines of glyphs, and of the parts that they are put together from, with where each begins: four bytes each.
+/// Outlines of glyphs and of their component glyphs, with the offset of each in four bytes.
 fn outlines_of(glyf: &[u8], loca: &[u8], long: bool, glyphs: &Glyphs) -> Option<(Vec<u8>, Vec<u8>)> {
     let place =
         |glyph: usize| if long { u32_at(loca, 4 * glyph) } else { Some(2 * usize::from(u16_at(loca, 2 * glyph)?)) };
     let outline = |glyph: u16| glyf.get(place(usize::from(glyph))?..place(usize::from(glyph) + 1)?);
     let count = loca.len() / if long { 4 } else { 2 } - 1;
     let mut wanted = vec![false; count];
-    // The first glyph stands for what a font has not: it is always there.
+    // Glyph 0 represents missing letters and must always be included.
     let mut open: Vec<u16> = glyphs.keys().copied().chain([0]).collect();
     while let Some(glyph) = open.pop() {
         let seen = wanted.get_mut(usize::from(glyph))?;
@@ -219,7 +219,7 @@ fn outlines_of(glyf: &[u8], loca: &[u8], long: bool, glyphs: &Glyphs) -> Option<
     Some((kept, places))
 }
 
-/// The glyphs that an outline is put together from; none of most.
+/// Component glyphs of an outline; empty for most.
 fn parts(outline: &[u8]) -> Vec<u16> {
     const WORDS: u16 = 1;
     const ONE_SCALE: u16 = 8;
@@ -238,9 +238,9 @@ fn parts(outline: &[u8]) -> Vec<u16> {
     parts
 }
 
-/// Tables as a font's file.
+/// Assembles tables into a font file.
 fn file(tables: BTreeMap<&[u8], Vec<u8>>, is_true_type: bool) -> Option<Vec<u8>> {
-    /// Of the whole file, less the sum of its words (OpenType, "head").
+    /// Constant for the checksum of the whole file: this less the sum of its words (OpenType, "head").
     const SUM: u32 = 0xB1B0_AFBA;
     let sum = |data: &[u8]| {
         let word =

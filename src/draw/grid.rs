@@ -1,4 +1,4 @@
-//! A dense grid on the page: as SVG, or drawn straight into the pixels of a PNG.
+//! A dense grid on the page: as SVG, or drawn directly into the pixels of a PNG.
 
 use std::fmt::{self, Write};
 
@@ -10,36 +10,36 @@ use super::Colour;
 use super::density::{SHADES, Shades};
 use super::element::{number, stroke};
 
-/// What is drawn of a grid; lengths in the page's units, from the upper left corner of its frame.
+/// Drawing of a grid; lengths in the page's units, from the upper left corner of its frame.
 pub(super) enum Grid {
-    /// The cells, stretched over a place.
+    /// Cells stretched over a rectangle.
     Cells {
         shades: Shades,
-        /// Left, top, width and height of all of it.
+        /// Left, top, width and height of the whole grid.
         place: [f64; 4],
-        /// Of the colour in a cell of full shade: 1 for all of it.
+        /// Opacity of a cell of full shade: 1 is opaque.
         strength: f64,
     },
-    /// A dot for each cell that has a point.
+    /// A dot for each occupied cell.
     Dots {
-        /// By shade, the faintest first: the middle of each, in tenths of a unit.
+        /// Centres of the dots in tenths of a unit, by shade, the faintest first.
         at: [Vec<[i64; 2]>; SHADES as usize],
         size: f64,
     },
 }
 
-/// Of a shade: the faintest is still seen in print.
+/// Opacity of a shade; the faintest remains visible in print.
 fn opacity(shade: u8) -> f64 {
     0.5 + 0.5 * f64::from(shade - 1) / f64::from(SHADES - 1)
 }
 
-/// The same of 255, 0 for no shade.
+/// Opacity of a shade on the scale to 255; 0 for no shade.
 fn alpha(shade: u8) -> u8 {
     if shade == 0 { 0 } else { (255.0 * opacity(shade)) as u8 }
 }
 
 impl Grid {
-    /// As elements of an SVG.
+    /// Writes the grid as elements of an SVG.
     pub(super) fn write(&self, out: &mut impl Write, colour: Colour) -> fmt::Result {
         match self {
             Self::Cells { shades, place, strength } => {
@@ -55,7 +55,7 @@ impl Grid {
                 for (shade, dots) in (1..).zip(at).filter(|(_, dots)| !dots.is_empty()) {
                     let (mut path, mut last) = (String::new(), [0; 2]);
                     for dot in dots {
-                        // From the dot before: half the bytes, and no error adds up.
+                        // Relative to the previous dot: half the bytes, and errors do not add up.
                         write!(path, "m{} {}h0", dot[0] - last[0], dot[1] - last[1])?;
                         last = *dot;
                     }
@@ -71,7 +71,7 @@ impl Grid {
         }
     }
 
-    /// Draws what of it lies in a band of the page, `top` pixels below the page's upper edge, and in `frame` (left, top,
+    /// Draws the part of the grid within a band of the page, `top` pixels below the page's upper edge, and within `frame` (left, top,
     /// width and height on the page); a unit is `scale` pixels.
     pub(super) fn draw(&self, band: &mut Pixmap, colour: Colour, frame: [f64; 4], top: f64, scale: f64) {
         let [left, above, width, height] = frame.map(|part| part as f32);
@@ -92,7 +92,7 @@ impl Grid {
         }
     }
 
-    /// What has a shade, as far as it reaches into a range of heights; nothing where nothing does.
+    /// Outlines of the cells or dots of a shade within a range of heights; `None` if there are none.
     fn path(&self, shade: u8, [upper, lower]: [f64; 2]) -> Option<Path> {
         let mut path = PathBuilder::new();
         match self {
@@ -126,7 +126,7 @@ impl Grid {
     }
 }
 
-/// Shades as a PNG in base 64: one colour, its opacity by shade.
+/// Shades as a PNG in base 64: one colour, with an opacity for each shade.
 fn image(shades: &Shades, colour: Colour) -> Result<String, png::EncodingError> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, shades.columns() as u32, shades.rows().len() as u32);

@@ -1,13 +1,13 @@
-//! Where everything of a figure stands on the page, so that no label covers another.
+//! Layout of a figure on the page, such that no label covers another.
 //!
-//! The page is as many units wide as its look says, [`WIDTH`] where it says nothing, and as high as it needs to be. Widths of
-//! letters are guessed on the safe side: in a page an SVG is read with whatever sans-serif font there is.
+//! The page is as wide, in units, as its look says, by default [`WIDTH`], and as high as necessary. Widths of
+//! letters are estimated generously, because an SVG in a page is shown in whatever sans-serif font is available.
 
 use super::ticks::{self, Tick, ticks};
 use super::{Axis, Data, Figure, Mark, Panel};
 use crate::tolerance;
 
-/// Width of the page where nothing else is asked for.
+/// Default width of the page.
 pub const WIDTH: f64 = 720.0;
 /// Height of most letters.
 pub const TEXT: f64 = 12.5;
@@ -15,14 +15,14 @@ pub const TEXT: f64 = 12.5;
 pub(crate) const TITLE: f64 = 15.0;
 /// Width of a sample in a legend.
 pub(crate) const SAMPLE: f64 = 24.0;
-/// Values of this size and above are not drawn: differences of them would overflow.
+/// Limit from which on values are not drawn: differences of them would overflow.
 pub(crate) const LARGEST: f64 = 1e300;
 
 const LINE: f64 = 16.0;
 const EDGE: f64 = 12.0;
 const GAP: f64 = 6.0;
 const LEADER: f64 = 14.0;
-/// Stands in, without ticks, for a range that nothing tells.
+/// Range, without ticks, of an axis whose range is unknown.
 const UNKNOWN: [f64; 2] = [0.0, 1.0];
 
 /// A rectangle of the page.
@@ -40,52 +40,52 @@ impl Frame {
         self.left + self.width
     }
 
-    /// Its lower edge.
+    /// Position of the lower edge.
     pub fn bottom(&self) -> f64 {
         self.top + self.height
     }
 }
 
-/// A line of text whose left end is on its base line at `at`.
+/// A line of text; `at` is the left end of its base line.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Text {
-    /// Where it starts.
+    /// Left end of the base line.
     pub at: [f64; 2],
-    /// What it says.
+    /// The text itself.
     pub text: String,
 }
 
 /// A reference line with its label.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MarkLine {
-    /// Where it crosses its axis, on the page.
+    /// Position on the page where the line crosses its axis.
     pub at: f64,
-    /// Whether it is within the axis.
+    /// Whether the line is within the range of the axis.
     pub inside: bool,
-    /// Its label, where it has one.
+    /// Label, if any.
     pub label: Option<Text>,
 }
 
-/// One panel.
+/// Layout of one panel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PanelLayout {
-    /// Where its data are drawn.
+    /// Frame of the data.
     pub frame: Frame,
-    /// Ends of its vertical axis.
+    /// Ends of the vertical axis.
     pub range: [f64; 2],
-    /// Its ticks.
+    /// Ticks of the vertical axis.
     pub ticks: Vec<Tick>,
-    /// Its vertical axis's name.
+    /// Name of the vertical axis.
     pub name: Text,
-    /// Where the samples of its legend stand, by the index of the series, with their names.
+    /// Legend entries: index of the series, and its name at the sample's position.
     pub legend: Vec<(usize, Text)>,
-    /// Its horizontal lines.
+    /// Horizontal reference lines.
     pub marks: Vec<MarkLine>,
-    /// Whether nothing in it can be drawn.
+    /// Whether the panel has no drawable data.
     pub empty: bool,
 }
 
-/// Where everything stands.
+/// Layout of a whole figure.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layout {
     /// Height of the page.
@@ -96,9 +96,9 @@ pub struct Layout {
     pub range: [f64; 2],
     /// Ticks of the horizontal axis.
     pub ticks: Vec<Tick>,
-    /// The horizontal axis's name.
+    /// Name of the horizontal axis.
     pub name: Text,
-    /// Vertical lines.
+    /// Vertical reference lines.
     pub marks: Vec<MarkLine>,
     /// The panels.
     pub panels: Vec<PanelLayout>,
@@ -106,7 +106,7 @@ pub struct Layout {
     pub note: Vec<Text>,
 }
 
-/// How wide a text is, on the safe side.
+/// Width of a text, estimated generously.
 pub fn width(text: &str, size: f64) -> f64 {
     let letter = |letter: char| match letter {
         'i' | 'j' | 'l' | '.' | ',' | ':' | ';' | '\'' | '|' | '!' => 0.34,
@@ -118,7 +118,7 @@ pub fn width(text: &str, size: f64) -> f64 {
     size * text.chars().map(letter).sum::<f64>()
 }
 
-/// A range with room beside it, a share of its span; one that is a single value is given a span.
+/// Widens a range at both ends by a share of its span; a single value gets a span.
 pub(crate) fn widened([low, high]: [f64; 2], room: f64) -> [f64; 2] {
     let size = low.abs().max(high.abs());
     if high - low > tolerance::DRAWN_SPAN.value * size {
@@ -129,7 +129,7 @@ pub(crate) fn widened([low, high]: [f64; 2], room: f64) -> [f64; 2] {
     [low - room, high + room]
 }
 
-/// The share of a range at which a value lies; not a number where there is nothing to draw.
+/// Relative position of a value in a range; NaN if the value cannot be drawn.
 pub(crate) fn share(value: f64, [low, high]: [f64; 2]) -> f64 {
     if value.abs() < LARGEST { (value - low) / (high - low) } else { f64::NAN }
 }
@@ -140,12 +140,12 @@ fn valid(range: Option<[f64; 2]>) -> Option<[f64; 2]> {
         .filter(|range| widened(*range, 0.0) == *range)
 }
 
-/// The extent of values, where there are any.
+/// Extent of values, if there are any.
 fn known(values: impl IntoIterator<Item = f64>) -> Option<[f64; 2]> {
     Some(super::extent(values)).filter(|[low, high]| low <= high)
 }
 
-/// The extent of what can be drawn of a panel's series in one direction.
+/// Extent of the drawable part of a panel's series in one direction.
 fn extent(panel: &Panel, direction: usize) -> Option<[f64; 2]> {
     let drawable = |point: &&[f64; 2]| point.iter().all(|part| part.abs() < LARGEST);
     let extents = panel.series.iter().filter_map(|series| match &series.data {
@@ -158,7 +158,7 @@ fn extent(panel: &Panel, direction: usize) -> Option<[f64; 2]> {
     known(extents.flatten())
 }
 
-/// Nothing where there is neither a range nor data.
+/// Vertical range of a panel; `None` if it has neither a range nor data.
 fn vertical_range(panel: &Panel) -> Option<[f64; 2]> {
     valid(panel.y.range).or_else(|| {
         let marks = panel.marks.iter().map(|mark| mark.at).filter(|at| at.abs() < LARGEST);
@@ -173,7 +173,7 @@ fn horizontal_range(figure: &Figure) -> Option<[f64; 2]> {
     })
 }
 
-/// An axis's name with its unit in brackets.
+/// Name of an axis with its unit in brackets.
 fn name(axis: &Axis, exponent: i32) -> String {
     let unit = ticks::unit(&axis.unit, exponent);
     if unit.is_empty() { axis.label.clone() } else { format!("{} ({unit})", axis.label) }
@@ -185,7 +185,7 @@ fn vertical_ticks(panel: &Panel, range: Option<[f64; 2]>, height: f64) -> ticks:
         ticks.windows(2).all(|pair| height * (share(pair[1].at, range) - share(pair[0].at, range)) >= LINE)
     };
     let few = ticks(range, panel.y.spacing, (height / 30.0) as usize, fits);
-    // One tick tells no scale: as many as have room do.
+    // One tick shows no scale: add as many as have room.
     if few.ticks.len() == 1 { ticks(range, panel.y.spacing, (height / LINE) as usize, fits) } else { few }
 }
 
@@ -200,7 +200,7 @@ fn horizontal_ticks(axis: &Axis, range: Option<[f64; 2]>, across: f64) -> ticks:
     })
 }
 
-/// Text in lines of at most `room`, at word ends.
+/// Breaks text at word ends into lines of at most `room`.
 fn lines(text: &str, size: f64, room: f64) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {
@@ -219,7 +219,7 @@ fn is_inside(mark: &Mark, range: [f64; 2]) -> bool {
     (0.0..=1.0).contains(&share(mark.at, range))
 }
 
-/// Marks with a label within the axis, by rising `place`.
+/// Indices of the marks within the axis that have a label, ascending by `place`.
 fn labelled(marks: &[Mark], range: [f64; 2], place: impl Fn(&Mark) -> f64) -> Vec<usize> {
     let has_label = |index: &usize| is_inside(&marks[*index], range) && !marks[*index].label.is_empty();
     let mut order: Vec<usize> = (0..marks.len()).filter(has_label).collect();
@@ -227,7 +227,7 @@ fn labelled(marks: &[Mark], range: [f64; 2], place: impl Fn(&Mark) -> f64) -> Ve
     order
 }
 
-/// Each mark at its `place`, with its label where that has one.
+/// Each mark at its `place`, with its label if it has one.
 fn mark_lines(
     marks: &[Mark],
     range: [f64; 2],
@@ -242,7 +242,7 @@ fn mark_lines(
     marks.iter().enumerate().map(line).collect()
 }
 
-/// Labels of horizontal lines beside the frame, pushed apart where lines are close.
+/// Labels of horizontal lines beside the frame, moved apart where lines are close.
 fn beside(marks: &[Mark], range: [f64; 2], frame: &Frame) -> Vec<MarkLine> {
     let at = |mark: &Mark| frame.bottom() - frame.height * share(mark.at, range);
     let order = labelled(marks, range, at);
@@ -250,7 +250,7 @@ fn beside(marks: &[Mark], range: [f64; 2], frame: &Frame) -> Vec<MarkLine> {
     for index in 1..middles.len() {
         middles[index] = middles[index].max(middles[index - 1] + LINE);
     }
-    // What was pushed below the frame goes back up, and takes along what is in its way.
+    // Labels below the frame move up again, together with the labels in their way.
     let mut limit = frame.bottom();
     for middle in middles.iter_mut().rev() {
         *middle = middle.min(limit);
@@ -262,13 +262,13 @@ fn beside(marks: &[Mark], range: [f64; 2], frame: &Frame) -> Vec<MarkLine> {
     })
 }
 
-/// Labels of vertical lines above the frame, right of their lines, in rows so that no line runs through a label.
+/// Labels of vertical lines above the frame, right of their lines, in rows such that no line crosses a label.
 fn above(marks: &[Mark], range: [f64; 2], frame: &Frame) -> (Vec<MarkLine>, usize) {
     let at = |mark: &Mark| frame.left + frame.width * share(mark.at, range);
     let mut rows: Vec<(f64, usize, usize)> = Vec::new();
     for index in labelled(marks, range, |mark| -at(mark)) {
         let (left, right) = (at(&marks[index]), at(&marks[index]) + GAP + width(&marks[index].label, TEXT));
-        // A line to the right rises to its own label's row: this label stands above all of those that it spans.
+        // The line of a mark further right rises to its own label's row, so this label goes above all labels that it spans.
         let row = rows.iter().filter(|(other, _, _)| *other <= right).map(|(_, row, _)| row + 1).max().unwrap_or(0);
         rows.push((left, row, index));
     }
@@ -280,7 +280,7 @@ fn above(marks: &[Mark], range: [f64; 2], frame: &Frame) -> (Vec<MarkLine>, usiz
     (lines, count)
 }
 
-/// The legend beside the axis's name where both fit, else in rows below it: entries at `[x, row]`, and how many rows.
+/// Legend beside the axis name if both fit, else in rows below it: entries at `[x, row]`, and the number of rows.
 fn legend(panel: &Panel, name: &str, left: f64, right: f64) -> (Vec<(usize, [f64; 2])>, usize) {
     let entries: Vec<(usize, f64)> = panel
         .series
@@ -304,9 +304,9 @@ fn legend(panel: &Panel, name: &str, left: f64, right: f64) -> (Vec<(usize, [f64
 }
 
 impl Layout {
-    /// Lays a figure out under a title on a page so many units wide.
+    /// Computes the layout of a figure under a title on a page of this width, in units.
     pub fn new(figure: &Figure, title: &str, wide: f64) -> Self {
-        // A narrow figure has the same letters: its panels are higher in proportion, or they would have no room for ticks.
+        // Letters keep their size in a narrow figure: its panels are relatively higher, to have room for ticks.
         let tall = wide * (WIDTH / wide).sqrt().clamp(1.0, 1.5);
         let height = |panel: &Panel| tall * if panel.height.is_nan() { 0.5 } else { panel.height.clamp(0.08, 2.0) };
         let mut heights: Vec<f64> = figure.panels.iter().map(height).collect();

@@ -1,63 +1,63 @@
-//! How a figure stands on paper or on a screen, whatever it shows: its width, its letters, its title and the ranges of its axes.
+//! Appearance of a figure on paper or on a screen, whatever its data: its width, font, title and ranges of axes.
 
 use super::font::Fonts;
 use super::layout::{TEXT, WIDTH};
 use super::{Data, Figure, Panel, extent};
 
-/// Points, 72 to the inch, of the width of a figure that is given none: a page's, between its margins.
+/// Default width of a figure, points, 72 to the inch: that of a page between its margins.
 pub const PAGE: f64 = 480.0;
-/// The narrowest and the widest page, in units of which a letter is [`TEXT`] high: a narrower one has no room beside its labels.
+/// Least and greatest width of the page, in units; a letter is [`TEXT`] high. A narrower page has no room beside its labels.
 const ACROSS: [f64; 2] = [240.0, 4000.0];
-/// Widths that are a figure's, points: of a thumb, and of a poster.
+/// Allowed widths of a figure, points: from a thumb to a poster.
 const WIDTHS: [f64; 2] = [30.0, 2400.0];
-/// What is drawn reaches at most this many times as far as what is shown: farther out coordinates are cut, and lines would turn.
+/// Largest ratio of the drawn range to the displayed range: farther out, coordinates are clamped, and lines would change direction.
 const FARTHEST: f64 = 100.0;
 
-/// On what a figure is looked at.
+/// Medium on which a figure is viewed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Theme {
-    /// On a screen: an SVG is light or dark as the reader's screen is.
+    /// A screen: an SVG is light or dark, as the reader's screen is.
     #[default]
     Screen,
-    /// On white paper, whatever the screen.
+    /// White paper, whatever the screen.
     Print,
 }
 
-/// What a figure looks like.
+/// Appearance of a figure.
 #[derive(Clone, Debug, Default)]
 pub struct Look {
-    /// Its width on paper, points; that of what it stands in where there is none, and a page's in print.
+    /// Width on paper, points. By default that of the surrounding page; in print, a page's width.
     pub width: Option<f64>,
-    /// Height of its letters on paper, points; what they have in a figure as wide as a page where there is none.
+    /// Height of letters on paper, points. By default as in a figure as wide as a page.
     pub size: Option<f64>,
-    /// Whose letters, which an SVG brings with it then; where there are none those of the page that an SVG stands in, and the program's own
-    /// in a PNG and a PDF.
+    /// Fonts, which an SVG then embeds. By default an SVG uses the fonts of the surrounding page; a PNG and a PDF use the built-in
+    /// font.
     pub fonts: Option<Fonts>,
-    /// On what it is looked at.
+    /// Medium on which the figure is viewed.
     pub theme: Theme,
-    /// Whether its title is left out.
+    /// Whether the title is left out.
     pub untitled: bool,
-    /// Ends of the horizontal axis instead of its own.
+    /// Ends of the horizontal axis, in place of the figure's.
     pub x: Option<[f64; 2]>,
-    /// Ends of the first panel's vertical axis, instead of its own.
+    /// Ends of the first panel's vertical axis, in place of the panel's.
     pub y: Option<[f64; 2]>,
 }
 
-/// A look that no figure can have.
+/// Reason why a look is impossible.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LookError {
-    /// A width that is no figure's.
+    /// A width outside the allowed range.
     #[error("a figure {0:.1} pt wide cannot be made: {low} to {high} pt can", low = WIDTHS[0], high = WIDTHS[1])]
     Width(f64),
-    /// Letters that leave no room, or that nobody can read.
+    /// Letters that leave no room, or that are too small to read.
     #[error("letters of {size:.2} pt do not fit into a figure {width:.1} pt wide: {low:.2} to {high:.1} pt do")]
     #[expect(missing_docs, reason = "what the words say")]
     Size { size: f64, width: f64, low: f64, high: f64 },
-    /// Nothing would be seen.
+    /// A range that shows no data.
     #[error("{axis} from {} to {} shows nothing: what is drawn lies from {} to {}", shown[0], shown[1], drawn[0], drawn[1])]
     #[expect(missing_docs, reason = "what the words say")]
     Aside { axis: &'static str, shown: [f64; 2], drawn: [f64; 2] },
-    /// Too little would be seen.
+    /// A range that shows too little of the data.
     #[error(
         "{axis} from {} to {} is less than a hundredth of what is drawn, from {} to {}: compute the figure anew over a narrower range",
         shown[0], shown[1], drawn[0], drawn[1]
@@ -67,12 +67,12 @@ pub enum LookError {
 }
 
 impl Look {
-    /// Whether a length on paper is asked for.
+    /// Whether the look asks for a length on paper.
     pub(super) fn is_sized(&self) -> bool {
         self.width.is_some() || self.size.is_some() || self.theme == Theme::Print
     }
 
-    /// The title that stands above a figure.
+    /// Title above the figure.
     pub(super) fn title<'a>(&self, figure: &'a Figure) -> &'a str {
         if self.untitled { "" } else { &figure.title }
     }
@@ -89,7 +89,7 @@ impl Look {
         (100.0 * across).round() / 100.0
     }
 
-    /// Refuses what no figure can have.
+    /// Checks that a figure can have this look.
     pub fn checked(self) -> Result<Self, LookError> {
         let width = self.points();
         if !(WIDTHS[0]..=WIDTHS[1]).contains(&width) {
@@ -103,7 +103,7 @@ impl Look {
         Ok(self)
     }
 
-    /// The figure between the ends that are asked for; its first panel alone has those of the vertical axis.
+    /// Restricts the figure to the requested ranges; the vertical one applies to the first panel only.
     pub fn framed(&self, mut figure: Figure) -> Result<Figure, LookError> {
         if let Some(shown) = self.x {
             let drawn = extent(figure.panels.iter().flat_map(|panel| reach(panel, 0)));
@@ -116,7 +116,7 @@ impl Look {
     }
 }
 
-/// The ends of a panel's data in one direction, as far as they can be drawn.
+/// Drawable data of a panel in one direction, from which its extent follows.
 fn reach(panel: &Panel, direction: usize) -> Vec<f64> {
     let of = |data: &Data| match data {
         Data::Density(cells) | Data::Region { cells, .. } => cells.ranges()[direction].to_vec(),
@@ -128,7 +128,7 @@ fn reach(panel: &Panel, direction: usize) -> Vec<f64> {
 
 fn within(axis: &'static str, shown: [f64; 2], drawn: [f64; 2]) -> Result<[f64; 2], LookError> {
     let [low, high] = drawn;
-    // Nothing is drawn where there are no data: any range is as good.
+    // Without data, any range will do.
     if low <= high && (shown[1] < low || high < shown[0]) {
         return Err(LookError::Aside { axis, shown, drawn });
     }

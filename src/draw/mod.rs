@@ -1,7 +1,7 @@
-//! A figure as one value, and three renderers of it: SVG, and PNG and PDF from the SVG.
+//! A figure as one value, with three renderers: SVG, and PNG and PDF from the SVG.
 //!
-//! A [`Figure`] says what is drawn in the data's own units; [`layout`] decides where on the page, [`svg`], [`png`] and [`pdf`] only
-//! write that down, as a [`Look`] has it. Nothing here computes anything from the data but its extent; the figures themselves are built in
+//! A [`Figure`] describes the drawing in the data's own units. The module [`layout`] places it on the page; [`svg`], [`png`] and [`pdf`]
+//! write it down in a given [`Look`]. The only thing computed here from the data is their extent; the figures themselves are built in
 //! [`crate::figures`].
 
 mod density;
@@ -25,28 +25,28 @@ pub use density::{Cloud, Density};
 pub use look::{Look, Theme};
 pub use ticks::Spacing;
 
-/// What is drawn: panels below each other that share the horizontal axis.
+/// A drawing: panels below each other that share the horizontal axis.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Figure {
-    /// Stands above; empty for none.
+    /// Title above the panels; empty for none.
     pub title: String,
-    /// The horizontal axis of every panel.
+    /// Horizontal axis of every panel.
     pub x: Axis,
     /// Vertical lines through every panel, labelled above the first.
     pub marks: Vec<Mark>,
-    /// From top to bottom.
+    /// Panels from top to bottom.
     pub panels: Vec<Panel>,
-    /// Stands below; empty for none.
+    /// Note below the panels; empty for none.
     pub note: String,
 }
 
 impl Figure {
-    /// Panels without marks of their axis and without a note.
+    /// A figure without marks on its horizontal axis and without a note.
     pub(crate) fn new(title: &str, x: Axis, panels: Vec<Panel>) -> Self {
         Self { title: title.into(), x, marks: Vec::new(), panels, note: String::new() }
     }
 
-    /// The same with each axis' unit written otherwise.
+    /// Rewrites the unit of each axis.
     pub fn in_units(mut self, spelled: impl Fn(&str) -> String) -> Self {
         for axis in self.panels.iter_mut().map(|panel| &mut panel.y).chain([&mut self.x]) {
             axis.unit = spelled(&axis.unit);
@@ -58,20 +58,20 @@ impl Figure {
 /// An axis: its name, unit and range.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Axis {
-    /// What is drawn against it.
+    /// Name of the quantity on the axis.
     pub label: String,
-    /// Its unit; empty for a pure number.
+    /// Unit; empty for a pure number.
     pub unit: String,
-    /// Its ends, the lower first; the extent of the data where there is none.
+    /// Ends of the axis, the lower first; `None` for the extent of the data.
     pub range: Option<[f64; 2]>,
-    /// Where its ticks may stand.
+    /// Spacing of the ticks.
     pub spacing: Spacing,
-    /// Of a vertical axis: whether a unit is as long as one of the horizontal axis, so that a circle is one.
+    /// Whether a unit of this vertical axis is as long as one of the horizontal axis, so that circles are round.
     pub to_scale: bool,
 }
 
 impl Axis {
-    /// An axis that takes the extent of the data.
+    /// An axis over the extent of the data.
     pub fn new(label: &str, unit: &str) -> Self {
         Self { label: label.into(), unit: unit.into(), range: None, spacing: Spacing::Decimal, to_scale: false }
     }
@@ -86,20 +86,20 @@ impl Axis {
         Self { range: Some(range), ..self }
     }
 
-    /// The vertical axis with units as long as those of the horizontal one; its frame is as high as that makes it.
+    /// A vertical axis to the scale of the horizontal one, which determines the height of its frame.
     pub(crate) fn scaled(self) -> Self {
         Self { to_scale: true, ..self }
     }
 }
 
-/// One frame with its vertical axis.
+/// A frame with its vertical axis.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Panel {
     /// The vertical axis.
     pub y: Axis,
     /// Height of the frame, in units of the figure's width.
     pub height: f64,
-    /// What it shows; the first is drawn first.
+    /// Series of data; the first is drawn first.
     pub series: Vec<Series>,
     /// Horizontal lines, labelled at the right.
     pub marks: Vec<Mark>,
@@ -111,7 +111,7 @@ impl Panel {
         Self { y, height, series, marks: Vec::new() }
     }
 
-    /// The panel with the plain line of zero.
+    /// Adds the plain line at zero.
     pub(crate) fn with_zero(self) -> Self {
         Self { marks: vec![Mark::zero()], ..self }
     }
@@ -120,43 +120,43 @@ impl Panel {
 /// A reference line.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Mark {
-    /// Where it crosses its axis.
+    /// Position on its axis.
     pub at: f64,
-    /// What it stands for; empty for a plain thin line, such as that of zero.
+    /// Label; empty for a plain thin line, such as the one at zero.
     pub label: String,
 }
 
 impl Mark {
-    /// The plain line of zero.
+    /// The plain line at zero.
     pub(crate) fn zero() -> Self {
         Self { at: 0.0, label: String::new() }
     }
 }
 
-/// In the points of a line: where it is broken.
+/// Point that breaks a line.
 pub(crate) const BREAK: [f64; 2] = [f64::NAN; 2];
 
-/// The least and the greatest of some values; upside down where there are none.
+/// Minimum and maximum of some values; in reverse order if there are no values.
 pub(crate) fn extent(values: impl IntoIterator<Item = f64>) -> [f64; 2] {
     let none = [f64::INFINITY, f64::NEG_INFINITY];
     values.into_iter().fold(none, |[low, high], value| [low.min(value), high.max(value)])
 }
 
-/// Points `[x, y]` in the data's units, one after another.
+/// Points `[x, y]` in the data's units, in order.
 pub(crate) trait Points: IntoIterator<Item = [f64; 2]> {}
 
 impl<P: IntoIterator<Item = [f64; 2]>> Points for P {}
 
-/// Data drawn in one way.
+/// Data drawn in one style.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Series {
-    /// Its name in the legend; empty for none.
+    /// Name in the legend; empty for none.
     pub label: String,
-    /// What a table calls it where the legend does not name it; empty where it does.
+    /// Name in tables for a series without a legend entry; otherwise empty.
     pub name: String,
-    /// Its colour.
+    /// Colour of the series.
     pub colour: Colour,
-    /// Its values.
+    /// Values of the series.
     pub data: Data,
 }
 
@@ -165,7 +165,7 @@ impl Series {
         Self { label: label.into(), name: String::new(), colour, data }
     }
 
-    /// The same with a name for tables.
+    /// Sets the name for tables.
     pub(crate) fn called(self, name: &str) -> Self {
         Self { name: name.into(), ..self }
     }
@@ -186,12 +186,12 @@ impl Series {
         Self::new(label, colour, Data::Points { points: points.into_iter().collect(), marker })
     }
 
-    /// Words stand in the colour of the text and in no legend.
+    /// A series of words, in the colour of the text and without a legend entry.
     pub(crate) fn words(words: impl IntoIterator<Item = Word>) -> Self {
         Self::new("", Colour::Ink, Data::Words(words.into_iter().collect()))
     }
 
-    /// The series, if it has anything: a legend names nothing that is not there.
+    /// Returns the series unless it is empty, so that the legend has no empty entries.
     pub(crate) fn if_any(self) -> Option<Self> {
         let none = match &self.data {
             Data::Words(words) => words.is_empty(),
@@ -201,22 +201,22 @@ impl Series {
     }
 }
 
-/// The values of a series, `[x, y]` each, and how they are joined.
+/// Values of a series, `[x, y]` each, and the way they are joined.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 #[expect(missing_docs, reason = "points, stroke and marker are what their types say")]
 pub enum Data {
-    /// Points joined in order; what is not a number breaks the line.
+    /// Points joined in order; NaN breaks the line.
     Line {
         points: Vec<[f64; 2]>,
         stroke: Stroke,
     },
-    /// Points joined in order, and what lies below them filled down to the frame.
+    /// Points joined in order, with the area below them filled down to the frame.
     Area {
         points: Vec<[f64; 2]>,
         stroke: Stroke,
     },
-    /// A line with the head of an arrow at the end of each of its runs.
+    /// A line with an arrowhead at the end of each of its runs.
     Arrow {
         points: Vec<[f64; 2]>,
         stroke: Stroke,
@@ -225,20 +225,20 @@ pub enum Data {
         points: Vec<[f64; 2]>,
         marker: Marker,
     },
-    /// Words at points, over whatever else is there.
+    /// Words at points, above all other data.
     Words(Vec<Word>),
-    /// More points than there is paper, counted on a grid.
+    /// Points counted on a grid, when there are too many to draw one by one.
     Density(Density),
-    /// Parts of the plane, as the cells of a grid.
+    /// Regions of the plane, as the cells of a grid.
     Region {
         cells: Density,
-        /// How much of the colour they have, up to 1: in grey print regions are told apart by it.
+        /// Strength of the colour, up to 1; it distinguishes regions in grey print.
         strength: f64,
     },
 }
 
 impl Data {
-    /// The points that are drawn one by one or joined.
+    /// Points that are drawn one by one or joined.
     pub(crate) fn points(&self) -> Option<&[[f64; 2]]> {
         match self {
             Self::Line { points, .. }
@@ -253,11 +253,11 @@ impl Data {
 /// A word at a point.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Word {
-    /// `[x, y]`.
+    /// Position `[x, y]`.
     pub at: [f64; 2],
-    /// What it says; `_` lowers and `^` raises the letter after it, or the letters in braces.
+    /// Text; `_` lowers and `^` raises the letter after it, or the letters in braces.
     pub text: String,
-    /// On which side of the point it stands.
+    /// Side of the point on which the word is written.
     pub beside: Beside,
 }
 
@@ -282,23 +282,23 @@ pub enum Beside {
     BelowLeft,
 }
 
-/// How a line is stroked.
+/// Stroke of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Stroke {
-    /// Thin and unbroken.
+    /// A thin solid stroke.
     Thin,
-    /// Unbroken.
+    /// A solid stroke.
     Solid,
-    /// Broken.
+    /// A dashed stroke.
     Dashed,
-    /// Of points.
+    /// A dotted stroke.
     Dotted,
-    /// Unbroken, three times as wide.
+    /// A solid stroke, three times as wide.
     Thick,
 }
 
-/// What stands at a point.
+/// Marker at a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Marker {
@@ -306,7 +306,7 @@ pub enum Marker {
     Dot,
     /// A disc.
     Disc,
-    /// An open circle; this and the next are small where there are many.
+    /// An open circle; this marker and the next ones are small if there are many.
     Ring,
     /// An open square.
     Square,
@@ -314,15 +314,15 @@ pub enum Marker {
     Diamond,
     /// An open triangle.
     Triangle,
-    /// Two strokes, across.
+    /// Two diagonal strokes.
     Cross,
-    /// Two strokes, one upright.
+    /// A horizontal and a vertical stroke.
     Plus,
-    /// A triangle, its tip at the point, standing below it.
+    /// A triangle below the point, with its tip at the point.
     Below,
 }
 
-/// Colours that stay apart for the colour-blind (Okabe and Ito), and in grey by what they are drawn with.
+/// Colours that remain distinct for the colour-blind (Okabe and Ito), and in grey by their strokes and markers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 #[expect(missing_docs, reason = "a colour is what its name says; ink is that of the text")]
@@ -338,7 +338,7 @@ pub enum Colour {
 impl Colour {
     pub(crate) const ALL: [Self; 6] = [Self::Ink, Self::Grey, Self::Blue, Self::Vermilion, Self::Green, Self::Purple];
 
-    /// Its class in the SVG, its hex value on white paper, and on a dark screen.
+    /// Class of the colour in the SVG, its hex value on white paper, and its hex value on a dark screen.
     pub(crate) const fn shades(self) -> (&'static str, &'static str, &'static str) {
         match self {
             Self::Ink => ("ink", "#1a1a1a", "#e8e8e8"),

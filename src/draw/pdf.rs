@@ -1,6 +1,6 @@
-//! The figure as PDF, from its SVG: paths stay paths, letters stay letters of fonts that come with it.
+//! The figure as PDF, from its SVG: paths remain paths, and letters remain letters of embedded fonts.
 //!
-//! Only what figures are made of is known here: plain colours, paths, words, rectangles that clip, and images of one colour.
+//! Supports only the elements that figures have: plain colours, paths, words, clipping rectangles, and images of one colour.
 
 use std::io::Write;
 
@@ -16,7 +16,7 @@ use super::font::{Glyphs, cut, number, used};
 use super::look::Look;
 use super::{Figure, svg};
 
-/// Why there is no PDF.
+/// Reason why there is no PDF.
 #[derive(Debug, thiserror::Error)]
 pub enum PdfError {
     /// The SVG could not be written.
@@ -31,15 +31,15 @@ pub enum PdfError {
     /// A font is broken.
     #[error("the font {0} could not be cut down to the letters that are used")]
     Font(String),
-    /// A stream could not be packed.
+    /// A stream could not be compressed.
     #[error("the file could not be packed: {0}")]
     Pack(#[from] std::io::Error),
 }
 
-/// Glyphs are named by their numbers in the font.
+/// Encoding of glyphs by their numbers in the font.
 const IDENTITY: SystemInfo<'_> = SystemInfo { registry: Str(b"Adobe"), ordering: Str(b"Identity"), supplement: 0 };
 
-/// The figure on one page that is as large as it is.
+/// Renders the figure on one page of its own size.
 pub fn render(figure: &Figure, look: &Look) -> Result<Vec<u8>, PdfError> {
     let fonts = look.fonts.clone().unwrap_or_default();
     let tree = fonts.tree(&svg::document(figure, look)?)?;
@@ -50,7 +50,7 @@ pub fn render(figure: &Figure, look: &Look) -> Result<Vec<u8>, PdfError> {
     let [width, height] = [tree.size().width(), tree.size().height()].map(|length| scale * length);
     let fonts: Vec<(ID, Glyphs, Ref)> =
         used(&tree).into_iter().map(|(id, glyphs)| (id, glyphs, writer.next())).collect();
-    // Upwards on paper, downwards in an SVG.
+    // The vertical axis is upwards on paper and downwards in an SVG.
     writer.page.transform([scale, 0.0, 0.0, -scale, 0.0, height]);
     let names: Vec<ID> = fonts.iter().map(|(id, ..)| *id).collect();
     writer.group(tree.root(), 1.0, &names)?;
@@ -102,7 +102,7 @@ struct Writer {
     last: i32,
     page: Content,
     images: Vec<Ref>,
-    /// Opacities of what is filled and of what is stroked that occur.
+    /// Opacities of fill and stroke that occur.
     opacities: Vec<[f32; 2]>,
 }
 
@@ -116,7 +116,7 @@ impl Writer {
         let opacity = opacity * group.opacity().get();
         self.page.save_state().transform(matrix(group.transform()));
         if let Some(clip) = group.clip_path() {
-            // Nothing is shown through a clip without a path.
+            // A clip without a path hides everything.
             for node in clip.root().children() {
                 if let Node::Path(path) = node {
                     self.path(path.data(), clip.transform().pre_concat(path.abs_transform()));
@@ -156,7 +156,7 @@ impl Writer {
                     to
                 }
                 PathSegment::QuadTo(by, to) => {
-                    // The cubic of the same curve: two thirds of the way to the point that bends it.
+                    // Control points of the same curve as a cubic: two thirds of the way to the quadratic's control point.
                     let [one, other] =
                         [last, to].map(|end| [end.x + (by.x - end.x) / 1.5, end.y + (by.y - end.y) / 1.5]);
                     self.page.cubic_to(one[0], one[1], other[0], other[1], to.x, to.y);
@@ -174,7 +174,7 @@ impl Writer {
         }
     }
 
-    /// Opacities of what is filled and stroked next.
+    /// Sets the opacities of the next fill and stroke.
     fn opacity(&mut self, both: [f32; 2]) {
         let at = self.opacities.iter().position(|other| *other == both).unwrap_or_else(|| {
             self.opacities.push(both);
@@ -222,7 +222,7 @@ impl Writer {
     }
 
     fn text(&mut self, text: &Text, opacity: f32, fonts: &[ID]) -> Result<(), PdfError> {
-        // The rim around a word is a path: as letters it would be read twice.
+        // The rim of a word is drawn as a path: as letters, a reader would find the word twice.
         if text.layouted().iter().any(|span| span.stroke.is_some()) {
             return self.group(text.flattened(), opacity, fonts);
         }
@@ -234,7 +234,7 @@ impl Writer {
             let mut set = None;
             for glyph in &span.positioned_glyphs {
                 let Some(at) = fonts.iter().position(|id| *id == glyph.font) else { continue };
-                // The outline's place takes the font's own units to the page's: as many of them are an em as the font says.
+                // The outline's transform maps font units to the page; the font says how many units are an em.
                 let (size, place) = (glyph.font_size(), glyph.outline_transform());
                 let units = size / place.get_scale().0;
                 let place = place.pre_concat(Transform::from_scale(units / size, units / size));
@@ -248,7 +248,7 @@ impl Writer {
         Ok(())
     }
 
-    /// An image of one colour: that colour, through how opaque it is where.
+    /// Draws an image of one colour, with its opacity as a mask.
     fn image(&mut self, data: &[u8], [width, height]: [f32; 2], opacity: f32) -> Result<(), PdfError> {
         let mut decoder = png::Decoder::new(std::io::Cursor::new(data));
         decoder.set_transformations(png::Transformations::EXPAND);
@@ -274,13 +274,13 @@ impl Writer {
         Ok(())
     }
 
-    /// A font with the letters that are used, and what they stand for, so that words can be looked for and copied.
+    /// Embeds a font with the letters that are used and the text that they represent, so that words can be searched and copied.
     fn font(&mut self, database: &Database, id: ID, glyphs: &Glyphs, font: Ref) -> Result<(), PdfError> {
         let full = database.face(id).map(|face| face.post_script_name.clone()).unwrap_or_default();
         let cut = database.with_face_data(id, |data, index| cut(data, index, glyphs)).flatten();
         let cut = cut.ok_or_else(|| PdfError::Font(full.clone()))?;
         let [descendant, descriptor, file, words] = [(); 4].map(|()| self.next());
-        // Six capitals say that it is a part.
+        // A prefix of six capitals marks a subset.
         let base = format!("LETTER+{full}");
         let base = Name(base.as_bytes());
         let mut whole = self.pdf.type0_font(font);
@@ -326,7 +326,7 @@ impl Writer {
     }
 }
 
-/// Red, green and blue, each of one; figures have nothing but plain colours.
+/// Red, green and blue, each from 0 to 1; figures have only plain colours.
 fn colour(paint: &Paint) -> [f32; 3] {
     match paint {
         Paint::Color(colour) => [colour.red, colour.green, colour.blue].map(|part| f32::from(part) / 255.0),

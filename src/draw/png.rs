@@ -1,4 +1,4 @@
-//! The figure as PNG, from its SVG; letters come with the program, for machines that have none.
+//! The figure as PNG, from its SVG; the program embeds a font, for machines that have none.
 
 use std::io::Write;
 
@@ -12,15 +12,15 @@ use super::sheet::Layer;
 use super::svg;
 use super::{Colour, Figure};
 
-/// The widest image that is made.
+/// Largest width of an image, pixels.
 const WIDEST: u32 = 10_000;
-/// Rows of pixels that are drawn at a time; what is clipped takes five times as many beside them.
+/// Rows of pixels that are drawn at a time; clipping needs five times as much memory besides.
 const BAND: u32 = 8;
 
-/// Why there is no image.
+/// Reason why there is no image.
 #[derive(Debug, thiserror::Error)]
 pub enum PngError {
-    /// A width that makes no image.
+    /// A width that is not allowed.
     #[error("an image {0} pixels wide cannot be made: 1 to {WIDEST} can")]
     Width(u32),
     /// The SVG could not be written.
@@ -29,28 +29,28 @@ pub enum PngError {
     /// The SVG could not be read back.
     #[error("the figure's SVG could not be read: {0}")]
     Read(#[from] resvg::usvg::Error),
-    /// The pixels could not be packed.
+    /// The pixels could not be compressed.
     #[error("the image could not be packed: {0}")]
     Pack(String),
 }
 
-/// What is drawn over the layers before it.
+/// A layer that is drawn over those before it.
 enum Paint {
     Drawing(Box<Tree>),
     Grid(Grid, Colour, [f64; 4]),
 }
 
-/// Dots an inch of an image on paper.
+/// Resolution of an image on paper, dots per inch.
 const DOTS: f64 = 300.0;
 
 impl Look {
-    /// Pixels across, at 300 to the inch of the width on paper.
+    /// Width in pixels, at 300 to the inch of the width on paper.
     pub fn pixels(&self) -> u32 {
         (DOTS * self.points() / 72.0).round() as u32
     }
 }
 
-/// The figure on white paper, `width` pixels wide. It is taken: what it is drawn from is no longer needed once it is laid out.
+/// Renders the figure on white paper, `width` pixels wide. Takes the figure by value, to free its data after the layout.
 pub fn render(figure: Figure, look: &Look, width: u32) -> Result<Vec<u8>, PngError> {
     if !(1..=WIDEST).contains(&width) {
         return Err(PngError::Width(width));
@@ -75,7 +75,7 @@ pub fn render(figure: Figure, look: &Look, width: u32) -> Result<Vec<u8>, PngErr
     }
     let mut writer = encoder.write_header().map_err(pack)?;
     let mut stream = writer.stream_writer().map_err(pack)?;
-    // Band by band: all pixels of a page at once would be most of the program's memory.
+    // Band by band: all pixels at once would take most of the program's memory.
     let mut image = Pixmap::new(width, BAND.min(height)).ok_or(PngError::Width(width))?;
     for top in (0..height).step_by(BAND as usize) {
         image.fill(Color::WHITE);

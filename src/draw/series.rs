@@ -10,14 +10,14 @@ use super::layout::share;
 use super::sheet::Sheet;
 use super::{Colour, Data, Marker, Series, Stroke, thin, words};
 
-/// More points of a line than this are counted on a grid instead.
+/// Most points of a line; a longer line is counted on a grid instead.
 const MOST_POINTS: usize = 40_000;
-/// Cells that a line counted on a grid may pass in all: a second of work.
+/// Most cells, in all, along a line counted on a grid: a second of work.
 const MOST_STEPS: usize = 100_000_000;
-/// More occupied cells than this are embedded as an image instead of as dots.
+/// Most occupied cells that are drawn as dots; with more, an image is embedded.
 const MOST_DOTS: usize = 25_000;
 
-/// The inside of a frame, its upper left corner at the origin.
+/// Inside of a frame, with its upper left corner at the origin.
 pub(super) struct Page {
     pub(super) width: f64,
     pub(super) height: f64,
@@ -72,7 +72,7 @@ impl Page {
                 let floor = number(self.height + 2.0);
                 write!(area, "{path}L{} {floor}L{} {floor}z", number(last[0]), number(first[0]))?;
             }
-            // A single point has no length to be stroked along.
+            // A single point has no length to stroke.
             edge.push_str(&path);
             if stroke.len() == 1 {
                 edge.push_str("h0.01");
@@ -84,7 +84,7 @@ impl Page {
         if edge.is_empty() { Ok(()) } else { stroked(out, &edge, how, colour) }
     }
 
-    /// A head at the end of each run of a line.
+    /// Draws an arrowhead at the end of each run of a line.
     fn heads(&self, out: &mut Sheet, points: &[[f64; 2]], colour: Colour) -> fmt::Result {
         const LENGTH: f64 = 9.0;
         const HALF: f64 = 3.2;
@@ -93,7 +93,7 @@ impl Page {
         for run in places.split(|place| place[0].is_nan()) {
             let Some(tip) = run.last() else { continue };
             let away = |place: &[f64; 2]| [tip[0] - place[0], tip[1] - place[1]];
-            // The direction of the last stretch that is as long as the head.
+            // Direction of the last part that is about as long as the head.
             let along = run.iter().rev().map(away).find(|[x, y]| elementary::hypot(*x, *y) >= 0.7 * LENGTH);
             let Some([x, y]) = along.or_else(|| run.first().map(away)) else { continue };
             let length = elementary::hypot(x, y);
@@ -113,7 +113,7 @@ impl Page {
         let on_page = |at: &[f64; 2]| at[0].abs() <= 2.0 * self.width && at[1].abs() <= 2.0 * self.height;
         for at in points.iter().map(|point| self.at(*point)).filter(on_page) {
             let at = at.map(|part| (2.0 * part).round() / 2.0);
-            // Markers on one spot are one marker.
+            // Markers at the same point are drawn once.
             if places.last() != Some(&at) {
                 places.push(at);
             }
@@ -134,7 +134,7 @@ impl Page {
         }
     }
 
-    /// Few cells: a dot each, larger where there are fewer.
+    /// Few cells: a dot each, larger if there are fewer.
     fn dots(&self, density: &Density, cells: usize) -> Grid {
         let [x, y] = density.ranges();
         let [columns, rows] = density.cells();

@@ -1,26 +1,26 @@
-//! The document while it is written: in one piece, or cut where a grid is drawn between what lies below and above it.
+//! The SVG document while it is written: in one piece, or divided where a grid is drawn between lower and upper layers.
 
 use std::fmt::{self, Write};
 
 use super::Colour;
 use super::grid::Grid;
 
-/// What is drawn, the first below.
+/// A layer of the drawing; the first is the lowest.
 pub(super) enum Layer {
     /// A whole SVG document.
     Drawing(String),
-    /// A grid, its colour, and the frame that it is cut to: left, top, width and height on the page.
+    /// A grid, its colour, and its clipping frame: left, top, width and height on the page.
     Grid(Grid, Colour, [f64; 4]),
 }
 
-/// The text so far, and the layers below it.
+/// The current text, and the layers below it.
 pub(super) struct Sheet {
     text: String,
     layers: Vec<Layer>,
     apart: bool,
-    /// Opens a document, and a group in it.
+    /// Start tags of a document and of a group in it.
     page: String,
-    /// Opens the frame that is open, and where that is.
+    /// Start tag of the open frame, and the frame's position.
     frame: (String, [f64; 4]),
 }
 
@@ -31,7 +31,7 @@ impl Write for Sheet {
 }
 
 impl Sheet {
-    /// Nothing yet; `page` opens a document and a group in it. Grids are part of the text unless they stand `apart`.
+    /// Creates an empty sheet; `page` opens a document and a group in it. Grids are part of the text unless they are kept `apart`.
     pub(super) fn new(page: String, apart: bool) -> Self {
         Self { text: String::new(), layers: Vec::new(), apart, page, frame: (String::new(), [0.0; 4]) }
     }
@@ -44,7 +44,7 @@ impl Sheet {
         self.frame = (tag, frame);
     }
 
-    /// Adds a grid to the frame that is open.
+    /// Adds a grid to the open frame.
     pub(super) fn grid(&mut self, grid: Grid, colour: Colour) -> fmt::Result {
         if !self.apart {
             return grid.write(self, colour);
@@ -56,7 +56,7 @@ impl Sheet {
         Ok(())
     }
 
-    /// The layers, the first below.
+    /// Returns the layers, the lowest first.
     pub(super) fn layers(mut self) -> Vec<Layer> {
         self.layers.push(Layer::Drawing(self.text));
         self.layers

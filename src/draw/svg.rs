@@ -1,6 +1,6 @@
 //! The figure as SVG: colours as attributes for white paper, and a style that changes them on a dark screen.
 //!
-//! No ids, so that several figures may stand in one page; data are clipped by nested `svg` elements.
+//! No ids, so that several figures fit into one page; nested `svg` elements clip the data.
 
 use std::fmt::{self, Write};
 
@@ -16,23 +16,23 @@ use super::series::Page;
 use super::sheet::{Layer, Sheet};
 use super::{Colour, Data, Figure, Marker, Panel, Series};
 
-/// Paper on a dark screen.
+/// Colour of the paper on a dark screen.
 const DARK_PAPER: &str = "#15171a";
-/// An image has its colours inside: on a dark screen light and dark change places, hues stay.
+/// Filter for images, whose colours are fixed: on a dark screen, light and dark are exchanged, and hues stay.
 const DARK_IMAGE: &str = "invert(1) hue-rotate(180deg)";
 
-/// Why there is no SVG.
+/// Reason why there is no SVG.
 #[derive(Debug, thiserror::Error)]
 pub enum SvgError {
-    /// It could not be written.
+    /// The SVG could not be written.
     #[error("the figure could not be written as SVG: {0}")]
     Svg(#[from] fmt::Error),
-    /// It could not be read, for the letters that it has.
+    /// The SVG could not be read to find its letters.
     #[error("the figure's SVG could not be read: {0}")]
     Read(#[from] resvg::usvg::Error),
 }
 
-/// The figure as an SVG document.
+/// Renders the figure as an SVG document.
 pub fn render(figure: &Figure, look: &Look) -> Result<String, SvgError> {
     const HEAD: &str = "</title>\n";
     let own = document(figure, look)?;
@@ -45,7 +45,7 @@ pub fn render(figure: &Figure, look: &Look) -> Result<String, SvgError> {
     }
 }
 
-/// The letters that a figure has, for a style.
+/// Fonts embedded in the figure, for a style.
 fn letters(tree: &Tree) -> Result<String, fmt::Error> {
     let mut faces = String::new();
     for (id, glyphs) in used(tree) {
@@ -59,7 +59,7 @@ fn letters(tree: &Tree) -> Result<String, fmt::Error> {
     Ok(faces)
 }
 
-/// The document, without the letters that it has.
+/// The document without embedded fonts.
 pub(super) fn document(figure: &Figure, look: &Look) -> Result<String, fmt::Error> {
     let drawings = write(figure, look, false)?.into_iter().filter_map(|layer| match layer {
         Layer::Drawing(text) => Some(text),
@@ -68,12 +68,12 @@ pub(super) fn document(figure: &Figure, look: &Look) -> Result<String, fmt::Erro
     Ok(drawings.collect())
 }
 
-/// The figure in layers, dense grids among them if they are to stand `apart`, else one document.
+/// Writes the figure in layers, with dense grids among them if they are kept `apart`, else as one document.
 pub(super) fn write(figure: &Figure, look: &Look, apart: bool) -> Result<Vec<Layer>, fmt::Error> {
     let wide = look.across();
     let layout = Layout::new(figure, look.title(figure), wide);
     let height = layout.height;
-    // Layers are scaled by what draws them.
+    // The renderer scales separate layers.
     let size = match look.is_sized() && !apart {
         true => format!(r#"width="{}pt" height="{}pt""#, number(look.points()), number(look.points() * height / wide)),
         false => r#"width="100%""#.into(),
@@ -182,7 +182,7 @@ fn label(out: &mut Sheet, Text { at, text: words }: &Text) -> fmt::Result {
     text(out, *at, "", words)
 }
 
-/// A thin line, broken where it leads to a label across the frame.
+/// Draws a thin line, dashed if it leads to a label across the frame.
 fn line(out: &mut Sheet, path: &str, broken: bool, colour: Colour) -> fmt::Result {
     let dash = if broken { r#" stroke-dasharray="2 3""# } else { "" };
     writeln!(out, r#"<path d="{path}" fill="none" stroke-width="0.8"{dash} {}/>"#, stroke(colour))
@@ -196,7 +196,7 @@ fn leader(out: &mut Sheet, mark: &MarkLine, layout: &Layout) -> fmt::Result {
     label(out, words)
 }
 
-/// A series in the legend.
+/// Draws the sample of a series in the legend.
 fn sample(out: &mut Sheet, series: &Series, [x, y]: [f64; 2]) -> fmt::Result {
     let across = format!("M{} {}h{SAMPLE}", number(x), number(y));
     let colour = series.colour;

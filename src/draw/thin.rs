@@ -2,14 +2,14 @@
 
 use crate::elementary;
 
-/// How far a thinned line may be from the points left out, in units of the page: a thirtieth of a thin line.
+/// Largest distance of a thinned line from the omitted points, in units of the page: a thirtieth of a thin line.
 const CLOSE: f64 = 0.03;
-/// Half a unit of the page: of a line that is still too long, each such column keeps the first, lowest, highest and last.
+/// Width of a column, in units of the page. A line that is still too long keeps the first, lowest, highest and last point of each column.
 const COLUMN: f64 = 0.5;
 
-/// The runs of a line between its breaks, thinned; points are on the page, and what is not a number breaks the line.
+/// Splits a line into the runs between its breaks and thins them. Points are on the page; a NaN breaks the line.
 ///
-/// A line that winds on with more than `most` points is thinned by columns as well, and may still have more.
+/// If more than `most` points remain, each run is thinned by columns instead, and may still have more.
 pub fn strokes(points: impl IntoIterator<Item = [f64; 2]>, most: usize) -> Vec<Vec<[f64; 2]>> {
     let mut strokes = vec![Vec::new()];
     for point in points {
@@ -25,8 +25,8 @@ pub fn strokes(points: impl IntoIterator<Item = [f64; 2]>, most: usize) -> Vec<V
     if long { strokes.iter().map(|stroke| columns(stroke)).collect() } else { close }
 }
 
-/// The line with the points left out that it passes anyway: from each point that stays, the next is the farthest that is
-/// seen through the gates, [`CLOSE`] to either side, around all points between (Zhao and Saalfeld's sleeve).
+/// Leaves out the points that the line passes anyway. From each kept point, the next is the farthest point that is
+/// visible through the gates, [`CLOSE`] to either side, around all points between (Zhao and Saalfeld's sleeve).
 fn close(stroke: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let Some((first, rest)) = stroke.split_first() else { return Vec::new() };
     let mut kept = vec![*first];
@@ -54,13 +54,13 @@ fn close(stroke: &[[f64; 2]]) -> Vec<[f64; 2]> {
     kept
 }
 
-/// Directions in which a straight line passes all points so far.
+/// Directions in which a straight line passes all points since the last kept one.
 struct Sleeve {
-    /// Along the first of them.
+    /// Direction towards the first of these points.
     along: [f64; 2],
-    /// Lowest and highest angle from there.
+    /// Lowest and highest angle from that direction.
     gate: [f64; 2],
-    /// Distance of the farthest.
+    /// Distance of the farthest point.
     reach: f64,
 }
 
@@ -78,7 +78,7 @@ impl Sleeve {
         let cross = self.along[0] * to[1] - self.along[1] * to[0];
         let angle = elementary::atan2(cross, self.along[0] * to[0] + self.along[1] * to[1]);
         let [low, high] = self.gate;
-        // A line that turns back leaves its farthest point.
+        // Where a line turns back, keep its farthest point.
         if distance < self.reach || angle < low || angle > high {
             return false;
         }

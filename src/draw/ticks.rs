@@ -1,9 +1,9 @@
-//! Where ticks stand: at 1, 2 or 5 times a power of ten, at the usual parts of a circle, or at powers of ten and their multiples.
+//! Ticks: at 1, 2 or 5 times a power of ten, at the usual parts of a circle, or at powers of ten and their multiples.
 
 use crate::elementary;
 use serde::Serialize;
 
-/// Where ticks may stand.
+/// Spacing of ticks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Spacing {
@@ -11,41 +11,41 @@ pub enum Spacing {
     Decimal,
     /// Degrees: multiples of 15, 30, 45, 60, 90, …; decimal below 10.
     Degrees,
-    /// Powers of ten and their multiples: what is drawn are decimal logarithms.
+    /// Powers of ten and their multiples, for data that are decimal logarithms.
     Logarithmic,
-    /// Nowhere: what stands along the axis has no numbers.
+    /// No ticks: the axis has no numbers.
     Nothing,
 }
 
-/// Steps of ten degrees and more.
+/// Steps of degrees, from ten on.
 const PARTS_OF_A_CIRCLE: [f64; 8] = [10.0, 15.0, 30.0, 45.0, 60.0, 90.0, 180.0, 360.0];
 
-/// Of a step: how far outside the range a tick may be by rounding.
+/// Tolerance for ticks outside the range, as a share of a step; it allows for rounding.
 const ROUNDING: f64 = 1e-6;
 
 /// Values above this, or all below [`SMALL`], are shown with a power of ten beside the unit.
 const LARGE: f64 = 1e5;
 const SMALL: f64 = 1e-2;
 
-/// A labelled place on an axis.
+/// A labelled position on an axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tick {
-    /// Where, in the axis's unit.
+    /// Position in the axis's unit.
     pub at: f64,
-    /// What stands there.
+    /// Text of the label.
     pub label: String,
 }
 
 /// The ticks of one axis.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Ticks {
-    /// From low to high.
+    /// Ticks from low to high.
     pub ticks: Vec<Tick>,
-    /// Labels are to be multiplied by ten to this power.
+    /// Power of ten by which labels are multiplied.
     pub exponent: i32,
 }
 
-/// The finest ticks of at most `most` for which `fits` says that the labels do not touch.
+/// The finest ticks, at most `most`, for which `fits` says that the labels do not touch.
 pub fn ticks(range: [f64; 2], spacing: Spacing, most: usize, fits: impl Fn(&[Tick]) -> bool) -> Ticks {
     let [low, high] = range;
     let span = high - low;
@@ -59,7 +59,7 @@ pub fn ticks(range: [f64; 2], spacing: Spacing, most: usize, fits: impl Fn(&[Tic
     let (most, mut step) = (most.max(2) as f64, first_step(span / most.max(2) as f64, spacing));
     loop {
         let ticks = multiples(low, high, step, exponent);
-        // Two steps of the span hold at most one tick: nothing is left to overlap.
+        // A step above twice the span gives at most one tick, so no labels can overlap.
         if (ticks.len() as f64 <= most && fits(&ticks)) || step > 2.0 * span {
             return Ticks { ticks, exponent };
         }
@@ -67,10 +67,10 @@ pub fn ticks(range: [f64; 2], spacing: Spacing, most: usize, fits: impl Fn(&[Tic
     }
 }
 
-/// The most of powers of ten and their multiples that fit, in a range of exponents.
+/// The finest powers of ten and their multiples that fit, in a range of exponents.
 fn powers([low, high]: [f64; 2], most: usize, fits: impl Fn(&[Tick]) -> bool) -> Vec<Tick> {
     const MULTIPLES: [&[i32]; 3] = [&[1, 2, 3, 4, 5, 6, 7, 8, 9], &[1, 2, 5], &[1]];
-    /// Beyond, a power of ten is written as one.
+    /// Exponents of powers of ten that are written in full.
     const PLAIN: std::ops::Range<i32> = -4..5;
     let decades = (low.floor() as i32)..=(high.ceil() as i32);
     let label = |digit: i32, power: i32| match digit {
@@ -115,7 +115,7 @@ fn first_step(least: f64, spacing: Spacing) -> f64 {
 }
 
 fn next_step(step: f64, spacing: Spacing) -> f64 {
-    // A little more than the step: the next of the series.
+    // Slightly above the step, to find the next one of the series.
     first_step(step * 1.01, spacing)
 }
 
@@ -139,7 +139,7 @@ fn decimals(step: f64) -> usize {
     (-(elementary::log10(step) + ROUNDING).floor()).clamp(0.0, 17.0) as usize
 }
 
-/// `exponent` in raised digits after a ten, with the unit: what stands in brackets beside an axis's name.
+/// Text in brackets beside an axis name: ten with `exponent` in raised digits, and the unit.
 pub fn unit(unit: &str, exponent: i32) -> String {
     if exponent == 0 {
         return unit.to_owned();

@@ -1,4 +1,4 @@
-//! Words in a frame, with lowered and raised letters, on a rim of paper so that lines do not cross them out.
+//! Words in a frame, with subscripts and superscripts, outlined in the colour of the paper so that lines do not cross them.
 
 use std::fmt::{self, Write};
 
@@ -6,12 +6,12 @@ use super::element::{escaped, fill, number};
 use super::layout::TEXT;
 use super::{Beside, Colour, Word};
 
-/// From a point to the word beside it.
+/// Distance from a point to the word beside it.
 const AWAY: f64 = 7.0;
-/// How far letters are lowered or raised.
+/// Vertical shift of lowered and raised letters.
 const SHIFT: f64 = 4.0;
 
-/// A word beside a place in a frame of this height, which is not to cut it; nothing where the place is none.
+/// Writes a word beside a point within the height of a frame; writes nothing if the point is NaN.
 pub(super) fn write(out: &mut impl Write, word: &Word, [x, y]: [f64; 2], height: f64, colour: Colour) -> fmt::Result {
     if x.is_nan() || y.is_nan() {
         return Ok(());
@@ -28,7 +28,7 @@ pub(super) fn write(out: &mut impl Write, word: &Word, [x, y]: [f64; 2], height:
     };
     let (x, y, text) = (number(x), number(y), marked_up(&word.text));
     let place = format!(r#"x="{x}" y="{y}" text-anchor="{anchor}""#);
-    // The rim is a text of its own: not every reader knows paint-order.
+    // The rim is a separate text, because not every reader supports paint-order.
     writeln!(
         out,
         r##"<text {place} class="halo" stroke="#ffffff" stroke-width="3.5" stroke-linejoin="round">{text}</text>"##
@@ -36,7 +36,7 @@ pub(super) fn write(out: &mut impl Write, word: &Word, [x, y]: [f64; 2], height:
     writeln!(out, r#"<text {place} {}>{text}</text>"#, fill(colour))
 }
 
-/// The side of a place at this height, or the one across where a frame ends before the word does.
+/// The side of a point at this height, or the opposite side if the frame would cut the word.
 fn within(beside: Beside, y: f64, height: f64) -> Beside {
     let (is_high, is_low) = (y < AWAY + 0.75 * TEXT, y > height - AWAY - 0.75 * TEXT);
     match beside {
@@ -50,7 +50,7 @@ fn within(beside: Beside, y: f64, height: f64) -> Beside {
     }
 }
 
-/// `_` and `^` as lowered and raised letters.
+/// Converts `_` and `^` to lowered and raised letters.
 fn marked_up(text: &str) -> String {
     let (mut out, mut letters, mut shifted) = (String::new(), text.chars().peekable(), 0.0);
     while let Some(letter) = letters.next() {

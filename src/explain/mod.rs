@@ -1,6 +1,6 @@
-//! From any name to its formula, its proof and its test: of a number, an equation's label, a claim, a tolerance, a column.
+//! Explains a name: a number, an equation's label, a claim, a tolerance or a column. Gives its formula, its proof and its test.
 //!
-//! `links.toml` says where each is evaluated, derived and tested, once; values are read out of the documents of what was found.
+//! `links.toml` states once where each is evaluated, derived and tested; values are read from the documents of results.
 
 use std::collections::BTreeMap;
 
@@ -22,45 +22,45 @@ use crate::tolerance::{self, Tolerance};
 
 const LINKS: &str = include_str!("links.toml");
 
-/// What a name stands for; serializes to the document of `explain`.
+/// Explanation of a name; serializes to the document of `explain`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Explanation {
     schema: &'static str,
     /// The name.
     pub what: String,
-    /// What it is.
+    /// Meaning of the name, in a sentence.
     pub sentence: String,
-    /// How it is evaluated.
+    /// Formula of its value.
     pub formula: Option<String>,
-    /// The formula's label in the paper.
+    /// Label of the formula in the paper.
     pub label: Option<String>,
-    /// What else the label is of, where a label was asked for.
+    /// Other names with the same label, if a label was looked up.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub also: Vec<String>,
-    /// What goes in, with its value for the model.
+    /// Inputs of the formula, with their values for the model.
     pub inputs: Vec<Input>,
-    /// Its value for the model, as documents have it; none where nothing was run, or it is no number of one corner impact.
+    /// Value for the model, as in documents; `None` if nothing was run, or if it does not belong to a single corner impact.
     pub value: Option<Value>,
-    /// The same by each route that knows it.
+    /// Value by each route that computes it.
     pub routes: BTreeMap<String, Value>,
-    /// Those that have none, since they did not run: on purpose, or because they failed.
+    /// Routes without a value, because they were left out or failed.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub skipped: Vec<Skipped>,
-    /// How it is known.
+    /// Kind of knowledge: proved, computed or otherwise.
     pub known: Known,
-    /// Hypotheses of the proof of its value.
+    /// Hypotheses of the proof of the value.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub hypotheses: Vec<String>,
-    /// Of a statement of the paper: what its check found.
+    /// Result of the check, for a statement of the paper.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub evidence: Option<String>,
-    /// What evaluates it.
+    /// Function that evaluates it.
     pub code: Option<Code>,
-    /// What proves it.
+    /// Derivation that proves it.
     pub derivation: Option<Derivation>,
-    /// What holds it.
+    /// Tests that check it.
     pub tests: Vec<Test>,
-    /// Where the paper has it.
+    /// Place in the paper.
     pub paper: Option<String>,
 }
 
@@ -88,16 +88,16 @@ impl Explanation {
     }
 }
 
-/// Something that goes into a number.
+/// An input of a number.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Input {
-    /// A field of the model, or a name that can be explained.
+    /// Name of a field of the model, or a name that can be explained.
     pub name: String,
-    /// Its value.
+    /// Value of the input.
     pub value: Option<Value>,
 }
 
-/// A function of this program.
+/// Reference to a function of this program.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[expect(missing_docs, reason = "the names say what each is")]
 pub struct Code {
@@ -105,7 +105,7 @@ pub struct Code {
     pub function: String,
 }
 
-/// A statement that a script proves.
+/// Reference to a statement that a script proves.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[expect(missing_docs, reason = "the names say what each is")]
 pub struct Derivation {
@@ -113,7 +113,7 @@ pub struct Derivation {
     pub statement: String,
 }
 
-/// A test.
+/// Reference to a test.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[expect(missing_docs, reason = "the names say what each is")]
 pub struct Test {
@@ -121,27 +121,27 @@ pub struct Test {
     pub test: String,
 }
 
-/// Why there is no explanation.
+/// Reason why there is no explanation.
 #[derive(Debug, thiserror::Error)]
 pub enum ExplainError {
-    /// Nothing has the name.
+    /// Unknown name.
     #[error("nothing is called \"{what}\" here{} (`explain --list` has every name)", hint(.meant))]
     Unknown {
-        /// What was asked for.
+        /// The name that was looked up.
         what: String,
-        /// The nearest name.
+        /// Nearest known name.
         meant: Option<String>,
     },
-    /// The table does not read.
+    /// The table `links.toml` is not valid.
     #[error("links.toml: {0}")]
     Unreadable(#[from] toml::de::Error),
-    /// The ledger does not.
+    /// The ledger is not valid.
     #[error(transparent)]
     Ledger(#[from] LedgerError),
     /// The cam cannot be built.
     #[error(transparent)]
     Model(#[from] ModelError),
-    /// What was found cannot be written as a document.
+    /// The results cannot be written as a document.
     #[error("document: {0}")]
     Document(#[from] serde_json::Error),
 }
@@ -150,12 +150,12 @@ fn hint(meant: &Option<String>) -> String {
     meant.as_ref().map_or_else(String::new, |meant| format!("; did you mean {meant}?"))
 }
 
-/// A row of the table.
+/// A row of the table `links.toml`.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Link {
     name: String,
-    /// Whether there is one of either side.
+    /// Whether there is one for each side of the corner.
     #[serde(default)]
     sides: bool,
     #[serde(default)]
@@ -183,15 +183,15 @@ struct Table {
     link: Vec<Link>,
 }
 
-/// The table, and what names can stand for besides.
+/// The table of links, with the claims and proofs.
 pub struct Links {
     table: Vec<Link>,
     claims: Vec<Claim>,
-    /// What is proved, by labels of printed equations and by itself: the script, and the statement.
+    /// Proofs by the labels of printed equations and by statement: the script, and the statement.
     proofs: BTreeMap<String, [String; 2]>,
 }
 
-/// What a name stands for.
+/// Object that a name refers to.
 enum Target<'a> {
     Link(&'a Link, Option<Side>),
     Tolerance(&'static Tolerance),
@@ -199,18 +199,18 @@ enum Target<'a> {
     Field(Quantity),
 }
 
-/// What was found of a model, for values.
+/// Results for a model, from which values are read.
 pub struct Findings<'a> {
     model: &'a Model,
     found: Option<&'a Verification>,
     cam: Cam,
     document: Value,
-    /// By the names that `compare` has.
+    /// Values by the names of `compare`.
     values: Values,
 }
 
 impl<'a> Findings<'a> {
-    /// Of a model alone, or of its verified corner impact.
+    /// Results of a model alone, or with its verified corner impact.
     pub fn new(model: &'a Model, found: Option<&'a Verification>) -> Result<Self, ExplainError> {
         let cam = Cam::new(model)?;
         let values = compare::values(model, &cam, found);
@@ -226,7 +226,7 @@ impl Links {
         Ok(Self { table: table.link, claims: ledger::claims()?, proofs: proofs()? })
     }
 
-    /// Every name with what it stands for in a sentence, of a kind after the other.
+    /// All names, each with a sentence on its meaning, grouped by kind.
     pub fn names(&self) -> Vec<(String, String)> {
         let sided = |link: &Link| match link.sides {
             true => [Side::Minus, Side::Plus].map(|side| format!("{}_{side}", link.name)).into(),
@@ -241,8 +241,8 @@ impl Links {
         links.chain(tolerances).chain(claims).collect()
     }
 
-    /// What a name stands for: a number by its name, with its side or its entry's indices or without; a label; a tolerance; a
-    /// claim by its id, or by what stands behind its kind; a field of the model; a name of `compare` by how it begins.
+    /// Finds the object of a name. The name may be: a number, with or without its side or its entry's indices; a label; a tolerance;
+    /// a claim's id, or the id without its kind; a field of the model; a name of `compare`, recognized by its beginning.
     fn find(&self, what: &str, model: &Model) -> Result<Target<'_>, ExplainError> {
         let side = [("_minus", Side::Minus), ("_plus", Side::Plus), ("-", Side::Minus), ("+", Side::Plus)]
             .into_iter()
@@ -255,7 +255,7 @@ impl Links {
                 _ => None,
             }
         });
-        // The equation that a label is of, or else a step on its way.
+        // The equation with this label, or else an intermediate step.
         let by_label = || {
             let place = |link: &Link| link.labels.iter().position(|label| label == what);
             let links = self.table.iter().filter_map(|link| Some((place(link)?, link)));
@@ -265,11 +265,11 @@ impl Links {
             || tolerance::TABLE.iter().find(|row| row.name.eq_ignore_ascii_case(what)).map(Target::Tolerance);
         let is_claim = |claim: &&Claim| claim.id == what || claim.id.split_once(": ").is_some_and(|(_, id)| id == what);
         let claim = || self.claims.iter().find(is_claim).map(Target::Claim);
-        // By its short name, too, as `--set` takes it.
+        // The short name of a field is allowed too, as for `--set`.
         let path = model.path_of(what, &[]).unwrap_or(what);
         let field = || quantities(model).into_iter().find(|it| it.field == path).map(Target::Field);
         let found = link.or_else(by_label).or_else(tolerance).or_else(claim).or_else(field);
-        // An entry of a matrix or a pair: what it is an entry of.
+        // For an entry of a matrix or a part of a pair, use the whole.
         let part = what.strip_suffix("_re").or_else(|| what.strip_suffix("_im")).unwrap_or(what);
         let whole = part.trim_end_matches(|c: char| c.is_ascii_digit()).trim_end_matches('_');
         let is_part = whole.len() < what.len() && !whole.is_empty();
@@ -281,10 +281,10 @@ impl Links {
             let links = self.table.iter().filter_map(|link| Some((length(link)?, link)));
             links.max_by_key(|(length, _)| *length).map(|(_, link)| Target::Link(link, None))
         };
-        // As a page has it: with a blank or a hyphen between the words of a name.
+        // Also accept names as on a page: with spaces or hyphens between the words.
         let plain = |name: &str| name.to_lowercase().replace([' ', '-'], "_");
         let as_spoken = || {
-            // Also without the side that a name of the table has there.
+            // Also without the side, if the name in the table has one.
             let names = self.names().into_iter().map(|(name, _)| name);
             let mut all = names.chain(self.table.iter().map(|link| link.name.clone()));
             let name = all.find(|name| name != what && plain(name) == plain(what))?;
@@ -297,7 +297,8 @@ impl Links {
         })
     }
 
-    /// With which routes a corner impact must be verified for a name's value, if at all: the evidence for a statement needs none outside.
+    /// Routes with which a corner impact must be verified for a name's value, if any. The evidence for a statement needs no external
+    /// program.
     pub fn needs(&self, what: &str, model: &Model) -> Result<Option<External>, ExplainError> {
         Ok(match self.find(what, model)? {
             Target::Link(link, _) => link.value.as_ref().filter(|path| path.starts_with('/')).map(|_| External::Run),
@@ -306,7 +307,7 @@ impl Links {
         })
     }
 
-    /// What a name stands for, with the values of a model.
+    /// Explains a name, with the values of a model.
     pub fn explain(&self, what: &str, findings: &Findings<'_>) -> Result<Explanation, ExplainError> {
         let plain = |sentence: &str, known| Explanation::plain(what, sentence, known);
         Ok(match self.find(what, findings.model)? {
@@ -335,7 +336,7 @@ impl Links {
         })
     }
 
-    /// What decides each statement of the paper, by its id.
+    /// Evidence for each statement of the paper, by its id.
     pub fn of_claims(&self) -> BTreeMap<&str, Explanation> {
         let of = |claim: &Claim| self.of_claim(claim, Explanation::plain(&claim.id, &claim.statement, Known::Read));
         self.claims.iter().map(|claim| (claim.id.as_str(), of(claim))).collect()
@@ -347,10 +348,10 @@ impl Links {
             true => findings.document.pointer(&sided(path)).filter(|value| !value.is_null()),
             false => findings.values.get(path),
         };
-        // What `compare` calls by this name is one number of those that the link is about.
+        // In `compare`, this name is one of the several numbers of the link.
         let own = findings.values.get(&plain.what).filter(|_| sided(&format!("{}_{{side}}", link.name)) != plain.what);
         let others = self.table.iter().filter(|other| other.name != link.name && other.labels.contains(&plain.what));
-        // A label of what has two sides is told for the one before the corner.
+        // A label that has two sides is explained for the side before the corner.
         let is_label = link.labels.contains(&plain.what);
         let plus = (is_label && link.sides).then(|| format!("{}_{}", link.name, Side::Plus));
         let about = format!("equation: {}, ", plain.what);
@@ -408,7 +409,7 @@ impl Links {
         }
     }
 
-    /// Where the paper has it, and what is not right there.
+    /// Place in the paper, and the error there, if any.
     fn place(&self, link: &Link) -> Option<String> {
         let label = link.labels.first().map(|label| format!("equation: {label}"));
         let wrong = self.claims.iter().find(|claim| label.as_ref().is_some_and(|label| claim.id.starts_with(label)));
@@ -419,7 +420,7 @@ impl Links {
         link.paper.as_ref().map(|place| format!("{place}{}", slip.unwrap_or_default()))
     }
 
-    /// A statement of the paper: what decides it.
+    /// Explains a statement of the paper by its evidence.
     fn of_claim(&self, claim: &Claim, plain: Explanation) -> Explanation {
         let holds = "tests/it/ledger.rs: every_check_comes_to_the_ledgers_verdict";
         let link = |named: &dyn Fn(&Link) -> bool| self.table.iter().find(|link| named(link));
@@ -460,31 +461,31 @@ impl Links {
     }
 }
 
-/// What the check of a statement finds in the model, where its corner impact is known.
+/// Result of a statement's check on the model, if its corner impact is known.
 fn evidence(claim: &Claim, findings: &Findings<'_>) -> Result<Option<String>, ExplainError> {
     let Some((found, check)) = findings.found.zip(checks::find(&claim.id)) else { return Ok(None) };
     let context = Context::new(findings.model, &findings.cam, found)?;
     Ok(Some(check.run(&context).evidence))
 }
 
-/// A sentence with each unit, which stands in braces in metres, as a model has it.
+/// Converts each unit in a sentence, written in braces in metres, to the model's.
 fn in_units(sentence: &str, units: &Units) -> String {
     let told = |(place, text): (usize, &str)| if place % 2 == 1 { units.spelled(text) } else { text.to_owned() };
     sentence.split(['{', '}']).enumerate().map(told).collect()
 }
 
-/// `FILE: FUNCTION`.
+/// Parses `FILE: FUNCTION`.
 fn code(place: &str) -> Option<Code> {
     place.split_once(": ").map(|(file, function)| Code { file: file.into(), function: function.into() })
 }
 
-/// `SCRIPT: STATEMENT`.
+/// Parses `SCRIPT: STATEMENT`.
 fn derivation(place: &str) -> Option<Derivation> {
     let of = |(script, statement): (&str, &str)| Derivation { script: script.into(), statement: statement.into() };
     place.split_once(": ").map(of)
 }
 
-/// `FILE: TEST`, each.
+/// Parses each `FILE: TEST`.
 fn tests(places: &[String]) -> Vec<Test> {
     let of = |place: &String| place.split_once(": ").map(|(file, test)| Test { file: file.into(), test: test.into() });
     places.iter().filter_map(of).collect()

@@ -1,4 +1,4 @@
-//! Basins on a section: what each start ends on, the orbits, and the curve that parts the basins.
+//! Basins on a section: the ending of each start, the orbits, and the boundary curve of the basins.
 
 use crate::draw::{Axis, BREAK, Colour, Data, Density, Figure, Marker, Panel, Series, Stroke};
 use crate::figures::{Across, position};
@@ -6,12 +6,12 @@ use crate::flight::State;
 use crate::show::words;
 use crate::study::basins::{Basins, BasinsOver, Border, Grid, SharesOf};
 
-/// Colours of the parts and how much of them, in order, so that each is a grey of its own; further ones share the last.
+/// Colour and strength of each part, in order, chosen so that their greys differ; further parts share the last.
 const COLOURS: [(Colour, f64); 5] =
     [(Colour::Blue, 1.0), (Colour::Vermilion, 0.6), (Colour::Green, 0.4), (Colour::Purple, 0.15), (Colour::Grey, 0.8)];
 
-/// Position across, velocity up, a colour for each ending; where stable orbits and saddles cross the section, and the stable
-/// manifolds of these.
+/// Basins with position across, velocity up, and a colour for each ending. The figure also marks where stable orbits and saddles cross the
+/// section, and draws the saddles' stable manifolds.
 pub fn basins_figure(title: &str, grid: &Grid, basins: &Basins, border: &Border) -> Figure {
     let Border { stable, saddles, curves } = border;
     let (x, y) = (grid.positions, grid.velocities);
@@ -40,7 +40,7 @@ pub fn basins_figure(title: &str, grid: &Grid, basins: &Basins, border: &Border)
     Figure::new(&title, position().over(x), vec![Panel::new(Axis::new("velocity q'", "m/s").over(y), 0.66, series)])
 }
 
-/// The share of the starts that end on each kind of motion, against what varies: those of most starts.
+/// Share of the starts that end on each kind of motion against the varied number, for the kinds with the most starts.
 pub fn shares_figure(found: &BasinsOver) -> Figure {
     const STROKES: [Stroke; 5] = [Stroke::Solid, Stroke::Dashed, Stroke::Dotted, Stroke::Thick, Stroke::Thin];
     let across = Across::named(&found.over.name, &found.over.unit, found.over.spacing, found.range);

@@ -1,5 +1,5 @@
-//! Branches of orbits over the brute-force diagram: stable unbroken, unstable broken, each kind of special point marked by a
-//! shape of its own, and what runs settle on behind them: told apart without colours.
+//! Branches of orbits over the brute-force diagram. Stable branches are solid, unstable ones dashed; each kind of special point has its
+//! own shape; attractors of runs lie behind them. No distinction needs colour.
 
 use crate::border_collision::feigin::Scenario;
 use crate::draw::{Axis, BREAK, Colour, Data, Figure, Marker, Panel, Series};
@@ -11,7 +11,7 @@ use crate::orbit::{Course, Search, Stability};
 use crate::show::words;
 use crate::study::survey::recurrence;
 
-/// Around the corner impact.
+/// Branches and impacts around the corner impact.
 pub(crate) const FAST_IMPACTS: Entry = Entry {
     id: "fast-impacts",
     place: "Figure 5(c)",
@@ -45,7 +45,7 @@ pub(crate) const FAST_IMPACTS: Entry = Entry {
     },
 };
 
-/// The kinds of point that are marked, with name, colour and shape.
+/// Kinds of special point that are marked, with name, colour and shape.
 const MARKED: [(&str, Colour, Marker); 6] = [
     ("corner impact", Colour::Ink, Marker::Ring),
     ("fold", Colour::Ink, Marker::Square),
@@ -63,15 +63,15 @@ fn mark(kind: &Kind) -> usize {
         Kind::Branching => 5,
         Kind::Graze { .. } => 3,
         Kind::Chatter | Kind::Detachment => 4,
-        // Of another figure.
+        // These kinds belong to another figure.
         Kind::Type { .. } | Kind::Cusp | Kind::DegenerateGraze | Kind::Class(_) | Kind::Place | Kind::Turn => {
             MARKED.len()
         }
     }
 }
 
-/// Impact phases along branches against the parameter of this name over its range, above what runs settle on, by rising value of the
-/// parameter: the parameter across, impact phases in degrees up.
+/// Impact phases, degrees, along branches against the named parameter over its range, drawn over the impacts on which runs settle; those
+/// are sorted by the parameter. The parameter is drawn across, phases up.
 pub fn branches_figure(
     title: &str,
     (name, unit, range): (&str, &str, [f64; 2]),
@@ -101,7 +101,7 @@ pub fn branches_figure(
     Figure::new(title, Axis::new(label, unit).over(range), vec![panel])
 }
 
-/// The impacts of runs at values at which they recur, each once, and those at the others.
+/// Splits the impacts of runs: one period at each value where the run recurs, and all impacts at the other values.
 fn by_recurrence(settled: &[[f64; 2]]) -> (Vec<[f64; 2]>, Vec<[f64; 2]>) {
     let (mut repeating, mut others) = (Vec::new(), Vec::new());
     for run in settled.chunk_by(|[one, _], [other, _]| one == other) {
@@ -114,8 +114,8 @@ fn by_recurrence(settled: &[[f64; 2]]) -> (Vec<[f64; 2]>, Vec<[f64; 2]>) {
     (repeating, others)
 }
 
-/// Where a special point of one of the marked kinds is drawn: at the impact that it is about, or the first; at the touch of an orbit
-/// without impacts.
+/// Position of a special point of one of the marked kinds: at its own impact, or at the first one. For an orbit without impacts, the
+/// position is at the grazing point.
 fn place(point: &BranchPoint, which: usize) -> Option<[f64; 2]> {
     let special = point.special.filter(|special| mark(&special.kind) == which)?;
     let index = if let Kind::Corner { impact, .. } = special.kind { impact } else { 0 };
@@ -128,7 +128,7 @@ fn place(point: &BranchPoint, which: usize) -> Option<[f64; 2]> {
     Some([point.value, angle.to_degrees()])
 }
 
-/// The phases of each impact along the branches where these are of one stability, with a break before each line.
+/// Phases of each impact along the parts of branches with this stability, with a break before each line.
 fn lines(branches: &[Branch], stability: Stability) -> Vec<[f64; 2]> {
     let all = branches.iter().flat_map(Branch::lines).filter(|line| line.stability == stability);
     all.flat_map(|line| {
@@ -139,7 +139,7 @@ fn lines(branches: &[Branch], stability: Stability) -> Vec<[f64; 2]> {
 }
 
 impl Subject {
-    /// The branches of orbits of one impact in one revolution, and of two in two, over the fast speeds that are shown.
+    /// Branches of orbits of one impact in one revolution, and of two in two, over the fast speeds that are shown.
     pub(crate) fn branches(&self) -> Result<&[Branch], String> {
         let found = self.followed.get_or_init(|| {
             let range = self.shown.fast.clone()?.range;

@@ -1,4 +1,4 @@
-//! The cam against its angle: lift and two derivatives, jumps left open; and how its corners are marked in every figure.
+//! The cam against its angle: lift and two derivatives, with gaps at jumps; and the marks of its corners in every figure.
 
 use std::f64::consts::TAU;
 
@@ -6,7 +6,7 @@ use crate::cam::{Cam, Corner, Law, Lift};
 use crate::draw::{Axis, BREAK, Colour, Figure, Mark, Panel, Series, Stroke};
 use crate::figures::{Entry, drawn};
 
-/// The figure of the report.
+/// The report's figure of the cam.
 pub(crate) const CAM: Entry = Entry {
     id: "cam",
     place: "Figure 3(b)",
@@ -22,36 +22,36 @@ pub(crate) const CAM: Entry = Entry {
     },
 };
 
-/// How many corners are labelled at most.
+/// Most corners with a label.
 const LABELLED: usize = 12;
 /// Samples of a revolution: four to a unit of the page.
 const SAMPLES: usize = 2400;
 
-/// A corner as figures show it.
+/// A corner as it appears in figures.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CornerMark {
     /// Cam angle, rad.
     pub angle_rad: f64,
-    /// Its letter, where it has one.
+    /// Letter of the corner; empty if it has none.
     pub name: String,
 }
 
 impl CornerMark {
-    /// The reference line: the angle in degrees, after the letter.
+    /// Reference line of the corner, labelled with its letter and its angle in degrees.
     pub(crate) fn mark(&self) -> Mark {
         let at = self.angle_rad.to_degrees();
         let angle = format!("{at:.1}°");
         Mark { at, label: if self.name.is_empty() { angle } else { format!("{} {angle}", self.name) } }
     }
 
-    /// Its letter, or the angle in degrees where it has none.
+    /// The letter, or the angle in degrees if there is no letter.
     pub(crate) fn label(&self) -> String {
         if self.name.is_empty() { self.mark().label } else { self.name.clone() }
     }
 }
 
-/// The corners worth a label, knots of a spline left out: a dozen at most, those of the lowest order first, then those of the largest
-/// jump, in order of angle. Corners of a cam of three circles bear the letters of the paper's drawing, with an apostrophe on the way down.
+/// The corners to label, without knots of a spline: at most a dozen, ordered by angle. Low orders are chosen first, then large
+/// jumps. Corners of a cam of three circles have the letters of the paper's drawing, with an apostrophe on the way down.
 pub fn corner_marks(cam: &Cam) -> Vec<CornerMark> {
     let corners = cam.corners();
     let letters: &[&str] = if of_circles(cam) { &["R", "P", "Q", "Q'", "P'", "R'"] } else { &[] };
@@ -70,7 +70,7 @@ pub fn corner_marks(cam: &Cam) -> Vec<CornerMark> {
     order.into_iter().map(mark).collect()
 }
 
-/// What the marks of corners are, in a sentence.
+/// Explains the marks of corners in a sentence.
 pub(crate) fn corners_in_words(cam: &Cam, marks: &str) -> String {
     let marked = corner_marks(cam).len();
     let all: Vec<&Corner> = cam.corners().iter().filter(|corner| !cam.is_knot(corner)).collect();
@@ -100,7 +100,7 @@ pub(crate) fn corners_in_words(cam: &Cam, marks: &str) -> String {
     format!("{marks} {which}, where {what}.")
 }
 
-/// Whether the cam is base circle, flank, nose, top and the same back.
+/// Whether the cam is base circle, flank, nose, top, and the mirror image of these.
 pub(crate) fn of_circles(cam: &Cam) -> bool {
     let dwells: Vec<bool> = cam.segments().iter().map(|segment| matches!(segment.law, Law::Dwell(_))).collect();
     let arcs = cam.segments().iter().all(|segment| matches!(segment.law, Law::Dwell(_) | Law::Arc(_)));
@@ -133,8 +133,8 @@ pub fn cam_figure(cam: &Cam, title: &str) -> Figure {
     Figure { marks: marks.iter().map(CornerMark::mark).collect(), note, ..Figure::new(title, x, panels) }
 }
 
-/// The derivative of an order against degrees, evenly sampled, with both sides of each corner where it jumps and a break
-/// between.
+/// Evenly spaced samples of a derivative of the lift against degrees. At each corner where it jumps, both sides are included with a break
+/// between them.
 fn samples(cam: &Cam, corners: &[Corner], derivative: fn(&Lift) -> f64, order: usize) -> Vec<[f64; 2]> {
     let Some(last) = cam.segments().last() else { return Vec::new() };
     let mut jumps = corners.iter().filter(|corner| corner.jump_order <= order && corner.angle > 0.0).peekable();

@@ -1,7 +1,7 @@
-//! The cam as a shape, seen along its axis when it is at angle 0: the follower stands on it straight above the axis.
+//! Shape of the cam seen along its axis at angle 0, with the follower straight above the axis.
 //!
 //! The paper's follower touches the cam on the ray from the axis along which it moves, so the outline is the lift as a
-//! radius: at angle `theta` of the cam the point `c(theta) (sin theta, cos theta)` comes up, and the cam turns to the left.
+//! radius. At cam angle `theta` the point `c(theta) (sin theta, cos theta)` is on top; the cam turns to the left.
 
 use std::f64::consts::TAU;
 
@@ -11,7 +11,7 @@ use crate::elementary;
 use crate::figures::cam::{corner_marks, corners_in_words, of_circles};
 use crate::figures::{Entry, drawn};
 
-/// The figure of the report.
+/// The report's figure of the cam's shape.
 pub(crate) const CAM_SHAPE: Entry = Entry {
     id: "cam-shape",
     place: "Figures 3(a) and 9",
@@ -38,25 +38,25 @@ pub(crate) const CAM_SHAPE: Entry = Entry {
 
 /// Samples of a whole turn.
 const SAMPLES: f64 = 1440.0;
-/// The circles of a cam of three circles and its top, in order from angle 0 to half a turn, and how they are drawn.
+/// The circles and the top of a cam of three circles, from angle 0 to half a turn, with their colour and stroke.
 const CIRCLES: [(&str, Colour, Stroke); 4] = [
     ("base circle", Colour::Ink, Stroke::Solid),
     ("flank", Colour::Blue, Stroke::Dashed),
     ("nose", Colour::Vermilion, Stroke::Thick),
     ("top", Colour::Green, Stroke::Dotted),
 ];
-/// Other cams: one way after another.
+/// Colours and strokes of other cams' segments, used in rotation.
 const OTHERS: [(Colour, Stroke); 3] =
     [(Colour::Blue, Stroke::Solid), (Colour::Vermilion, Stroke::Dashed), (Colour::Green, Stroke::Thick)];
-/// Corners nearer to one another than this share of the farthest point get one label.
+/// Corners nearer to one another than this share of the largest radius get one label.
 const NEAR: f64 = 0.12;
-/// More segments than this are one line.
+/// Most segments that are drawn separately; with more, the outline is one line.
 const MOST: usize = 24;
 
-/// A cam as a shape; lengths in m, from the axis, the follower's direction up.
+/// The cam as a shape; lengths in m from the axis, with the follower's direction up.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outline {
-    /// What is added to the lift, m: a lift that is no distance from the axis is drawn around a circle of this radius.
+    /// Radius added to the lift, m; used where the lift is not a distance from the axis.
     pub added: f64,
     /// The outline, segment by segment.
     pub pieces: Vec<Piece>,
@@ -67,23 +67,23 @@ pub struct Outline {
 /// A segment of the outline.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Piece {
-    /// `[x, y]`, one after another.
+    /// Points `[x, y]` in order.
     pub points: Vec<[f64; 2]>,
-    /// The centre of its circle, where it is part of one that is not about the axis.
+    /// Centre of the segment's circle; `None` unless it is on a circle that is not about the axis.
     pub centre: Option<[f64; 2]>,
 }
 
-/// The place of a radius at a cam angle, rad.
+/// The point at a radius and a cam angle, rad.
 fn place(angle: f64, radius: f64) -> [f64; 2] {
     [radius * elementary::sin(angle), radius * elementary::cos(angle)]
 }
 
 impl Outline {
-    /// The outline of a cam.
+    /// Computes the outline of a cam.
     pub fn new(cam: &Cam) -> Self {
         let [low, high] = extent(cam.segments().iter().flat_map(|segment| segment.bounds.lift));
         let stroke = high - low;
-        // A radius that the lift would turn inside out, or to a needle, is none.
+        // If the lift would turn the outline inside out, or make it a needle, add a radius.
         let added = if low >= stroke { 0.0 } else { 2.0 * stroke - low };
         let piece = |segment: &Segment| {
             let steps = ((segment.end - segment.start) / TAU * SAMPLES).ceil().max(2.0);
@@ -104,7 +104,7 @@ impl Outline {
         }
     }
 
-    /// The distance from the axis of the point farthest from it.
+    /// Largest distance of the outline from the axis.
     fn farthest(&self) -> f64 {
         self.pieces
             .iter()
@@ -113,13 +113,13 @@ impl Outline {
     }
 }
 
-/// The outline, the corners, the axis and the follower's direction.
+/// Draws the outline, the corners, the axis and the follower's direction.
 fn figure(title: &str, cam: &Cam, outline: &Outline) -> Figure {
     let farthest = outline.farthest();
     let mut series = if of_circles(cam) { circles(&outline.pieces) } else { segments(&outline.pieces) };
     let letters = letters(cam, outline, farthest);
     series.push(Series::points("", Colour::Ink, Marker::Dot, letters.iter().map(|word| word.at)));
-    // Of labels that would cover one another the first stays.
+    // Of labels that would overlap, keep the first.
     let mut apart: Vec<Word> = Vec::new();
     for word in letters {
         let near =
@@ -152,7 +152,7 @@ fn figure(title: &str, cam: &Cam, outline: &Outline) -> Figure {
     Figure::new(title, x, vec![Panel::new(y, 0.6, series)])
 }
 
-/// A cam of three circles as the paper draws it.
+/// Draws a cam of three circles as the paper does.
 fn circles(pieces: &[Piece]) -> Vec<Series> {
     let mut series = construction(pieces);
     for (index, (label, colour, stroke)) in CIRCLES.into_iter().enumerate() {
@@ -174,12 +174,12 @@ fn segments(pieces: &[Piece]) -> Vec<Series> {
     pieces.iter().zip(ways).map(line).collect()
 }
 
-/// The names of the corners, towards where the outline goes on outside of it.
+/// Names of the corners, placed on the outer side of the outline.
 fn letters(cam: &Cam, outline: &Outline, farthest: f64) -> Vec<Word> {
     let letter = |mark: &super::CornerMark| {
         let (_, at) = outline.corners.iter().find(|(angle, _)| *angle == mark.angle_rad)?;
         let steep = at[1].abs() > 2.0 * at[0].abs();
-        // A little up where it is beside the axis: the line of centres may run there.
+        // Moved up where the corner is beside the axis, because the line of centres may be there.
         let low = at[1] < -0.1 * farthest;
         let beside = match (steep, at[0] > 0.0, low) {
             // Beside the follower's own line.
@@ -196,7 +196,7 @@ fn letters(cam: &Cam, outline: &Outline, farthest: f64) -> Vec<Word> {
     corner_marks(cam).iter().filter_map(letter).collect()
 }
 
-/// Centres and radii of flank and nose on the way up, as the paper constructs them.
+/// Centres and radii of flank and nose on the rising side, as the paper constructs them.
 fn construction(pieces: &[Piece]) -> Vec<Series> {
     let (mut lines, mut centres, mut words) = (Vec::new(), Vec::new(), Vec::new());
     for (piece, (text, beside)) in pieces.iter().skip(1).zip([("O_1", Beside::BelowLeft), ("O_2", Beside::Left)]) {

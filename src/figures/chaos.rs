@@ -1,4 +1,4 @@
-//! An h-set over the impacts of a run: its strips, and where they are carried.
+//! An h-set over the impacts of a run: its strips and their images.
 
 use crate::covering::prove::prove;
 use crate::covering::{HSet, known};
@@ -8,7 +8,7 @@ use crate::figures::{Entry, drawn};
 use crate::show::words::hypotheses;
 use crate::study::chaos::{Portrait, portrait};
 
-/// The figure of the report: what is kept of this model beyond the corner impact, proved again.
+/// The report's figure of a chaotic set: the stored proof for this model beyond the corner impact, checked again.
 pub(crate) const CHAOTIC_SET: Entry = Entry {
     id: "chaotic-set",
     place: "",
@@ -28,7 +28,7 @@ pub(crate) const CHAOTIC_SET: Entry = Entry {
             "Impacts of a long run, and a parallelogram N of impacts: each strip is carried along N and beyond both its ends, as the \
              line of its colour, by the number of impacts that stands at it. So every sequence of these numbers is followed by a motion, \
              which is proved: a set of chaotic motions exists, with a topological entropy of at least {:.5} a revolution. {}",
-            // Rounded down, as a bound from below must be.
+            // Rounded down, as a lower bound must be.
             (1e5 * set.entropy()).floor() / 1e5,
             hypotheses(&crate::study::hypotheses(subject.machine(rpm).cam())).unwrap_or_default()
         );
@@ -36,10 +36,10 @@ pub(crate) const CHAOTIC_SET: Entry = Entry {
     },
 };
 
-/// The colours of strips, in order; further ones begin again.
+/// Colours of the strips in order, used in rotation.
 const COLOURS: [Colour; 5] = [Colour::Blue, Colour::Vermilion, Colour::Green, Colour::Purple, Colour::Ink];
 
-/// The cam's angle at an impact across, the velocity after it relative to the cam up.
+/// The h-set over a portrait of impacts: cam angle at an impact across, velocity after it relative to the cam up.
 pub fn chaos_figure(title: &str, set: &HSet, portrait: &Portrait) -> Figure {
     let corners = corners(set.x, set.y).map(|place| set.at(place));
     let [across, up] = [0, 1].map(|side: usize| widened(extent(corners.map(|corner| corner[side])), 0.06));
@@ -70,10 +70,10 @@ pub fn chaos_figure(title: &str, set: &HSet, portrait: &Portrait) -> Figure {
     Figure::new(title, Axis::degrees("cam angle at impact φ").over(across), vec![Panel::new(velocity, 0.7, series)])
 }
 
-/// Lines across a strip that fill it.
+/// Number of lines that fill a strip.
 const FILLED: usize = 400;
 
-/// In order round the parallelogram.
+/// Corners of the parallelogram, in order round it.
 fn corners(x: [f64; 2], y: [f64; 2]) -> [[f64; 2]; 4] {
     [[x[0], y[0]], [x[1], y[0]], [x[1], y[1]], [x[0], y[1]]]
 }

@@ -1,4 +1,4 @@
-//! A chart: a colour for what the run comes to at each point of a grid over two numbers.
+//! A chart: a grid over two numbers, coloured by the motion at each point.
 
 use serde::Serialize;
 
@@ -14,31 +14,31 @@ use crate::show::words::followed_for as followed;
 use crate::study::chart::Charted;
 use crate::study::survey::{self, Point};
 
-/// What the colours of a chart tell.
+/// The quantity that the colours of a chart show.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Coloured {
-    /// After how many revolutions the motion repeats.
+    /// Number of revolutions after which the motion repeats.
     Period,
-    /// The growth of a small deviation.
+    /// Growth of a small deviation.
     Growth,
     /// The kind of motion.
     Regime,
     /// Impacts a revolution.
     Impacts,
-    /// The speed of the fastest impact.
+    /// Speed of the fastest impact.
     ImpactSpeed,
 }
 
 named!(Coloured);
 
-/// What has a colour, the colour, and how much of it.
+/// Name of a class, its colour, and the strength of the colour.
 type Class = (String, Colour, f64);
 
-/// Bands that the colours of a number are cut into, at most.
+/// Most bands of a coloured number.
 const BANDS: usize = 9;
 
-/// The classes of points, and which of them a point is of; the last is that of those which failed.
+/// The classes, and the function that maps a point to its class; the last class is for failed points.
 fn classes(found: &Charted, coloured: Coloured) -> (Vec<Class>, impl Fn(&Point) -> usize) {
     let number: fn(&Point) -> f64 = match coloured {
         Coloured::Growth => |point| point.growth.value,
@@ -48,7 +48,7 @@ fn classes(found: &Charted, coloured: Coloured) -> (Vec<Class>, impl Fn(&Point) 
     };
     let mut finite: Vec<f64> = found.points.iter().flatten().map(number).filter(|value| value.is_finite()).collect();
     finite.sort_unstable_by(f64::total_cmp);
-    // A few points far from all others are in the outermost bands.
+    // A few outliers fall into the outermost bands.
     let part = |share: f64| finite.get((share * finite.len() as f64) as usize).copied().unwrap_or(f64::NAN);
     let range = [part(0.01), part(0.99)];
     let Ticks { ticks: edges, exponent } = ticks(range, Spacing::Decimal, BANDS, |_| true);
@@ -73,7 +73,7 @@ fn classes(found: &Charted, coloured: Coloured) -> (Vec<Class>, impl Fn(&Point) 
     (classes, of)
 }
 
-/// Kinds of motion.
+/// Kinds of motion with their colours.
 const REGIMES: [(Kind, Colour, f64); 5] = [
     (Kind::Stays, Colour::Grey, 0.4),
     (Kind::Periodic, Colour::Blue, 0.9),
@@ -82,7 +82,7 @@ const REGIMES: [(Kind, Colour, f64); 5] = [
     (Kind::Undecided, Colour::Ink, 0.35),
 ];
 
-/// Motions by their period.
+/// Periods of motion with their colours.
 const PERIODS: [(&str, Colour, f64); 11] = [
     ("stays on the cam", Colour::Grey, 0.4),
     ("period 1", Colour::Blue, 1.0),
@@ -97,7 +97,7 @@ const PERIODS: [(&str, Colour, f64); 11] = [
     ("undecided", Colour::Ink, 0.35),
 ];
 
-/// Which of [`PERIODS`] a point is of.
+/// Index in [`PERIODS`] of a point.
 fn period(point: &Point) -> usize {
     match (point.kind, point.revolutions) {
         (Kind::Stays, _) => 0,
@@ -109,11 +109,11 @@ fn period(point: &Point) -> usize {
     }
 }
 
-/// Bands between `edges`, and beyond both ends of them: stronger, the further from 0; what shrinks in blue.
+/// Bands between `edges` and beyond both ends. Colours are stronger away from 0; negative growth is blue.
 fn bands(edges: &[Tick], exponent: i32, coloured: Coloured) -> Vec<Class> {
     let power = if exponent == 0 { String::new() } else { format!("e{exponent}") };
     let unit = if coloured == Coloured::ImpactSpeed { " m/s" } else { "" };
-    // Bands below the first of these are below 0.
+    // Bands before this index are below 0.
     let zero = edges.partition_point(|edge| edge.at <= 0.0);
     let above = edges.len() + 1 - zero;
     let band = |index: usize| {
@@ -133,12 +133,12 @@ fn bands(edges: &[Tick], exponent: i32, coloured: Coloured) -> Vec<Class> {
     (0..=edges.len()).map(band).collect()
 }
 
-/// The points of a chart, each in the colour of its class, and curves of events over them; colours of a number go by bands of it.
+/// Draws the points of a chart in the colours of their classes, with curves of events over them; numbers are coloured in bands.
 pub fn chart_figure(found: &Charted, coloured: Coloured, curves: &[EventCurve], units: &Units) -> Figure {
     let (x, y) = (&found.chart.x, &found.chart.y);
     let (classes, class_of) = classes(found, coloured);
     let range = |axis: &survey::Axis| {
-        // The middles of the outermost cells are the ends of the axis; one value alone has a cell of some width.
+        // The ends of the axis are the centres of the outermost cells; a single value has a cell of some width.
         let ([low, high], count) = (axis.ends().map(|end| axis.spacing.place(end)), axis.values.len() as f64);
         let half = if high > low {
             0.5 * (high - low) / (count - 1.0)

@@ -1,17 +1,17 @@
-//! The paper's composition of its Poincaré map, P = P2 ∘ PD ∘ P1, on a neighbour of the corner impact's orbit that is far
-//! enough away to be seen: free flight to the time of the corner as if no impact happened, the discontinuity mapping PD, and
-//! free flight on.
+//! The paper's composition of its Poincaré map, P = P2 ∘ PD ∘ P1, on a visibly distant neighbour of the corner impact's orbit.
+//! The three maps are free flight to the time of the corner as if no impact happened, the discontinuity mapping PD, and
+//! free flight onwards.
 //!
-//! Times run from the passage of the corner; sections are at -T/2 (Π1), 0 (ΠD) and T/2 (Π2). The neighbours come to the cam
-//! before and after the corner, somewhat slower than the orbit comes to the corner:
+//! Times are measured from the passage of the corner; sections are at -T/2 (Π1), 0 (ΠD) and T/2 (Π2). The neighbours reach the cam
+//! before and after the corner, somewhat slower than the orbit reaches the corner:
 //!
 //! ```text
 //! x_d^- = x at time 0 of the flight before the impact      x_1 the same flight at -T/2
 //! x_d^+ = x at time 0 of the flight after the impact       x_2 the same flight at T/2
 //! ```
 //!
-//! Whichever of x_d^- and x_d^+ lies on the other side of the impact is on no real motion: the flight goes on past the cam,
-//! or back in time.
+//! One of x_d^- and x_d^+ lies on the other side of the impact and is on no real motion: that flight continues beyond the cam,
+//! or backwards in time.
 
 use std::f64::consts::TAU;
 use std::iter::successors;
@@ -27,7 +27,7 @@ use crate::impact::rebound;
 use crate::section::StroboscopicMap;
 use crate::simulate::Machine;
 
-/// One revolution on either side of the corner, on the neighbour whose impact is before the corner.
+/// The revolution around the corner, for the neighbour whose impact is before the corner.
 pub(crate) const COMPOSITION: Entry = Entry {
     id: "composition",
     place: "Figure 6",
@@ -42,18 +42,18 @@ pub(crate) const COMPOSITION: Entry = Entry {
     },
 };
 
-/// How far from the corner the neighbours' impacts are at most, rad.
+/// Largest distance of the neighbours' impacts from the corner, rad.
 const FARTHEST: f64 = 0.27;
-/// Of the window of cam that is shown: where in it the impact is.
+/// Position of the impact in the displayed window of the cam, as a share of it.
 const IMPACT: f64 = 0.6;
-/// How much slower than the orbit's its impact is, of the relative velocity, at an impact as far from the corner as can be.
+/// Relative reduction of the neighbour's impact velocity, compared with the orbit's, at the largest distance from the corner.
 const SLOWER: f64 = 0.15;
-/// Halvings that are tried until the simulator's revolution has one impact.
+/// Most halvings tried until the simulated revolution has one impact.
 const HALVINGS: usize = 8;
-/// Samples of a curve.
+/// Samples of each curve.
 const SAMPLES: u32 = 240;
 
-/// A line of time, s, from the corner, and position, m.
+/// A line of points: time from the corner, s, and position, m.
 pub type Line = Vec<[f64; 2]>;
 
 /// The orbit, the cam, and a neighbour on each side of the corner.
@@ -61,44 +61,44 @@ pub type Line = Vec<[f64; 2]>;
 pub struct Composition {
     /// T*, s.
     pub period: f64,
-    /// Half the time that is shown around the corner, s.
+    /// Half of the displayed time around the corner, s.
     pub window: f64,
-    /// The corner impact's orbit from -T to T.
+    /// Orbit of the corner impact from -T to T.
     pub orbit: Line,
     /// The cam from -T to T.
     pub cam: Line,
-    /// Around the corner: the law before it, up to it and continued.
+    /// Cam law before the corner: the part up to the corner, and its continuation.
     pub before: [Line; 2],
-    /// The law after it, from it on and continued back.
+    /// Cam law after the corner: the part from the corner on, and its continuation backwards.
     pub after: [Line; 2],
-    /// x* on Π1 and Π2, and where the orbit is at the corner, before the impact and after.
+    /// x* on Π1 and Π2, and the orbit's state at the corner before and after the impact.
     pub states: [State; 3],
-    /// A neighbour that comes to the cam before the corner, and one that comes as much after.
+    /// Two neighbours, with impacts equally far before and after the corner.
     pub neighbours: [Neighbour; 2],
-    /// One that comes before the corner, farther away where the cam has the room.
+    /// A neighbour with its impact before the corner, farther away if the cam has room for it.
     pub far: Neighbour,
 }
 
-/// A neighbour of the orbit.
+/// A neighbour of the corner impact's orbit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Neighbour {
-    /// The side of the corner that its impact is on.
+    /// Side of the corner on which its impact is.
     pub side: Side,
-    /// When that is, s.
+    /// Time of the impact, s.
     pub time: f64,
     /// x_1, x_d^-, x_d^+ and x_2.
     pub sections: [State; 4],
-    /// Before the impact and after.
+    /// States before and after the impact.
     pub impact: [State; 2],
-    /// Its flight from Π1 to the impact, and on to ΠD where that comes later.
+    /// Flight from Π1 to the impact, and on to ΠD if that is later.
     pub coming: [Line; 2],
-    /// Its flight from the impact to Π2, and back to ΠD where that was before.
+    /// Flight from the impact to Π2, and back to ΠD if that was earlier.
     pub going: [Line; 2],
-    /// The state on Π2 that the simulator comes to from x_1.
+    /// State on Π2 that the simulator reaches from x_1.
     pub simulated: State,
 }
 
-/// The state `time`, s, before `state` on one flight.
+/// State `time`, s, before `state` on the same flight.
 fn back(flight: &Flight, state: State, time: f64) -> Option<State> {
     // The flow is affine: fly(x) - fly(y) = Phi (x - y).
     let flown = flight.fly(state, time).1;
@@ -107,7 +107,7 @@ fn back(flight: &Flight, state: State, time: f64) -> Option<State> {
     Some(State { position: state.position + by[0], velocity: state.velocity + by[1] })
 }
 
-/// The flight from `state` at time `from` to `to`, s, where it may end before it begins.
+/// Flight from `state` at time `from` to time `to`, s, which may be earlier.
 fn flown(flight: &Flight, state: State, from: f64, to: f64) -> Option<(State, Line)> {
     let start = if to < from { back(flight, state, from - to)? } else { state };
     let (first, span) = (from.min(to), (to - from).abs());
@@ -120,21 +120,21 @@ fn flown(flight: &Flight, state: State, from: f64, to: f64) -> Option<(State, Li
 }
 
 impl Subject {
-    /// The composition, drawn large; or why there is none.
+    /// Computes the composition at a visible size, or says why there is none.
     pub fn composition(&self) -> Result<Composition, String> {
         let at = &self.found()?.at;
         let machine = self.machine(at.speed_rpm());
         let (corner, omega) = (&at.corner, at.angular_velocity());
         let sides = [self.cam.before(corner.segment), corner.segment].map(|index| &self.cam.segments()[index]);
         let widths = sides.map(|segment| segment.end - segment.start);
-        // From as far as there is cam, by halves.
+        // Start from the widest reach that the cam allows, and halve it.
         let reaches = |width: f64| successors(Some((FARTHEST / IMPACT).min(0.9 * width)), |reach| Some(0.5 * reach));
         let beside = |side, reach| neighbour(at, &machine, side, reach);
         let both = |reach| Some((reach, [beside(Side::Minus, reach)?, beside(Side::Plus, reach)?]));
         let Some((reach, neighbours)) = reaches(widths[0].min(widths[1])).take(HALVINGS).find_map(both) else {
             return Err("no neighbour of the orbit has its one impact next to the corner".into());
         };
-        // Going back in time a damped follower is soon far away.
+        // Backwards in time, a damped follower is soon far away.
         let seen = |found: &Neighbour| {
             let off = (found.sections[0].position - at.state.position).abs();
             off < 0.5 * (at.state.position - corner.minus.value).abs()
@@ -144,7 +144,7 @@ impl Subject {
         let far = far.unwrap_or_else(|| neighbours[0].clone());
         let window = reach / omega;
         let law = |index: usize, from: f64, to: f64| -> Line {
-            // Of the segment before angle 0 the law is that of a turn earlier.
+            // The segment before angle 0 has the law of a turn earlier.
             let segment = sides[index];
             let shift = if index == 0 && corner.segment == 0 { TAU } else { 0.0 };
             let at = |step: u32| from + (to - from) * f64::from(step) / f64::from(SAMPLES);
@@ -173,7 +173,7 @@ impl Subject {
     }
 }
 
-/// The neighbour that comes to the cam next to the corner, if the simulator agrees that this is its one impact.
+/// The neighbour that reaches the cam close to the corner, if the simulator confirms that this is its only impact.
 fn neighbour(at: &CornerImpact, machine: &Machine, side: Side, reach: f64) -> Option<Neighbour> {
     let (corner, omega, flight) = (&at.corner, at.angular_velocity(), machine.flight());
     let turn = if side == Side::Minus { -IMPACT * reach } else { IMPACT * reach };

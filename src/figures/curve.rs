@@ -1,4 +1,4 @@
-//! Curves of events in the plane of the speed and a number of the model, corner impacts by what happens at them.
+//! Curves of events in the plane of the speed and a number of the model; corner impacts are drawn by their scenario.
 
 use crate::border_collision::EventCurve;
 use crate::border_collision::event_curve::{EventPoint, Happening};
@@ -6,7 +6,7 @@ use crate::border_collision::feigin::Scenario;
 use crate::draw::{Axis, BREAK, Colour, Figure, Mark, Marker, Panel, Series, Stroke};
 use crate::orbit::branch::Bifurcation;
 
-/// Kinds of corner impact, with the way in which they are drawn.
+/// Kinds of corner impact, with their names, colours and strokes.
 const KINDS: [(Happening, Colour, Stroke); 5] = [
     (Happening::BorderCollision(Scenario::NonsmoothFold), Colour::Vermilion, Stroke::Thick),
     (Happening::BorderCollision(Scenario::NonsmoothFlip), Colour::Purple, Stroke::Dashed),
@@ -15,7 +15,7 @@ const KINDS: [(Happening, Colour, Stroke); 5] = [
     (Happening::Degenerate, Colour::Grey, Stroke::Thin),
 ];
 
-/// Other events, likewise.
+/// Other events, with their names, colours and strokes.
 const EVENTS: [(Bifurcation, &str, Colour, Stroke); 5] = [
     (Bifurcation::Fold, "fold", Colour::Ink, Stroke::Solid),
     (Bifurcation::Flip, "flip", Colour::Ink, Stroke::Dashed),
@@ -24,7 +24,7 @@ const EVENTS: [(Bifurcation, &str, Colour, Stroke); 5] = [
     (Bifurcation::Resting, "onset of resting", Colour::Blue, Stroke::Dotted),
 ];
 
-/// Points where a curve changes its type, by the name of what changes.
+/// Points where a curve changes its type, by the name of the quantity that changes.
 const MARKED: [(&str, &str, Marker); 4] = [
     ("type", "a multiplier is 1 or -1", Marker::Ring),
     ("cusp", "cusp", Marker::Diamond),
@@ -32,7 +32,8 @@ const MARKED: [(&str, &str, Marker); 4] = [
     ("class", "class of a graze", Marker::Square),
 ];
 
-/// Speed up, the parameter across; its name, its unit, its range, and its value in the model, which is marked.
+/// Event curves with the speed up and the parameter across. The parameter comes with name, unit, range, and its value in the model, which
+/// is marked.
 pub fn curve_figure(
     title: &str,
     (name, unit, range, own): (&str, &str, [f64; 2], f64),
@@ -45,7 +46,7 @@ pub fn curve_figure(
     Figure { marks, ..Figure::new(title, Axis::new(name, unit).over(range), vec![panel]) }
 }
 
-/// A line for each kind of event, and the marks on them; `place` tells where a speed, rpm, and a value of the number are drawn.
+/// A line for each kind of event, and their marks; `place` maps a speed, rpm, and a value of the number to a point of the figure.
 pub(super) fn lines(curves: &[EventCurve], place: impl Fn(f64, f64) -> [f64; 2]) -> Vec<Series> {
     let place = |point: &EventPoint| place(point.rpm, point.value);
     let mut series = Vec::new();
@@ -68,7 +69,7 @@ pub(super) fn lines(curves: &[EventCurve], place: impl Fn(f64, f64) -> [f64; 2])
     series
 }
 
-/// Pieces that meet, as one line: dashes run on.
+/// Joins adjacent pieces into one line, so that dashes continue across them.
 fn joined(pieces: impl Iterator<Item = [[f64; 2]; 2]>) -> Vec<[f64; 2]> {
     let mut line: Vec<[f64; 2]> = Vec::new();
     for [from, to] in pieces {

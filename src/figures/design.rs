@@ -1,4 +1,4 @@
-//! What an engineer asks, drawn: the contact force round the cam, forces and loads against the speed, or one number against another.
+//! Figures for design: the contact force round the cam, forces and loads against the speed, or one number against another.
 
 use crate::draw::{Axis, BREAK, Colour, Figure, Mark, Marker, Panel, Series, Stroke, extent};
 use crate::figures::Across;
@@ -11,7 +11,7 @@ use crate::study::design::loads::{Load, Loads};
 use crate::study::design::{Design, Pair, Trade};
 use crate::study::survey::Place;
 
-/// Trades where there are any, else the force round the cam at one speed, else forces and loads against the speed.
+/// Draws trades if there are any, else the force round the cam at one speed, else forces and loads against the speed.
 pub fn design_figure(found: &Design) -> Figure {
     if !found.trades.is_empty() {
         return trades(found);
@@ -30,7 +30,7 @@ fn round(found: &Design) -> Figure {
     let rpm = found.forces.first().map_or(f64::NAN, |at| at.place.rpm);
     let title = format!("{} at {rpm} rpm: contact force round the cam", found.model.name);
     let figure = Figure::new(&title, Axis::degrees("cam angle").over(WHOLE_CAM), vec![panel]);
-    // A force that would pull is none.
+    // A negative force would pull, which a cam cannot do.
     let pulls = found.round.iter().any(|[_, force]| *force < 0.0);
     Figure {
         note: if pulls { "below 0 the cam would have to pull: they part".into() } else { String::new() },
@@ -63,7 +63,7 @@ fn speeds(found: &Design) -> Figure {
         ("energy lost a revolution", "J", 1.0),
     ];
     if !found.loads.is_empty() {
-        // In the order of the numbers of loads.
+        // In the order of `Loads::numbers`.
         panels.extend(quantities.into_iter().enumerate().map(|(index, (name, unit, scale))| {
             let value = |loads: &Loads| scale * loads.numbers()[index];
             let points = found.loads.iter().map(|loads| [x(loads.place), value(loads)]);
@@ -89,7 +89,7 @@ fn speeds(found: &Design) -> Figure {
     Figure { marks: marks.into_iter().collect(), ..Figure::new(&title, across.axis(), panels) }
 }
 
-/// One load in each revolution of a sweep, against what varies.
+/// One load in each revolution of a sweep against the varied number.
 pub fn loads_diagram(title: &str, across: &Across, sweep: &[Vec<Loads>], load: Load, units: &Units) -> Figure {
     let told = |value: f64| if load == Load::Force { units.force.told(value) } else { value };
     let points = sweep.iter().flatten().map(|loads| [across.place(loads.place.across()), told(loads.of(load))]);
@@ -104,7 +104,7 @@ pub fn loads_diagram(title: &str, across: &Across, sweep: &[Vec<Loads>], load: L
 }
 
 fn trades(found: &Design) -> Figure {
-    // Of what no value does, or any does, there is no line.
+    // A trade that no value satisfies, or that every value satisfies, has no line.
     let does = |pair: &Pair| pair.found.is_some_and(|value| value > 0.0) || pair.other.is_some();
     let has_line = |trade: &&Trade| trade.pairs.windows(2).any(|pairs| pairs.iter().all(does));
     let mut shown: Vec<&Trade> = found.trades.iter().filter(has_line).collect();
@@ -140,10 +140,10 @@ fn trades(found: &Design) -> Figure {
     Figure::new(&title, Axis::new(&against, unit).over(range), panels.collect())
 }
 
-/// What stands for the lines of what a measured cam leaves open, once in a panel.
+/// Label, once in a panel, of the lines that show the uncertainty due to a measured cam.
 const OPEN: &str = "what the cam leaves open";
 
-/// Lines on both sides of values `(x, y, error)`, as far as the cam leaves them open; nothing where it does not.
+/// Lines on both sides of values `(x, y, error)` at the uncertainty due to the cam; `None` where there is no uncertainty.
 fn open_by_cam(label: &str, values: Vec<(f64, f64, Option<f64>)>) -> Option<Series> {
     let side = |sign: f64| values.iter().map(move |(x, y, error)| [*x, y + sign * error.unwrap_or(0.0)]);
     let points = side(-1.0).chain([BREAK]).chain(side(1.0));

@@ -1,11 +1,11 @@
-//! The discontinuity mapping P_D next to the corner: an impact before it above, one after it below.
+//! The discontinuity mapping P_D near the corner: an impact before it in the upper panel, one after it in the lower.
 
 use crate::cam::Side;
 use crate::draw::{Axis, BREAK, Beside, Colour, Figure, Marker, Panel, Series, Stroke, Word, extent};
 use crate::figures::composition::{Composition, Neighbour};
 use crate::figures::{Entry, drawn};
 
-/// The figure of the report.
+/// The report's figure of the discontinuity mapping.
 pub(crate) const DISCONTINUITY_MAPPING: Entry = Entry {
     id: "discontinuity-mapping",
     place: "Figure 7",
@@ -39,8 +39,8 @@ fn mapping(shown: &Composition, near: &Neighbour) -> Panel {
     let range = [low - room, high + room];
     let [coming, going] = [&near.coming, &near.going].map(|line| [0, 1].map(|part| scaled(&line[part])));
     let real = [coming[0].as_slice(), &going[0]].concat();
-    // What is on no real motion, in the order in which the mapping passes it; the law that the impact obeys, where it is
-    // continued past the corner; and the sides of words at the section and at the impact.
+    // The unreal motion in the order in which the mapping passes it; the law at the impact, continued beyond
+    // the corner; and the sides of words at the section and at the impact.
     let is_before = near.side == Side::Minus;
     let (name, unreal, label, law, [at_section, at_impact]) = if is_before {
         let end = before[1].last().copied().unwrap_or(BREAK);
@@ -58,7 +58,7 @@ fn mapping(shown: &Composition, near: &Neighbour) -> Panel {
         Word::new([0.0, minus + 0.25 * (plus - minus)], "P_D", at_section),
         Word::new([0.0, minus], "x_d^−", at_section),
         Word::new([0.0, plus], "x_d^+", at_section),
-        // Between the flights before and after the impact, where no law of the cam is.
+        // Between the flights before and after the impact, where the cam's law is not drawn.
         Word::new([hit[0], hit[1] + 0.06 * (high - low)], "x^−, x^+", Beside::Above),
         law,
         Word::new([hit[0], range[0] + 0.5 * room], "−t_i", at_impact),

@@ -1,4 +1,4 @@
-//! Diagrams over speeds: where impacts fall on the cam, or where the follower is at the section.
+//! Diagrams over speeds: cam angles of impacts, or follower positions at the section.
 
 use crate::draw::layout::widened;
 use crate::draw::{Axis, Colour, Data, Density, Figure, Panel, Series, Stroke};
@@ -37,13 +37,13 @@ pub(crate) const SLOW_IMPACTS: Entry = Entry {
     },
 };
 
-/// Angles of the cam, degrees.
+/// Range of cam angles, degrees.
 pub(crate) const WHOLE_CAM: [f64; 2] = [0.0, 360.0];
-/// Below a diagram in which some exponent cannot be drawn.
+/// Note below a diagram in which some exponent cannot be drawn.
 const FORGETS: &str = "λ = −∞, not drawn, where the follower came to stick to the cam: every deviation is lost there";
 
-/// Impact phases in degrees against speed in rpm, with the cam's corners as lines; `[rpm, Lyapunov exponent per revolution]`
-/// in a second panel.
+/// Impact phases in degrees against speed in rpm, with the cam's corners as lines. A second panel has
+/// `[rpm, Lyapunov exponent per revolution]`.
 pub fn impact_diagram(title: &str, points: Density, corners: &[CornerMark], exponents: Option<&[[f64; 2]]>) -> Figure {
     let shown = shown_impacts(&points);
     let mut figure = figure(title, points, impact_angles(), shown, exponents);
@@ -59,19 +59,19 @@ pub fn strobe_diagram(title: &str, points: Density, exponents: Option<&[[f64; 2]
     figure(title, points, position(), shown, exponents)
 }
 
-/// Impacts, each a value of what is drawn across and a cam angle, rad, as a cloud over a range of values.
+/// Cloud of impacts over a range of values; each impact is a value of the horizontal axis and a cam angle, rad.
 pub(crate) fn cloud(range: [f64; 2], impacts: &[[f64; 2]]) -> Density {
     let mut cloud = Density::new(range, WHOLE_CAM);
     impacts.iter().for_each(|[value, angle]| cloud.push(*value, angle.to_degrees()));
     cloud
 }
 
-/// The axis of impact phases.
+/// Axis of impact phases.
 pub(crate) fn impact_angles() -> Axis {
     Axis::degrees("cam angle at impact φ")
 }
 
-/// The range of impact phases, degrees, that points take up, with a little room; no more than the whole cam.
+/// Range of impact phases, degrees, of the points, slightly widened, and at most the whole cam.
 pub(crate) fn shown_impacts(points: &Density) -> Option<[f64; 2]> {
     let [low, high] = widened(points.extent()?, 0.02);
     Some([low.max(0.0), high.min(360.0)])
@@ -122,8 +122,8 @@ impl Subject {
         self.sweep(range, Section::Impacts, Following::Nothing, self.slow_effort)
     }
 
-    /// What runs with rising and with falling speed settle on around the corner impact: speed, rpm, and cam angle, rad, of
-    /// impacts, or position at the section of its map, m.
+    /// Points on which runs with rising and with falling speed settle around the corner impact: speed, rpm, and cam angle of
+    /// impacts, rad, or position at the section of the corner impact's map, m.
     pub fn fast_runs(&self, range: [f64; 2], at_section: bool) -> Result<Vec<[f64; 2]>, String> {
         let section = if at_section { Section::Strobe(self.found()?.at.section_angle()) } else { Section::Impacts };
         let run = |following| self.sweep(range, section, following, self.fast_effort);

@@ -1,7 +1,7 @@
-//! The local map's own orbits against the change of period, and the machine's beside them.
+//! Orbits of the local map against the change of period, with the machine's orbits beside them.
 //!
-//! The local map looks the same at every scale, so that each of its orbits is a ray from the corner impact; the machine's
-//! orbits leave these where terms of second order count.
+//! The local map looks the same at every scale, so each of its orbits is a ray from the corner impact. The machine's
+//! orbits deviate from these rays where second-order terms matter.
 
 use std::f64::consts::TAU;
 
@@ -16,7 +16,7 @@ use crate::orbit::branch::{Branch, Following};
 use crate::orbit::{Parameter, PeriodicOrbit, Search, Stability, search};
 use crate::show::words;
 
-/// The figure of the report.
+/// The report's figure of the local map.
 pub(crate) const LOCAL_MAP: Entry = Entry {
     id: "local-map",
     place: "Figure 8",
@@ -32,49 +32,49 @@ pub(crate) const LOCAL_MAP: Entry = Entry {
     },
 };
 
-/// Beyond the least range over which a fixed point is a tenth off: how far the changes of period go.
+/// Range of the changes of period, as a multiple of the smallest range over which a fixed point is a tenth off.
 const BEYOND: f64 = 3.0;
-/// Steps of a branch over that range.
+/// Step of a branch, as a share of that range.
 const STEP: f64 = 0.01;
-/// The longest period of an orbit of the map that is shown: longer ones come in crowds.
+/// Longest period of an orbit of the map that is shown; longer orbits are too many.
 const LONGEST: usize = 2;
-/// How much of the height of a panel the lower of two rays with slopes of another size takes, at least.
+/// Smallest share of a panel's height for the lower of two rays whose slopes differ in size.
 const SEEN: f64 = 0.15;
 
 /// A periodic orbit of the local map.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ray {
-    /// The sides that it visits: L before the corner, R after it.
+    /// Sides that the orbit visits: L before the corner, R after it.
     pub word: String,
-    /// Sign of the changes of period for which it exists: -1 at faster speeds.
+    /// Sign of the changes of period for which the orbit exists: -1 at faster speeds.
     pub sign: f64,
-    /// Whether small deviations from it die out.
+    /// Whether small deviations from the orbit die out.
     pub stability: Stability,
-    /// Positions of its points, m, for a change of the period by `sign`, s: they grow in proportion to it.
+    /// Positions of the points, m, for a change of the period by `sign`, s; they are proportional to that change.
     pub positions: Vec<f64>,
-    /// Velocities, m/s, for the same.
+    /// Velocities, m/s, for the same change of the period.
     pub velocities: Vec<f64>,
 }
 
-/// The local map and the machine next to the corner impact.
+/// The local map and the machine near the corner impact.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NextToCorner {
-    /// The largest change of the period, s.
+    /// Largest change of the period, s.
     pub reach: f64,
     /// T*, s.
     pub period: f64,
-    /// x* on the section: position, m.
+    /// Position of x* on the section, m.
     pub position: f64,
-    /// The local map's orbits.
+    /// Orbits of the local map.
     pub rays: Vec<Ray>,
     /// Signs of the changes of period for which every motion of the local map leaves.
     pub left: Vec<f64>,
-    /// The machine's, as change of the period, s, and position less that of x*, m.
+    /// Orbits of the machine: change of the period, s, and position relative to x*, m.
     pub machine: Vec<Crossings>,
 }
 
 impl Subject {
-    /// The local map's diagram, or why there is none.
+    /// Computes the local map's diagram, or says why there is none.
     pub fn next_to_corner(&self) -> Result<NextToCorner, String> {
         let found = self.found()?;
         let at = &found.at;
@@ -111,7 +111,7 @@ impl Subject {
         Ok(NextToCorner { reach, period: at.period, position: at.state.position, rays, left, machine })
     }
 
-    /// The branches through the orbits of one impact a revolution, or two in two, at either end of a range, rpm.
+    /// Branches through the orbits of one impact in one revolution, or of two in two, at either end of a range, rpm.
     fn close_by(&self, range: [f64; 2]) -> Result<Vec<Branch>, String> {
         let following =
             Following { parameter: Parameter::Speed, range, longest_step: STEP, most_points: (4.0 / STEP) as usize };
@@ -129,19 +129,19 @@ impl Subject {
         Ok(branches)
     }
 
-    /// Whether every impact of an orbit is nearer to the corner than to its opposite.
+    /// Whether every impact of an orbit is nearer to the corner than to the opposite cam angle.
     fn is_near(&self, orbit: &PeriodicOrbit) -> bool {
         let Ok(found) = self.found() else { return false };
         orbit.impacts().all(|impact| apart(impact.cam_angle, found.at.corner.angle) < 0.25 * TAU)
     }
 }
 
-/// Changes of the period in a unit that makes them some tens or hundreds.
+/// A unit in which the changes of period are some tens or hundreds, and that unit's number per second.
 fn unit(reach: f64) -> (&'static str, f64) {
     if reach * 1e3 < 1.0 { ("µs", 1e6) } else { ("ms", 1e3) }
 }
 
-/// Positions less that of x* against the change of the period; a second panel shows the flatter rays enlarged.
+/// Positions relative to x* against the change of the period; a second panel enlarges the flatter rays.
 fn figure(title: &str, shown: &NextToCorner) -> Figure {
     let (unit, per_second) = unit(shown.reach);
     let reach = shown.reach * per_second;
@@ -203,7 +203,7 @@ fn panel(shown: &NextToCorner, range: [f64; 2], name: &str, with_names: bool) ->
     Panel::new(Axis::new(name, "m").over(range), 0.3, series).with_zero()
 }
 
-/// The side of a ray, at a point of it, with more room up to the next line or the end of the panel.
+/// The side of a ray, at one of its points, with more room to the next line or to the edge of the panel.
 fn free_side(shown: &NextToCorner, at: [f64; 2], range: [f64; 2]) -> Beside {
     let (_, per_second) = unit(shown.reach);
     let change = at[0] / per_second;
@@ -214,11 +214,11 @@ fn free_side(shown: &NextToCorner, at: [f64; 2], range: [f64; 2]) -> Beside {
         line.points.iter().min_by(|one, other| off(one).total_cmp(&off(other)))
     });
     let machine = machine.filter(|point| point[0] * change > 0.0).map(|point| point[1]);
-    // A line that the ray lies on takes no side.
+    // A line that coincides with the ray takes no side.
     let apart = 0.01 * (range[1] - range[0]);
     let others = rays.chain(machine).chain([0.0, range[0], range[1]]).map(|height| height - at[1]);
     let (above, below): (Vec<f64>, Vec<f64>) = others.filter(|off| off.abs() > apart).partition(|off| *off > 0.0);
-    // A word far out goes inwards, or the frame would cut it.
+    // A word far out is written inwards, because the frame would cut it.
     let outer = change.abs() > 0.6 * shown.reach;
     let room = |offs: Vec<f64>| offs.into_iter().map(f64::abs).fold(f64::INFINITY, f64::min);
     let rises = at[0] * at[1] > 0.0;

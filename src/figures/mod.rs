@@ -1,7 +1,7 @@
-//! The figures: a file holds what one of them shows, as numbers and as a plot, its title, its caption and its row of the
-//! table. Figures that a command asks for ([`basins_figure`], [`curve_figure`], ...) are not in the table.
+//! Figures, one per file: data, plot, title, caption and row of the
+//! table. Figures that only a command draws ([`basins_figure`], [`curve_figure`], ...) are not in the table.
 //!
-//! [`mod@through_corner`] is the one that moves: the orbits and runs at speeds on either side of the corner impact.
+//! [`mod@through_corner`] is the animated one: orbits and runs at speeds on either side of the corner impact.
 
 mod basins;
 mod branches;
@@ -49,7 +49,7 @@ pub use subject::{Effort, Fast, Shown, Slow, Subject};
 pub use through_corner::through_corner;
 pub use trace::{Run, time_trace, with_force};
 
-/// Every figure of the report, in the paper's order.
+/// All figures of the report, in the paper's order.
 pub(crate) const FIGURES: [Entry; 15] = [
     cam_shape::CAM_SHAPE,
     cam::CAM,
@@ -68,43 +68,43 @@ pub(crate) const FIGURES: [Entry; 15] = [
     local_map::LOCAL_MAP,
 ];
 
-/// The name of the figure that shows proved chaos.
+/// Name of the figure that shows proved chaos.
 pub(crate) fn chaotic_set() -> &'static str {
     chaos::CHAOTIC_SET.id
 }
 
-/// A row of the table.
+/// A row of the table of figures.
 pub(crate) struct Entry {
-    /// Its name in commands.
+    /// Name in commands.
     pub(crate) id: &'static str,
-    /// Of which figure of the paper; empty for none.
+    /// Corresponding figure of the paper; empty for none.
     place: &'static str,
     title: fn(&Subject) -> String,
-    /// The figure under a title, or why there is none.
+    /// Draws the figure under a title, or says why there is none.
     draw: fn(&Subject, &str) -> Result<Drawn, String>,
 }
 
 /// One figure of the report.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plate {
-    /// Its name in commands.
+    /// Name in commands.
     pub id: &'static str,
-    /// Of which figure of the paper; empty for none.
+    /// Corresponding figure of the paper; empty for none.
     pub place: &'static str,
-    /// What it is.
+    /// Title of the figure.
     pub title: String,
-    /// The command that makes this one.
+    /// Command that draws this figure.
     pub command: String,
-    /// The figure, or why there is none.
+    /// The figure, or the reason why there is none.
     pub drawn: Result<Drawn, String>,
 }
 
-/// A figure with what is to be seen in it.
+/// A figure with its caption.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drawn {
     /// The figure.
     pub figure: Figure,
-    /// What is shown and what to see, in one to three sentences.
+    /// Explanation of the figure, in one to three sentences.
     pub caption: String,
 }
 
@@ -122,23 +122,23 @@ document!(Plate as plate {
     absent: plate.drawn.as_ref().err(),
 });
 
-/// A figure that can be asked for.
+/// A figure that a command can draw.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Listed {
-    /// Its name in commands.
+    /// Name in commands.
     pub id: &'static str,
-    /// Of which figure of the paper; empty for none.
+    /// Corresponding figure of the paper; empty for none.
     pub place: &'static str,
-    /// What it is.
+    /// Title of the figure.
     pub title: String,
 }
 
-/// What there is to draw of a model, in order.
+/// Lists the figures of a model, in order.
 pub fn listed(subject: &Subject) -> Vec<Listed> {
     FIGURES.iter().map(|entry| Listed { id: entry.id, place: entry.place, title: (entry.title)(subject) }).collect()
 }
 
-/// Every figure; `progress` is told how many of how many are done.
+/// Draws every figure; `progress` gets the number done and the total.
 pub fn plates(subject: &Subject, progress: &mut dyn FnMut(usize, usize)) -> Vec<Plate> {
     let plates = FIGURES.iter().enumerate().map(|(index, entry)| {
         progress(index, FIGURES.len());
@@ -149,7 +149,7 @@ pub fn plates(subject: &Subject, progress: &mut dyn FnMut(usize, usize)) -> Vec<
     plates
 }
 
-/// The figure of this name; `None` where the table has none.
+/// Draws the figure of this name; `None` if the table has no such name.
 pub fn plate(subject: &Subject, id: &str) -> Option<Plate> {
     FIGURES.iter().find(|entry| entry.id == id).map(|entry| entry.plate(subject))
 }
@@ -169,7 +169,7 @@ impl Entry {
 /// Name and unit of the axis of speeds.
 const SPEED: [&str; 2] = ["cam speed ω", "rpm"];
 
-/// The horizontal axis of a survey: its number, or the decimal logarithm of that, and where values are drawn.
+/// Horizontal axis of a survey: its number or the decimal logarithm of that, with the positions of values.
 #[derive(Clone, Debug)]
 pub struct Across {
     axis: Axis,
@@ -177,12 +177,12 @@ pub struct Across {
 }
 
 impl Across {
-    /// The number of this name, in the units of a model, from one value to another.
+    /// Axis of the named number, in the units of a model, from one value to another.
     pub fn new(name: &str, spacing: Spacing, ends: [f64; 2], units: &Units) -> Self {
         Self::named(name, &units.of_number(name), spacing, ends)
     }
 
-    /// The number of this name in this unit, from one value to another.
+    /// Axis of the named number, in this unit, from one value to another.
     pub(crate) fn named(name: &str, unit: &str, spacing: Spacing, ends: [f64; 2]) -> Self {
         let label = if name == "rpm" { SPEED[0] } else { name.rsplit('.').next().unwrap_or(name) };
         let axis = Axis::new(label, unit).over(ends.map(|end| spacing.place(end)));
@@ -190,23 +190,23 @@ impl Across {
         Self { axis: Axis { spacing: ticks, ..axis }, spacing }
     }
 
-    /// The axis of a survey, in the units of a model.
+    /// Axis of a survey, in the units of a model.
     pub fn of(axis: &survey::Axis, units: &Units) -> Self {
         Self::new(axis.parameter.name(), axis.spacing, axis.ends(), units)
     }
 
-    /// Where a value is drawn.
+    /// Position of a value on the axis.
     pub fn place(&self, value: f64) -> f64 {
         self.spacing.place(value)
     }
 
-    /// A figure over it, in the range that is drawn.
+    /// Puts this axis under a figure, keeping the figure's range.
     pub fn under(&self, figure: Figure) -> Figure {
         let axis = Axis { range: figure.x.range, ..self.axis() };
         Figure { x: axis, ..figure }
     }
 
-    /// The axis; of one value with room on both sides.
+    /// The axis as drawn; if it has a single value, with room on both sides.
     pub(crate) fn axis(&self) -> Axis {
         match self.axis.range {
             Some([low, high]) if low == high => self.axis.clone().over([0.99 * low, 1.01 * low]),
@@ -215,12 +215,12 @@ impl Across {
     }
 }
 
-/// The axis of positions at the section.
+/// Axis of positions at the section.
 fn position() -> Axis {
     Axis::new("follower position q at the section", "m")
 }
 
-/// Lines of what is stable, unbroken, of what is unstable, broken, and of what is neutral, dotted, as far as there are any.
+/// Lines for each stability that occurs: stable solid, unstable dashed, neutral dotted.
 fn by_stability<'a>(
     label: impl Fn(Stability) -> &'a str,
     points: impl Fn(Stability) -> Vec<[f64; 2]>,

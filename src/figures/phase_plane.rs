@@ -1,4 +1,4 @@
-//! The gap of a motion against its velocity.
+//! Phase plane: the gap of a motion against its velocity.
 
 use crate::draw::{Axis, Colour, Figure, Mark, Panel, Series, Stroke};
 use crate::figures::trace::{Run, SLOW_TURNS};
@@ -6,7 +6,7 @@ use crate::figures::{Entry, drawn};
 use crate::section::Sample;
 use crate::simulate::EventKind;
 
-/// The figure of the report.
+/// The report's figure of the phase plane.
 pub(crate) const SLOW_PHASE_PLANE: Entry = Entry {
     id: "slow-phase-plane",
     place: "Figure 4(c)",
@@ -28,7 +28,7 @@ pub(crate) const SLOW_PHASE_PLANE: Entry = Entry {
     },
 };
 
-/// The gap against its velocity.
+/// Draws the gap against its velocity.
 pub fn phase_plane(title: &str, run: &Run) -> Figure {
     let point = |sample: &Sample| [sample.gap, sample.state.velocity - sample.cam_velocity];
     let line = Series::line("", Colour::Blue, Stroke::Thin, run.samples.iter().map(point));

@@ -1,5 +1,5 @@
-//! The position of the follower once a revolution against speed, with the branches of orbits over what runs settle on; and
-//! the states of one long run there.
+//! Follower position once a revolution against speed, with branches of orbits over the attractors of runs; and
+//! the states of one long run at the section.
 
 use crate::draw::layout::widened;
 use crate::draw::{Axis, BREAK, Cloud, Colour, Data, Density, Figure, Marker, Panel, Series, extent};
@@ -35,7 +35,7 @@ pub(crate) const FAST_SECTION: Entry = Entry {
     },
 };
 
-/// What the motion settles on where, at a fold, the orbits of the corner impact are gone.
+/// The attractor beyond the corner impact at a fold, where the orbits of the corner impact no longer exist.
 pub(crate) const BEYOND_ATTRACTOR: Entry = Entry {
     id: "beyond-attractor",
     place: "",
@@ -57,19 +57,19 @@ pub(crate) const BEYOND_ATTRACTOR: Entry = Entry {
     },
 };
 
-/// States of the attractor.
+/// Number of states of the attractor.
 const STATES: usize = 20_000;
 
-/// A piece of a branch at the section: one crossing of the orbits along it.
+/// A piece of a branch at the section: one crossing of its orbits.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Crossings {
-    /// That of the orbits.
+    /// Stability of the orbits.
     pub stability: Stability,
     /// Speed, rpm, and position at the section, m.
     pub points: Vec<[f64; 2]>,
 }
 
-/// Positions at the section against speed, and the corner impact at a speed, rpm, and position, m.
+/// Positions at the section against speed, with the corner impact at its speed, rpm, and position, m.
 fn section_diagram(title: &str, runs: Density, branches: &[Crossings], corner: [f64; 2]) -> Figure {
     let [rpm, all] = runs.ranges();
     let shown = |[speed, _]: &&[f64; 2]| (rpm[0]..=rpm[1]).contains(speed);
@@ -85,7 +85,7 @@ fn section_diagram(title: &str, runs: Density, branches: &[Crossings], corner: [
     Figure::new(title, Axis::new(SPEED[0], SPEED[1]).over(rpm), vec![panel])
 }
 
-/// The states of a long run at the section; and where an orbit that is gone was, if that is among them.
+/// States of a long run at the section, with the former position of an orbit that no longer exists if it lies among them.
 fn attractor(title: &str, states: &[State], gone: State) -> Figure {
     let ends = |value: fn(&State) -> f64| widened(extent(states.iter().map(value)), 0.03);
     let (x, y) = (ends(|state| state.position), ends(|state| state.velocity));
@@ -101,7 +101,7 @@ fn attractor(title: &str, states: &[State], gone: State) -> Figure {
 }
 
 impl Subject {
-    /// The states at the section of the corner impact's map, once a revolution, that a start at rest on the cam settles on.
+    /// States, once a revolution at the section of the corner impact's map, on which a start at rest on the cam settles.
     pub fn section_states(&self, rpm: f64, revolutions: usize) -> Result<Vec<State>, String> {
         let machine = self.machine(rpm);
         let cam_angle = self.found()?.at.section_angle();
@@ -118,7 +118,7 @@ impl Subject {
         run().map_err(|error| format!("at {rpm} rpm: {error}"))
     }
 
-    /// Where the orbits of branches cross the section of the corner impact's map.
+    /// Crossings of the orbits of branches with the section of the corner impact's map.
     pub(crate) fn crossings(&self, branches: &[Branch]) -> Result<Vec<Crossings>, String> {
         let at = &self.found()?.at;
         let (angle, machine) = (at.section_angle(), self.machine(at.speed_rpm()));
@@ -130,7 +130,7 @@ impl Subject {
                 for pair in branch.points.windows(2) {
                     let [one, other] = pair else { continue };
                     let ends = crossing(&machine, one, angle, turn).zip(crossing(&machine, other, angle, turn));
-                    // A piece takes the stability of its end that is no special point.
+                    // A piece has the stability of the end that is not a special point.
                     let stability = if one.special.is_some() { other } else { one }.orbit.judgement.stability;
                     let Some((from, to)) = ends else {
                         all.extend(open.take());

@@ -1,4 +1,4 @@
-//! Attractors over speeds: where their impacts fall, over which speeds each is there, and how many starts end on it.
+//! Attractors over speeds: cam angles of their impacts, ranges of speed, and shares of the starts that end on them.
 
 use crate::draw::layout::{TEXT, WIDTH, width};
 use crate::draw::{Axis, BREAK, Beside, Colour, Data, Density, Figure, Marker, Panel, Series, Spacing, Stroke, Word};
@@ -9,10 +9,10 @@ use crate::orbit::long_run::Kind;
 use crate::show::words;
 use crate::study::speeds::{AttractorRow, SpeedSurvey};
 
-/// The colours of attractors, and the marks by which those are told apart without them.
+/// Colours of attractors, and the marks that distinguish them without colour.
 const COLOURS: [Colour; 4] = [Colour::Blue, Colour::Vermilion, Colour::Green, Colour::Purple];
 const MARKERS: [Marker; 4] = [Marker::Dot, Marker::Ring, Marker::Triangle, Marker::Square];
-/// The same of those whose impacts are a cloud.
+/// Marks of attractors whose impacts are a cloud.
 const OF_CLOUDS: [Marker; 4] = [Marker::Diamond, Marker::Cross, Marker::Plus, Marker::Below];
 
 fn marker(attractor: &AttractorRow, colour: Colour) -> Marker {
@@ -20,14 +20,14 @@ fn marker(attractor: &AttractorRow, colour: Colour) -> Marker {
     COLOURS.iter().zip(markers).find(|(known, _)| **known == colour).map_or(Marker::Dot, |(_, marker)| marker)
 }
 
-/// Whether it has more impacts than can be marked one by one.
+/// Whether the attractor has too many impacts to mark one by one.
 fn is_cloud(attractor: &AttractorRow) -> bool {
     attractor.kind != Kind::Periodic
 }
 
-/// A few impacts of a cloud, over all of its speeds: in grey they tell it from another.
+/// A few impacts of a cloud, over all of its speeds; their marks distinguish clouds in grey.
 fn few(across: &Across, attractor: &AttractorRow) -> impl Iterator<Item = [f64; 2]> {
-    /// At so many of its speeds, and of the impacts of each, at most.
+    /// Most speeds, and most impacts at each of them.
     const FEW: [usize; 2] = [8, 3];
     let speeds = attractor.at.iter().filter(|at| !at.impact_angles.is_empty());
     let apart = attractor.at.len().div_ceil(FEW[0]).max(1);
@@ -37,7 +37,7 @@ fn few(across: &Across, attractor: &AttractorRow) -> impl Iterator<Item = [f64; 
     })
 }
 
-/// Each kind of motion with the stroke of its bar.
+/// Strokes of bars by kind of motion.
 const BARS: [(Kind, Stroke); 5] = [
     (Kind::Stays, Stroke::Thick),
     (Kind::Periodic, Stroke::Solid),
@@ -46,9 +46,9 @@ const BARS: [(Kind, Stroke); 5] = [
     (Kind::Undecided, Stroke::Thin),
 ];
 
-/// What `speeds` finds: impact phases in degrees, a bar for each attractor, and shares of starts, against the speed.
+/// Result of `speeds`: impact phases in degrees, a bar for each attractor, and shares of starts, against the speed.
 ///
-/// The page is `across` units wide, of which a letter is [`TEXT`] high: names of attractors that would touch there stand in lanes of their own.
+/// The page is `across` units wide; a letter is [`TEXT`] high. Attractors whose names would touch are placed in separate lanes.
 pub fn speeds_figure(found: &SpeedSurvey, corners: &[CornerMark], across: f64) -> Figure {
     let over = over(found);
     let colours = colours(found);
@@ -101,7 +101,7 @@ pub fn speeds_figure(found: &SpeedSurvey, corners: &[CornerMark], across: f64) -
     figure
 }
 
-/// Its first panel alone: where impacts are on the cam.
+/// First panel of [`speeds_figure`] alone: impact phases.
 pub fn impacts_by_speed(found: &SpeedSurvey, corners: &[CornerMark]) -> Figure {
     let mut figure = speeds_figure(found, corners, WIDTH);
     figure.panels.truncate(1);
@@ -115,14 +115,14 @@ fn over(found: &SpeedSurvey) -> Across {
     Across::named(&found.over.name, &found.over.unit, found.over.spacing, found.range)
 }
 
-/// From where to where an attractor's bar is drawn.
+/// Ends of an attractor's bar on the axis.
 fn bar(over: &Across, attractor: &AttractorRow) -> [f64; 2] {
     attractor.range().map(|end| over.place(end))
 }
 
-/// A colour for each attractor, other than those of what it coexists with or follows closely, as far as there are enough.
+/// A colour for each attractor. It differs from those of coexisting and closely preceding attractors while there are enough colours.
 fn colours(found: &SpeedSurvey) -> Vec<Colour> {
-    /// Of the range.
+    /// Share of the range.
     const CLOSE: f64 = 0.02;
     let over = over(found);
     let [low, high] = found.range.map(|end| over.place(end));
@@ -137,26 +137,26 @@ fn colours(found: &SpeedSurvey) -> Vec<Colour> {
     colours
 }
 
-/// The axis of shares, a little wider than they can be.
+/// Axis of shares, slightly wider than 0 to 100 %.
 const SHARES: [f64; 2] = [-5.0, 105.0];
 
-/// An attractor, its lane, the uppermost being 0, and the side of its beginning on which its name stands; none of one that is too
-/// short to be seen where there are many.
+/// An attractor, its lane (0 is uppermost), and the side of its start where its name is written. Where there are many attractors, short
+/// ones have no name.
 type Placed<'a> = (&'a AttractorRow, Colour, usize, Option<Beside>);
 
-/// The attractors in as few lanes as they and their names fit into, and how many lanes that are.
+/// Places the attractors in as few lanes as they and their names need; also returns the number of lanes.
 fn placed<'a>(found: &'a SpeedSurvey, colours: &[Colour], across: f64) -> (Vec<Placed<'a>>, usize) {
-    /// Of the range: what is left between two bars of a lane.
+    /// Smallest gap between two bars of a lane, as a share of the range.
     const APART: f64 = 0.004;
-    /// Of the page's width: what labels take on either side of the frame.
+    /// Room for labels on both sides of the frame, in units of the page's width.
     const LABELS: f64 = 130.0;
-    /// More lanes are not looked through: what is shorter than this part of the range stands in one of its own then.
+    /// Most lanes that are tried. With more, bars shorter than the share `SHORT` of the range get one extra lane, without names.
     const LOOKED_THROUGH: usize = 12;
     const SHORT: f64 = 0.01;
     let over = over(found);
     let [low, high] = found.range.map(|end| over.place(end));
     let span = high - low;
-    // What a name takes of the range, with half a letter's room.
+    // Width of a name on the axis, with half a letter's room.
     let name =
         |attractor: &AttractorRow| span * (width(&attractor.id, TEXT) + 0.5 * TEXT) / (across - LABELS).max(LABELS);
     let each = || found.attractors.iter().zip(colours);
@@ -165,7 +165,7 @@ fn placed<'a>(found: &'a SpeedSurvey, colours: &[Colour], across: f64) -> (Vec<P
         let mut placed = Vec::new();
         for (attractor, colour) in each().filter(|(attractor, _)| named(attractor)) {
             let ([from, to], name) = (bar(&over, attractor), name(attractor));
-            // At the right edge there is no room beside the bar's beginning but on the left.
+            // At the right edge, only the left side of the bar's start has room.
             let (beside, taken) = if from + name > high {
                 (Beside::AboveLeft, [from - name, to])
             } else {
@@ -191,7 +191,7 @@ fn placed<'a>(found: &'a SpeedSurvey, colours: &[Colour], across: f64) -> (Vec<P
     (placed, count + 1)
 }
 
-/// The range of speeds of each attractor as a bar, stroked by its kind.
+/// Range of speeds of each attractor as a bar, with a stroke for its kind.
 fn bars(over: &Across, (placed, lanes): (Vec<Placed<'_>>, usize)) -> Panel {
     let place = |lane: usize| -(lane as f64);
     let bars = BARS.iter().filter_map(|(kind, stroke)| {
@@ -202,7 +202,7 @@ fn bars(over: &Across, (placed, lanes): (Vec<Placed<'_>>, usize)) -> Panel {
         });
         Series::line(words::kind(*kind), Colour::Ink, *stroke, points).if_any()
     });
-    // In the middle of each bar stands what the attractor has above.
+    // The middle of each bar has the attractor's marker from the panel above.
     let marks = placed.iter().map(|(attractor, colour, lane, _)| {
         let [from, to] = bar(over, attractor);
         let middle = [0.5 * (from + to), place(*lane)];
@@ -212,7 +212,7 @@ fn bars(over: &Across, (placed, lanes): (Vec<Placed<'_>>, usize)) -> Panel {
         Some(Word::new([bar(over, attractor)[0], place(*lane)], &attractor.id, (*beside)?))
     });
     let series = bars.chain(marks).chain(Series::words(names).if_any()).collect();
-    // Above the first lane its names have room in a narrow figure, too.
+    // Room for the names above the first lane, in a narrow figure, too.
     let range = [0.5 + place(lanes), 1.3];
     let axis = Axis { spacing: Spacing::Nothing, ..Axis::new("attractor", "").over(range) };
     Panel::new(axis, 0.05 + 0.03 * (range[1] - range[0]), series)

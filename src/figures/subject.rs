@@ -1,4 +1,4 @@
-//! What the figures are of: a model, its corner impact where it has one, and the speeds that are shown.
+//! Subject of the figures: a model, its corner impact if it has one, and the speeds shown.
 
 use std::sync::OnceLock;
 
@@ -13,73 +13,73 @@ use crate::study::design::contact::Contact;
 use crate::study::speeds::usual_range;
 use crate::study::verify::{External, Verification, verify};
 
-/// A model and what is shown of it.
+/// A model and the results shown for it.
 #[derive(Clone, Debug)]
 pub struct Subject {
     /// The model.
     pub model: Model,
-    /// Its cam.
+    /// Cam of the model.
     pub cam: Cam,
     /// Whether follower, cam and speeds are the paper's.
     pub is_paper: bool,
-    /// What `verify` found for it, or why it found nothing.
+    /// Result of `verify`, or the reason for its failure.
     pub findings: Result<Verification, String>,
-    /// The speeds that are shown.
+    /// Speeds in the figures.
     pub shown: Shown,
-    /// Those that were chosen, rpm.
+    /// Range of speeds that the user chose, rpm.
     pub(crate) rpm: Option<[f64; 2]>,
-    /// How fine the sweep above detachment is: `Effort::SLOW`.
+    /// Effort of the sweep above detachment: `Effort::SLOW`.
     pub slow_effort: Effort,
-    /// How fine the sweeps around the corner impact are: `Effort::FAST`.
+    /// Effort of the sweeps around the corner impact: `Effort::FAST`.
     pub fast_effort: Effort,
-    /// The branches over the fast ones, once they have been followed: more than one figure shows them.
+    /// Branches over the fast speeds, cached because several figures show them.
     pub(crate) followed: OnceLock<Result<Vec<Branch>, String>>,
 }
 
-/// How fine a sweep is.
+/// Resolution of a sweep.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Effort {
-    /// Speeds, evenly over the range.
+    /// Number of speeds, evenly spaced over the range.
     pub speeds: usize,
-    /// Revolutions at each before anything is recorded.
+    /// Revolutions at each speed before recording.
     pub transient: u64,
-    /// Revolutions that are recorded.
+    /// Recorded revolutions.
     pub record: u64,
 }
 
 impl Effort {
-    /// Of a report above detachment: a follower that chatters has forgotten its start once it has come to rest.
+    /// Effort of a report above detachment: a chattering follower has forgotten its start once it has come to rest.
     pub(crate) const SLOW: Self = Self { speeds: 800, transient: 40, record: 5 };
-    /// Of a report around the corner impact.
+    /// Effort of a report around the corner impact.
     pub(crate) const FAST: Self = Self { speeds: 480, transient: 300, record: 150 };
 }
 
-/// The speeds that are shown, rpm, or why there are none.
+/// Speeds shown, rpm, or the reasons why there are none.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shown {
-    /// Where chattering is looked at.
+    /// Speeds with chattering.
     pub slow: Result<Slow, String>,
-    /// Where the corner impact is.
+    /// Speeds around the corner impact.
     pub fast: Result<Fast, String>,
 }
 
-/// Speeds above that at which the follower first leaves the cam, rpm.
+/// Speeds above detachment, the speed at which the follower first leaves the cam, rpm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slow {
-    /// Of the trace, the gap and the phase plane.
+    /// Speed of the trace, the gap and the phase plane.
     pub chattering: f64,
-    /// Of the impact diagram.
+    /// Range of the impact diagram.
     pub range: [f64; 2],
-    /// Of the trace with interrupted chattering.
+    /// Speed of the trace with interrupted chattering.
     pub interrupted: f64,
 }
 
-/// Speeds around that of the corner impact, rpm.
+/// Speeds around the corner impact's speed, rpm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fast {
-    /// Of the impact and the stroboscopic diagram.
+    /// Range of the impact and the stroboscopic diagram.
     pub range: [f64; 2],
-    /// On the side of the corner impact where, at a fold, its orbit is gone.
+    /// Speed on the side of the corner impact where, at a fold, its orbit no longer exists.
     pub beyond: f64,
 }
 
@@ -89,11 +89,11 @@ impl Shown {
         Slow { chattering: 183.0, range: [115.0, 200.0], interrupted: 175.0 },
         Fast { range: [660.0, 750.0], beyond: 670.0 },
     );
-    /// Where the paper's follower leaves its cam and where its corner impact is, rpm: other models are shown at speeds in
-    /// the same proportion to theirs.
+    /// Speeds at which the paper's follower leaves its cam and at which its corner impact occurs, rpm. For other models, speeds are
+    /// in the same proportion to theirs.
     const PAPERS_OWN: [f64; 2] = [114.978_9, 673.234_445];
 
-    /// The speeds in proportion to where the follower leaves the cam.
+    /// Speeds in proportion to the detachment speed.
     fn slow(detachment: f64) -> Slow {
         let (slow, _) = Self::PAPERS;
         let scale = detachment / Self::PAPERS_OWN[0];
@@ -104,16 +104,16 @@ impl Shown {
         }
     }
 
-    /// Speeds that were chosen: from the lowest to the highest, with traces in the middle and at the end.
+    /// Speeds for a chosen range: the range itself, with traces in its middle and at its end.
     fn chosen([low, high]: [f64; 2]) -> Slow {
         Slow { chattering: rounded(0.5 * (low + high)), range: [low, high], interrupted: high }
     }
 
-    /// The speeds in proportion to that of the corner impact.
+    /// Speeds in proportion to that of the corner impact.
     fn fast(at: &CornerImpact, falls: bool) -> Fast {
         let (_, fast) = Self::PAPERS;
         let own = at.speed_rpm();
-        // Where the orbit is gone at faster speeds, a proportion is that of the periods.
+        // If the orbit ceases to exist at faster speeds, the periods, not the speeds, are in proportion.
         let placed = |rpm: f64| if falls { rpm / Self::PAPERS_OWN[1] } else { Self::PAPERS_OWN[1] / rpm } * own;
         let [one, other] = fast.range.map(placed);
         let range = if falls { [one, other] } else { [other, one] };
@@ -121,11 +121,11 @@ impl Shown {
     }
 }
 
-/// Why there is no corner impact where none is looked for.
+/// Reason for the missing corner impact if the model has no `[study]`.
 pub(crate) const NO_STUDY: &str =
     "the model file has no [study], which says at which speeds to look for a corner impact";
 
-/// Four digits, as a person would choose a speed.
+/// Rounds to four digits, as a person would choose a speed.
 fn rounded(rpm: f64) -> f64 {
     let scale = 10_f64.powi(3 - elementary::log10(rpm.abs()).floor() as i32);
     let round = (rpm * scale).round() / scale;
@@ -133,13 +133,13 @@ fn rounded(rpm: f64) -> f64 {
 }
 
 impl Subject {
-    /// A model as it is, verified without programs outside, at speeds of this range, rpm, or of its own.
+    /// Verifies a model without external programs and chooses the speeds: this range, rpm, or the model's own.
     pub fn new(model: &Model, rpm: Option<[f64; 2]>) -> Result<Self, ModelError> {
         let findings = verify(model, External::LeftOut).map_err(|error| error.to_string());
         Self::with(model, findings, rpm)
     }
 
-    /// A model with what `verify` found for it, or why that found nothing.
+    /// Subject from a model and the result of `verify`, or the reason for its failure.
     pub(crate) fn with(
         model: &Model,
         findings: Result<Verification, String>,
@@ -173,7 +173,7 @@ impl Subject {
             Err(_) if model.study.is_none() => Err(NO_STUDY.into()),
             Err(why) => Err(why.clone()),
         };
-        // One reason for every figure of the corner impact.
+        // All figures of the corner impact give the same reason.
         let findings = match &fast {
             Ok(_) => findings,
             Err(why) => Err(why.clone()),
@@ -181,7 +181,7 @@ impl Subject {
         Ok(Self {
             model: model.clone(),
             cam,
-            // What the paper says of its speeds is not said of others.
+            // The paper's statements about its speeds do not apply to other speeds.
             is_paper: paper && rpm.is_none(),
             findings,
             shown: Shown { slow, fast },
@@ -192,17 +192,17 @@ impl Subject {
         })
     }
 
-    /// What `verify` found, or why it found nothing.
+    /// Result of `verify`, or the reason for its failure.
     pub fn found(&self) -> Result<&Verification, String> {
         self.findings.as_ref().map_err(Clone::clone)
     }
 
-    /// What happens at the corner impact, where that is classified.
+    /// Scenario of the corner impact, if it is classified.
     pub(crate) fn scenario(&self) -> Option<Scenario> {
         Some(self.found().ok()?.classification.as_ref().ok()?.scenario)
     }
 
-    /// Whether the orbits of the corner impact are gone beyond it.
+    /// Whether the orbits of the corner impact cease to exist beyond it.
     pub(crate) fn is_fold(&self) -> bool {
         self.scenario() == Some(Scenario::NonsmoothFold)
     }
@@ -212,13 +212,13 @@ impl Subject {
         Machine::new(self.cam.clone(), &self.model.follower, angular_velocity(rpm))
     }
 
-    /// A title with speeds above detachment, or without where there are none.
+    /// Title with speeds above detachment, or `without` if there are none.
     pub(crate) fn slow_title(&self, without: &str, with: impl Fn(&Slow) -> String) -> String {
         let words = self.shown.slow.as_ref().map_or_else(|_| without.into(), with);
         format!("{}: {words}", self.model.name)
     }
 
-    /// A title with speeds around the corner impact, or without where there is none.
+    /// Title with speeds around the corner impact, or `without` if there is none.
     pub(crate) fn fast_title(&self, without: &str, with: impl Fn(&Fast) -> String) -> String {
         let words = self.shown.fast.as_ref().map_or_else(|_| without.into(), with);
         format!("{}: {words}", self.model.name)

@@ -1,5 +1,5 @@
 //! One machine at speeds on either side of its corner impact: the orbits of one impact a revolution, stable or not, and
-//! what runs settle on while the speed falls and while it rises.
+//! the attractors of runs with falling and with rising speed.
 
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
@@ -16,32 +16,32 @@ use crate::simulate::{Event, EventKind, Machine, Motion, SimulateError, angular_
 
 /// Speeds on each side of the corner impact.
 const SPEEDS: usize = 90;
-/// How far from the corner impact the slowest and the fastest speed are, of its own, where `[study]` allows.
+/// Distance of the slowest and the fastest speed from the corner impact, relative to its speed, where `[study]` allows.
 const REACH: f64 = 0.06;
-/// Revolutions of a run at each speed before it is looked at, and how many are then.
+/// Revolutions of a run at each speed before recording, and recorded revolutions.
 const SETTLING: u64 = 400;
 const RECORDED: u64 = 24;
-/// Revolutions of a run that are drawn in full, and samples of each, and of an orbit.
+/// Revolutions of a run that are drawn in full, and samples of each revolution and of an orbit.
 const DRAWN: u64 = 2;
 const SAMPLES: u32 = 72;
 /// Samples of the cam: four to a degree.
 const CAM_SAMPLES: usize = 1440;
 
-/// One speed.
+/// Orbits and runs at one speed.
 #[derive(Clone, Debug, Serialize)]
 pub struct Moment {
-    /// The speed.
+    /// Speed, rpm.
     pub rpm: f64,
-    /// Every orbit of one impact a revolution. At the corner impact the one orbit stands twice: as the law before the corner
-    /// has it and as the law after it.
+    /// Every orbit of one impact a revolution. At the corner impact the single orbit appears twice: with the law before the corner
+    /// and with the law after it.
     pub orbits: Vec<Shown>,
-    /// What a run settles on that came from faster speeds.
+    /// Attractor of the run with falling speed.
     pub slowing: Run,
-    /// What a run settles on that came from slower speeds.
+    /// Attractor of the run with rising speed.
     pub speeding: Run,
 }
 
-/// On which side of the corner an orbit's impact is.
+/// Position of an orbit's impact relative to the corner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Place {
@@ -59,21 +59,21 @@ named!(Place);
 #[derive(Clone, Debug, Serialize)]
 #[expect(missing_docs, reason = "names carry what a number is, and its unit")]
 pub struct Shown {
-    /// Where the impact is, seen from the corner.
+    /// Position of the impact relative to the corner.
     pub place: Place,
     pub stable: bool,
     pub stability: Stability,
     /// Cam angle of the impact.
     pub angle_deg: f64,
-    /// That angle less the corner's.
+    /// Cam angle of the impact minus that of the corner.
     pub from_corner_deg: f64,
     pub position_m: f64,
     pub velocity_before_m_s: f64,
     pub velocity_after_m_s: f64,
     pub multipliers: [Eigenvalue; 2],
-    /// The larger modulus of the two.
+    /// The larger modulus of the two multipliers.
     pub modulus: f64,
-    /// One revolution: cam angle, deg, from 0 to 360, and position, m, the impact among them.
+    /// One revolution with its impact: cam angle, deg, from 0 to 360, and position, m.
     pub path: Vec<[f64; 2]>,
 }
 
@@ -96,22 +96,22 @@ impl Shown {
     }
 }
 
-/// What a run settles on.
+/// Attractor of a run.
 #[derive(Clone, Debug, Serialize)]
 pub struct Run {
-    /// Cam angles of its impacts to a tenth of a degree, each once.
+    /// Cam angles of its impacts, rounded to a tenth of a degree, without repetition.
     pub impacts_deg: Vec<f64>,
-    /// In words.
+    /// Description in words.
     pub words: String,
-    /// Some of its revolutions: cam angle, deg, and position, m, impacts among them; none of a run with rising speed.
+    /// Some of its revolutions with their impacts: cam angle, deg, and position, m. Empty for a run with rising speed.
     pub paths: Vec<Vec<[f64; 2]>>,
 }
 
 impl Run {
-    /// Different places of impact that are still told one by one.
+    /// Most impact positions that are listed one by one.
     const TOLD: usize = 4;
 
-    /// A run with its impacts, rad, in some revolutions.
+    /// A run from its impacts, rad, in the recorded revolutions.
     fn new(impacts: &[f64], revolutions: u64, paths: Vec<Vec<[f64; 2]>>) -> Self {
         const ROUND: i64 = 3600;
         let tenth = |angle: &f64| ((angle.to_degrees() * 10.0).round() as i64).rem_euclid(ROUND);
@@ -132,10 +132,10 @@ impl Run {
     }
 }
 
-/// Every orbit of one impact a revolution at speeds around `at`, and what runs settle on there, by rising speed, and the index
-/// of the corner impact's own speed; `None` where the corner impact is not one of those.
+/// Every orbit of one impact a revolution at speeds around `at`, and the attractors of runs there, by rising speed, with the index
+/// of the corner impact's own speed. `None` if the corner impact is not on an orbit of one impact a revolution.
 ///
-/// An error where a run cannot go on.
+/// Fails if a run cannot continue.
 pub fn through_corner(
     model: &Model,
     cam: &Cam,
@@ -164,14 +164,14 @@ pub fn through_corner(
     Ok(Some((moments, at_corner)))
 }
 
-/// The speeds, rpm, rising, densest at the corner impact, and the index of that.
+/// Speeds, rpm, ascending and densest at the corner impact, with the index of the corner impact's speed.
 fn speeds(model: &Model, at: &CornerImpact) -> (Vec<f64>, usize) {
     let corner = at.speed_rpm();
     let [mut low, mut high] = [corner * (1.0 - REACH), corner * (1.0 + REACH)];
     if let Some(study) = model.study {
         (low, high) = (low.max(study.rpm_min), high.min(study.rpm_max));
     }
-    // The square of the part of the way: a border collision moves its orbits in proportion to the change of the speed.
+    // Squared, to be densest at the corner impact: a border collision moves its orbits in proportion to the change of the speed.
     let part = |index: usize| (index as f64 / SPEEDS as f64).powi(2);
     let slower = (1..=SPEEDS).rev().map(|index| corner + (low - corner) * part(index)).filter(|rpm| *rpm < corner);
     let faster = (1..=SPEEDS).map(|index| corner + (high - corner) * part(index)).filter(|rpm| *rpm > corner);
@@ -203,7 +203,7 @@ fn orbits(machine: &Machine, at: &CornerImpact) -> Result<Vec<Shown>, SimulateEr
     Ok(found.iter().filter_map(shown).collect())
 }
 
-/// The orbit on the corner, with the law on either side of it.
+/// Orbit through the corner, with the law on either side of it.
 fn on_corner(machine: &Machine, at: &CornerImpact) -> Vec<Shown> {
     let lifts = [at.corner.minus, at.corner.plus];
     let names = [Place::Before, Place::After];
@@ -211,7 +211,7 @@ fn on_corner(machine: &Machine, at: &CornerImpact) -> Vec<Shown> {
         let mut cycle = at.cycle.clone();
         let impact = &mut cycle.impacts[at.impact];
         impact.segment = segment;
-        // A segment that ends at 2 pi has the corner at its own end.
+        // A segment that ends at 2 pi has the corner at its end.
         if place == Place::Before && segment > at.corner.segment {
             impact.cam_angle = machine.cam().segments()[segment].end;
         }
@@ -222,7 +222,7 @@ fn on_corner(machine: &Machine, at: &CornerImpact) -> Vec<Shown> {
     sides(machine, at).into_iter().zip(lifts).zip(names).map(shown).collect()
 }
 
-/// One revolution of a cycle of one impact: from angle 0 to the impact on the flight before it, then on the flight after it.
+/// One revolution of a cycle with one impact: the flight before the impact from angle 0 on, then the flight after it.
 fn path(machine: &Machine, cycle: &Cycle) -> Vec<[f64; 2]> {
     let Some(impact) = cycle.impacts.first() else { return Vec::new() };
     let (leaving, period) = cycle.flight(machine, 0);
@@ -236,7 +236,7 @@ fn path(machine: &Machine, cycle: &Cycle) -> Vec<[f64; 2]> {
     all.map(|[angle, position]| [angle.to_degrees(), position]).collect()
 }
 
-/// What a run settles on at each of `speeds` in turn, each begun where the one before it ended, with so many revolutions of it.
+/// Attractors at each of `speeds`; each run starts from the final state of the previous one. Draws the given number of revolutions.
 fn runs<'a>(machine: &Machine, speeds: impl Iterator<Item = &'a f64>, drawn: u64) -> Result<Vec<Run>, SimulateError> {
     let mut motion: Option<Motion> = None;
     let mut runs = Vec::new();
@@ -259,7 +259,7 @@ fn runs<'a>(machine: &Machine, speeds: impl Iterator<Item = &'a f64>, drawn: u64
     Ok(runs)
 }
 
-/// So many revolutions of a run that begins at angle 0.
+/// The given number of revolutions of a run that begins at angle 0.
 fn paths(machine: &Machine, motion: Motion, drawn: u64) -> Result<Vec<Vec<[f64; 2]>>, SimulateError> {
     let (samples, _) = trace(machine, motion, drawn, SAMPLES)?;
     let begun = motion.revolution as f64 * TAU;
@@ -272,7 +272,7 @@ fn paths(machine: &Machine, motion: Motion, drawn: u64) -> Result<Vec<Vec<[f64; 
     Ok(paths)
 }
 
-/// The cam four times a degree, and on both sides of every corner: angle, rad, and lift with its derivatives.
+/// Profile of the cam four times a degree and on both sides of every corner: angle, rad, and lift with its derivatives.
 pub(crate) fn profile(cam: &Cam) -> Vec<(f64, Lift)> {
     let mut points = Vec::new();
     for segment in cam.segments() {

@@ -1,4 +1,4 @@
-//! The motion at one speed, follower and cam over revolutions: what it settles on, and the orbit of the corner impact.
+//! Motion at one speed, follower and cam over revolutions: the attractor, and the orbit of the corner impact.
 
 use std::f64::consts::TAU;
 
@@ -9,7 +9,7 @@ use crate::model::Unit;
 use crate::section::{self, Sample};
 use crate::simulate::{Event, EventKind, Machine, Motion, SimulateError};
 
-/// The paper's follower chatters at this speed.
+/// Trace at a speed at which the paper's follower chatters.
 pub(crate) const SLOW_TRACE: Entry = Entry {
     id: "slow-trace",
     place: "Figure 4(a) and (b)",
@@ -26,7 +26,7 @@ pub(crate) const SLOW_TRACE: Entry = Entry {
     },
 };
 
-/// Bounces that do not die out.
+/// Trace with interrupted chattering: bounces that do not die out.
 pub(crate) const INTERRUPTED_TRACE: Entry = Entry {
     id: "interrupted-trace",
     place: "Figure 5(b)",
@@ -46,7 +46,7 @@ pub(crate) const INTERRUPTED_TRACE: Entry = Entry {
     },
 };
 
-/// The orbit of the corner impact.
+/// Trace of the corner impact's orbit.
 pub(crate) const CORNER_ORBIT: Entry = Entry {
     id: "corner-orbit",
     place: "Figure 5(e)",
@@ -57,7 +57,7 @@ pub(crate) const CORNER_ORBIT: Entry = Entry {
     draw: corner_orbit,
 };
 
-/// Where, at a fold, there is no orbit of one impact any more.
+/// Trace beyond a fold, where no orbit of one impact exists any more.
 pub(crate) const BEYOND_TRACE: Entry = Entry {
     id: "beyond-trace",
     place: "Figure 5(f)",
@@ -76,30 +76,30 @@ pub(crate) const BEYOND_TRACE: Entry = Entry {
     },
 };
 
-/// Revolutions that a slow motion is shown over, and a fast one, which takes several to come round.
+/// Displayed revolutions of a slow motion, and of a fast one, which takes several to repeat.
 pub(crate) const SLOW_TURNS: u64 = 2;
 const FAST_TURNS: u64 = 12;
-/// Revolutions before anything is shown.
+/// Revolutions before the displayed ones.
 pub(crate) const TRANSIENT: u64 = 300;
 
-/// A stretch of motion at one speed.
+/// Part of a motion at one speed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Run {
     /// Speed, rpm.
     pub rpm: f64,
-    /// Evenly in angle, and twice at every event.
+    /// Samples, evenly spaced in angle, and twice at every event.
     pub samples: Vec<Sample>,
     /// The events.
     pub events: Vec<Event>,
 }
 
 impl Run {
-    /// Moments of each revolution in a picture: a tenth of a degree, so that short hops are curves too.
+    /// Samples of each revolution in a picture: every tenth of a degree, so that short hops are curves too.
     pub const DRAWN: u32 = 3600;
-    /// Moments of each revolution in a table.
+    /// Samples of each revolution in a table.
     pub const WRITTEN: u32 = 360;
 
-    /// `revolutions` of a machine from a motion on, at so many moments of each.
+    /// `revolutions` of a machine from a motion on, with the given number of samples of each.
     pub(crate) fn new(
         machine: &Machine,
         motion: Motion,
@@ -110,14 +110,14 @@ impl Run {
         Ok(Self { rpm: machine.angular_velocity() / TAU * 60.0, samples, events })
     }
 
-    /// How often something happens.
+    /// Number of events of a kind.
     pub(crate) fn count(&self, kind: EventKind) -> usize {
         self.events.iter().filter(|event| event.kind == kind).count()
     }
 }
 
 impl Subject {
-    /// `revolutions` of what a start at rest on the cam settles on, from cam angle 0 on; or why there are none.
+    /// `revolutions`, from cam angle 0 on, of the attractor on which a start at rest on the cam settles; or the reason for a failure.
     pub fn settled(&self, rpm: f64, revolutions: u64) -> Result<Run, String> {
         let machine = self.machine(rpm);
         let run = || {
@@ -130,7 +130,7 @@ impl Subject {
         Ok(Run { rpm, ..run().map_err(|error| format!("at {rpm} rpm: {error}"))? })
     }
 
-    /// One revolution of the orbit with its impact at the corner, from the section on.
+    /// One revolution, from the section on, of the orbit with its impact at the corner.
     pub fn corner_orbit(&self) -> Result<Run, String> {
         let at = &self.found()?.at;
         let machine = self.machine(at.speed_rpm());
@@ -145,7 +145,7 @@ fn corner_orbit(subject: &Subject, title: &str) -> Result<Drawn, String> {
     let mark = marks.iter().find(|mark| mark.angle_rad == corner);
     let name = mark.map_or_else(|| "the corner".into(), |mark| format!("the corner {}", mark.label()));
     let mut figure = time_trace(title, &subject.corner_orbit()?);
-    // The legend says where the impact is.
+    // The legend says that the impact is at the corner.
     let is_impact = |data: &Data| matches!(data, Data::Points { marker: Marker::Below, .. });
     let legend = figure.panels.iter_mut().flat_map(|panel| &mut panel.series);
     for series in legend.filter(|series| is_impact(&series.data) && !series.label.is_empty()) {
@@ -161,7 +161,7 @@ fn corner_orbit(subject: &Subject, title: &str) -> Result<Drawn, String> {
     )
 }
 
-/// What happens in a slow motion, in a sentence.
+/// Describes the events of a slow motion in a sentence.
 fn in_words(run: &Run) -> String {
     let times = |kind| match run.count(kind) {
         1 => "once".to_owned(),
@@ -174,7 +174,7 @@ fn in_words(run: &Run) -> String {
     format!("In {SLOW_TURNS} revolutions the follower hits the cam {} and {rests}.", times(EventKind::Impact))
 }
 
-/// The trace with the force between follower and cam below, `mass` in kg.
+/// Adds a panel with the force between follower and cam below the trace; `mass` is in kg.
 pub fn with_force(mut figure: Figure, run: &Run, mass: f64, unit: &Unit) -> Figure {
     let first = run.samples.first().map_or(0.0, |sample| sample.turned);
     let points = run.samples.iter().map(|sample| [(sample.turned - first) / TAU, unit.told(mass * sample.pressing)]);
@@ -183,7 +183,7 @@ pub fn with_force(mut figure: Figure, run: &Run, mass: f64, unit: &Unit) -> Figu
     figure
 }
 
-/// Follower and cam over revolutions, with impacts and contact marked, and the gap below.
+/// Follower and cam over revolutions, with impacts and contact marked, and the gap in a panel below.
 pub fn time_trace(title: &str, run: &Run) -> Figure {
     let first = run.samples.first().map_or(0.0, |sample| sample.turned);
     let line = |value: fn(&Sample) -> f64| {

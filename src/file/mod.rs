@@ -1,8 +1,8 @@
-//! Files that are there whole or not at all, files that are read up to a limit, and folders that nobody is left with.
+//! Files that appear complete or not at all, files that are read up to a limit, and temporary folders that do not stay behind.
 //!
-//! An [`Output`] is written to like any other stream, in bounded memory. A file of that name appears, or changes, only with
-//! [`Output::commit`]; until then it is unfinished: without any name where the system has such files, so that nothing is left behind
-//! whatever ends the program. `-` is standard output, which has no such luxury: what is not complete there says so in its last line.
+//! An [`Output`] is written like any other stream, in bounded memory. A file of that name appears, or changes, only with
+//! [`Output::commit`]. Until then it is unfinished: it has no name at all where the system supports that, so that nothing stays behind
+//! however the program ends. `-` is standard output, which has no such protection: incomplete output says so in its last line.
 
 mod read;
 mod scratch;
@@ -19,7 +19,7 @@ pub(crate) use scratch::Scratch;
 pub(crate) use signals::Started;
 use unfinished::Unfinished;
 
-/// Why a file was not written.
+/// Reason why a file was not written.
 #[derive(Debug, thiserror::Error)]
 #[error("{path}: {action}: {why}")]
 pub struct FileError {
@@ -36,22 +36,22 @@ impl FileError {
         move |why| Self { path: path.clone(), standard, action, why }
     }
 
-    /// Whether it is standard output, and whoever read that has had enough.
+    /// Whether the error is a closed pipe on standard output.
     pub(crate) fn is_unread(&self) -> bool {
         self.standard && self.kind() == io::ErrorKind::BrokenPipe
     }
 
-    /// What the system said.
+    /// Kind of the system's error.
     pub fn kind(&self) -> io::ErrorKind {
         self.why.kind()
     }
 }
 
-/// A place for results: a file that appears when it is complete, or a stream.
+/// A destination for results: a file that appears when it is complete, or a stream.
 pub struct Output<'a> {
     path: PathBuf,
     sink: Sink<'a>,
-    /// Whether anybody has seen something of it.
+    /// Whether any output has been written.
     begun: bool,
 }
 
@@ -60,14 +60,14 @@ enum Sink<'a> {
         unfinished: BufWriter<Unfinished>,
         target: PathBuf,
     },
-    /// A device or pipe: there is nothing to replace.
+    /// A device or pipe, which cannot be replaced.
     Device(BufWriter<File>),
     Standard(BufWriter<Box<dyn Write + 'a>>),
-    /// Committed: nobody has it any more.
+    /// Already committed.
     Done(io::Sink),
 }
 
-/// The last line of what goes on standard output or a pipe, where that is not all.
+/// Last line of incomplete output on standard output or a pipe.
 const UNFINISHED: &str = "# unfinished: standard error says why";
 
 impl std::fmt::Debug for Output<'_> {
@@ -77,7 +77,7 @@ impl std::fmt::Debug for Output<'_> {
 }
 
 impl<'a> Output<'a> {
-    /// Begins to write `path`; `-` stands for `standard`.
+    /// Begins to write `path`; `-` means `standard`.
     pub fn create(path: &Path, standard: &'a mut dyn Write) -> Result<Self, FileError> {
         if path != Path::new("-") {
             return Self::file(path);
@@ -85,12 +85,12 @@ impl<'a> Output<'a> {
         Ok(Self { path: path.to_owned(), sink: Sink::Standard(BufWriter::new(Box::new(standard))), begun: false })
     }
 
-    /// Begins to write a file of that name, whatever it is.
+    /// Begins to write a file of that name, even if the name is `-`.
     pub(crate) fn file(path: &Path) -> Result<Output<'static>, FileError> {
         Ok(Output { path: path.to_owned(), sink: begin(path)?, begun: false })
     }
 
-    /// Completes it: every byte is on the disk, and the file has its name, or there is an error and no file.
+    /// Completes the output: every byte is on the disk and the file has its name, or there is an error and no file.
     pub fn commit(mut self) -> Result<(), FileError> {
         let write = FileError::new(&self.path, "cannot be written");
         match std::mem::replace(&mut self.sink, Sink::Done(io::sink())) {
@@ -98,7 +98,7 @@ impl<'a> Output<'a> {
             Sink::Device(mut device) => device.flush().map_err(write),
             Sink::Whole { unfinished, target } => {
                 let unfinished = unfinished.into_inner().map_err(io::IntoInnerError::into_error).map_err(&write)?;
-                // A full disk or a lost network folder may only be noticed here.
+                // A full disk or a lost network folder may show only here.
                 unfinished.file().sync_all().map_err(&write)?;
                 unfinished.named(&target).map_err(FileError::new(&self.path, "cannot be replaced"))
             }
@@ -119,7 +119,7 @@ impl<'a> Output<'a> {
 impl Drop for Output<'_> {
     fn drop(&mut self) {
         if let (Sink::Device(_) | Sink::Standard(_), true) = (&self.sink, self.begun) {
-            // Where nobody reads any more nobody is to be told.
+            // If nobody reads the output any more, ignore the error.
             let _ = writeln!(self.stream(), "{UNFINISHED}");
         }
     }
@@ -138,13 +138,13 @@ impl Write for Output<'_> {
     }
 }
 
-/// Has signals that end the program wait while a file gets its name, remove what is unfinished and end what was started: for programs that are this
-/// library's from then on.
+/// Installs a handler for signals that end the program. Such signals wait while a file gets its name, remove unfinished files and end
+/// started programs. Meant for programs that leave these signals to this library.
 pub fn clear_on_signals() -> io::Result<()> {
     signals::watch()
 }
 
-/// Refuses results, each with what it is called, whose names lead to one file, by whatever path: the last would be all that is left.
+/// Refuses results, each with its description, whose names lead to the same file by whatever path: the last would overwrite the others.
 pub(crate) fn distinct<'a>(results: impl IntoIterator<Item = (&'a str, &'a Path)>) -> Result<(), FileError> {
     let mut places = BTreeMap::new();
     results.into_iter().try_for_each(|(what, path)| match places.insert(place(path), what) {
@@ -156,7 +156,7 @@ pub(crate) fn distinct<'a>(results: impl IntoIterator<Item = (&'a str, &'a Path)
     })
 }
 
-/// Where a name leads to, as far as that is there.
+/// Resolves a name to a path, as far as that exists.
 fn place(path: &Path) -> PathBuf {
     let whole = || fs::canonicalize(path).ok();
     let of_the_folder = || Some(fs::canonicalize(folder(path)).ok()?.join(path.file_name()?));
@@ -180,11 +180,11 @@ fn begin<'a>(path: &Path) -> Result<Sink<'a>, FileError> {
                 .map(|device| Sink::Device(BufWriter::new(device)))
                 .map_err(refuse);
         }
-        // A file is replaced whoever may write to it.
+        // Replacing a file ignores its permissions, so check them.
         Ok(found) if !may_be_written(path, &found) => {
             return Err(because(io::ErrorKind::PermissionDenied, "it is there already, and read-only"));
         }
-        // What a link points to is replaced, not the link.
+        // Replace the target of a link, not the link.
         Ok(found) => (fs::canonicalize(path).map_err(&refuse)?, Some(found.permissions())),
         Err(error) if error.kind() == io::ErrorKind::NotFound => (path.to_owned(), None),
         Err(error) => return Err(refuse(error)),
@@ -208,7 +208,7 @@ fn begin<'a>(path: &Path) -> Result<Sink<'a>, FileError> {
 
 #[cfg(unix)]
 fn may_be_written(path: &Path, found: &fs::Metadata) -> bool {
-    // The system lets its administrator write to any file.
+    // The system lets an administrator write to any file, so check the permission bits too.
     !found.permissions().readonly() && rustix::fs::access(path, rustix::fs::Access::WRITE_OK).is_ok()
 }
 

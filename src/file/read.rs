@@ -1,23 +1,23 @@
-//! Files that are read whole: model files, tables of lifts.
+//! Files that are read whole: model files and tables of lifts.
 
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
-/// The longest file that is read, and the longest line of one, bytes: a thousand times what a person writes, and nothing that fills
+/// Largest file and longest line that are read, bytes: a thousand times the size of anything that a person writes, and too small to fill
 /// the memory of a machine.
 const LONGEST: usize = 16 << 20;
 const LONGEST_LINE: usize = 1 << 20;
 
-/// The text of a file; no more than the limit is read, whatever it is.
+/// Reads the text of a file; never reads more than the limit.
 pub(crate) fn text(path: &Path) -> io::Result<String> {
     lines(String::from_utf8(bytes(path)?).map_err(|_| no_text("UTF-8"))?)
 }
 
-/// The same of a file that an older program may have written: what is no UTF-8 is Latin-1, in which a degree sign is one byte.
+/// Reads a file that an older program may have written: text that is not UTF-8 is Latin-1, in which a degree sign is one byte.
 pub(crate) fn text_of_any_age(path: &Path) -> io::Result<String> {
     let bytes = bytes(path)?;
-    // As UTF-16 and files that are no text have.
+    // UTF-16 and binary files contain zero bytes.
     if bytes.contains(&0) {
         return Err(no_text("UTF-8 or Latin-1"));
     }

@@ -8,30 +8,31 @@ use tempfile::{Builder, TempDir};
 
 use super::signals::{self, Listed};
 
-/// What its name begins with, and the file that its program holds locked for as long as it lives.
+/// Prefix of the folder's name, and the file in it that the program keeps locked while it runs.
 const NAME: &str = "corner-impact.";
 const ALIVE: &str = ".alive";
 const UNNAMED: &str = ".alive.new";
 
-/// It goes with this value, or with a signal that ends the program; where that could not be caught, with the next program that makes one.
+/// Folder that is removed with this value, or by a signal that ends the program. If neither happens, the next program that makes one
+/// removes it.
 pub(crate) struct Scratch {
-    // Goes before it is forgotten by the signals.
+    // Dropped before the signals forget the folder.
     folder: TempDir,
     _listed: Listed,
     _alive: File,
 }
 
 impl Scratch {
-    /// A folder with these files, each by its path in it, and its text.
+    /// Creates a folder with these files, each given by its path in the folder and its text.
     pub(crate) fn of(files: &[(&str, &str)]) -> io::Result<Self> {
         sweep();
-        // Signals wait until the last file is there: what is being filled cannot be emptied.
+        // Signals wait until the last file is complete: a folder cannot be emptied while it is filled.
         let mut held = signals::held();
         let folder = Builder::new().prefix(NAME).tempdir()?;
-        // Locked before it has the name that is looked for: in between another program would find nobody there.
+        // Locked before it is renamed: otherwise another program could find it unlocked in between.
         let unnamed = folder.path().join(UNNAMED);
         let alive = File::create(&unnamed)?;
-        // Without locks the folder is as good, and stays where it is killed.
+        // Without locks the folder works too, but stays if the program is killed.
         if alive.try_lock().is_ok() {
             fs::rename(unnamed, folder.path().join(ALIVE))?;
         }
@@ -49,13 +50,13 @@ impl Scratch {
     }
 }
 
-/// Removes what programs have left that were killed: nobody holds its lock.
+/// Removes folders of killed programs: those whose lock is free.
 fn sweep() {
     let Ok(entries) = fs::read_dir(std::env::temp_dir()) else { return };
     for folder in entries.flatten().filter(|entry| entry.file_name().to_string_lossy().starts_with(NAME)) {
         let alive = File::open(folder.path().join(ALIVE));
         if alive.is_ok_and(|alive| alive.try_lock().is_ok()) {
-            // Another may do the same.
+            // Another program may remove it at the same time.
             let _ = fs::remove_dir_all(folder.path());
         }
     }

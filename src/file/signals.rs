@@ -1,8 +1,8 @@
-//! Signals that end the program: none of them while a file gets its name, and hidden files and private folders are removed before,
-//! and programs that it has started are ended.
+//! Signals that end the program. They wait while a file gets its name. Before the end, hidden files and private folders are removed,
+//! and started programs are ended.
 //!
-//! Destructors do not run when a signal ends the program. A thread of its own waits for signals, removes what is
-//! unfinished and lets the signal do what it would have done: no loop has to poll a flag, and the shell sees the signal.
+//! Destructors do not run when a signal ends the program. So a separate thread waits for signals, removes unfinished
+//! files and then lets the signal take effect: no loop has to poll a flag, and the shell sees the signal.
 
 use std::collections::BTreeSet;
 use std::io;
@@ -10,22 +10,22 @@ use std::path::PathBuf;
 use std::process::Child;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// Hidden files, and private folders, that a signal has to remove; held while one comes, goes or gets its name.
+/// Hidden files and private folders that a signal has to remove; locked while one of them is created, removed or renamed.
 static HIDDEN: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
 
 pub(super) fn held() -> MutexGuard<'static, BTreeSet<PathBuf>> {
-    // A set of paths is whole whatever happened to the thread that held it.
+    // The set remains valid even if a thread panicked with the lock.
     HIDDEN.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Numbers of the processes that a signal has to end.
+/// Ids of the processes that a signal has to end.
 static STARTED: Mutex<BTreeSet<u32>> = Mutex::new(BTreeSet::new());
 
 fn started() -> MutexGuard<'static, BTreeSet<u32>> {
     STARTED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// A program that was started, and ends with this value or with a signal that ends this program.
+/// A started program; it ends with this value or with a signal that ends this program.
 pub(crate) struct Started {
     child: Child,
 }
@@ -43,14 +43,14 @@ impl Started {
 
 impl Drop for Started {
     fn drop(&mut self) {
-        // Its number may soon be another's.
+        // The system may soon reuse its process id.
         started().remove(&self.child.id());
-        // One that has ended already is neither killed nor waited for.
+        // A process that has ended is neither killed nor waited for.
         let _ = self.child.kill().and_then(|()| self.child.wait().map(drop));
     }
 }
 
-/// A hidden file or folder among them.
+/// An entry of `HIDDEN`, removed from it with this value.
 pub(super) struct Listed(pub(super) PathBuf);
 
 impl Drop for Listed {
@@ -70,20 +70,20 @@ pub(super) fn watch() -> io::Result<()> {
     use signal_hook::iterator::Signals;
     use signal_hook::low_level::emulate_default_handler;
 
-    /// Those that end a program and can be held up, but for what a program gets for its own faults.
+    /// Signals that end a program and can be caught, except those for a program's own faults.
     const ENDING: [i32; 10] =
         [SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGALRM, SIGUSR1, SIGUSR2, SIGVTALRM, SIGPROF, SIGXCPU];
     static WATCHED: Once = Once::new();
     let mut result = Ok(());
     WATCHED.call_once(|| {
-        // A file that may not grow any more is an error with a sentence, as a full disk is.
+        // A file at its size limit gives an error message, as a full disk does.
         let too_large = signal_hook::flag::register(SIGXFSZ, Arc::new(AtomicBool::new(false)));
         let ignored = ignored();
         let heeded = ENDING.into_iter().filter(|signal| ignored >> (signal - 1) & 1 == 0);
         result = too_large.and_then(|_| Signals::new(heeded)).and_then(|mut signals| {
             std::thread::Builder::new().name("signals".into()).spawn(move || {
                 for signal in signals.forever() {
-                    // Held to the end: no other thread may begin or finish a file now.
+                    // Locked until the end: no other thread may begin or finish a file now.
                     let held = held();
                     for path in held.iter() {
                         let _ = std::fs::remove_file(path).or_else(|_| std::fs::remove_dir_all(path));
@@ -102,8 +102,8 @@ pub(super) fn watch() -> io::Result<()> {
     result
 }
 
-/// The signals that this program was started to ignore, as under `nohup`, a bit for each: that of a lost
-/// terminal where the system does not say.
+/// Signals that this program was started to ignore, as under `nohup`, a bit for each. If the system does not
+/// report them, the signal of a lost terminal is assumed.
 #[cfg(unix)]
 fn ignored() -> u64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();

@@ -1,10 +1,10 @@
-//! A file on its way, which nobody sees until it has its name.
+//! A file that is invisible until it has its name.
 //!
-//! On Linux it has none: the system forgets it with the process, however that ends, `kill -9` and a power cut included. A nameless
-//! file can only be given a name that is free, and then it is whole at once; where the name is taken, it gets a short hidden one first
-//! and takes the other's place from there. Signals that can be held up are between the two; `kill -9` in that instant leaves the old file
-//! as it was and the new one beside it, whole, as `.XXXXXX.tmp`. File systems that have no nameless files (NFS, FAT), and other systems, keep it as
-//! `.XXXXXX.tmp` from the beginning; [`signals`](super::signals) remove that, `kill -9` leaves it.
+//! On Linux the file has no name: the system removes it with the process, however that ends, including by `kill -9` and a power cut. A
+//! nameless file can only get a name that is free; then it is complete at once. If the name is taken, the file first gets a short hidden
+//! name and then replaces the other file. Signals that can be caught wait during these two steps; `kill -9` in that instant leaves the old
+//! file unchanged and the complete new one beside it, as `.XXXXXX.tmp`. File systems without nameless files (NFS, FAT), and other systems,
+//! use `.XXXXXX.tmp` from the beginning; [`signals`](super::signals) remove that file, `kill -9` does not.
 
 #[cfg(target_os = "linux")]
 use std::fs::File;
@@ -15,16 +15,16 @@ use tempfile::{Builder, NamedTempFile};
 
 use super::signals::{self, Listed};
 
-/// A file without its name.
+/// A file that does not have its name yet.
 pub(super) enum Unfinished {
-    /// Without any.
+    /// File without a name, and its folder.
     #[cfg(target_os = "linux")]
     Nameless(File, PathBuf),
-    /// Hidden under another.
+    /// File with a hidden name.
     Hidden(NamedTempFile, Listed),
 }
 
-/// A hidden name that is as short as can be: any name that a file may have is longer.
+/// Builder of hidden names, which are as short as possible: any valid file name is longer.
 fn hidden<'a>() -> Builder<'a, 'a> {
     let mut builder = Builder::new();
     builder.prefix(".").suffix(".tmp");
@@ -32,7 +32,7 @@ fn hidden<'a>() -> Builder<'a, 'a> {
 }
 
 impl Unfinished {
-    /// A new file that will be in `folder`.
+    /// Creates a file that will be in `folder`.
     pub(super) fn begin(folder: &Path) -> io::Result<Self> {
         #[cfg(target_os = "linux")]
         if let Ok(file) = linux::nameless(folder) {
@@ -46,7 +46,7 @@ impl Unfinished {
         #[cfg(unix)]
         {
             use std::os::unix::fs::PermissionsExt;
-            // Those that any new file has, less what the umask takes away; a temporary file is its owner's alone otherwise.
+            // Permissions of any new file, less the umask; a temporary file would otherwise be private to its owner.
             builder.permissions(std::fs::Permissions::from_mode(0o666));
         }
         let mut held = signals::held();
@@ -64,9 +64,9 @@ impl Unfinished {
         }
     }
 
-    /// Gives it its name, in the place of what may have it.
+    /// Gives the file its name and replaces any file of that name.
     pub(super) fn named(self, target: &Path) -> io::Result<()> {
-        // No signal ends the program while this is held.
+        // No signal ends the program while this lock is held.
         let held = signals::held();
         match self {
             #[cfg(target_os = "linux")]
@@ -106,15 +106,15 @@ mod linux {
 
     use rustix::fs::{AtFlags, CWD, Mode, OFlags, linkat, open};
 
-    /// The files that this process has open, by which a nameless one is found.
+    /// Folder of this process's open files, where a nameless one is found.
     const OPEN: &str = "/proc/self/fd";
 
-    /// A file without a name, on the disk that `folder` is on.
+    /// Creates a file without a name, on the disk of `folder`.
     pub(super) fn nameless(folder: &Path) -> io::Result<File> {
         let flags = OFlags::TMPFILE | OFlags::RDWR | OFlags::CLOEXEC;
         let file: OwnedFd = open(folder, flags, Mode::from_raw_mode(0o666))?;
         let file = File::from(file);
-        // Without /proc it could never have a name.
+        // Without /proc the file could never get a name.
         std::fs::symlink_metadata(entry(&file)).map(|_| file)
     }
 
@@ -122,7 +122,7 @@ mod linux {
         format!("{OPEN}/{}", file.as_raw_fd())
     }
 
-    /// Names a nameless file, where the name is free.
+    /// Gives a nameless file its name, if the name is free.
     pub(super) fn link(file: &File, name: &Path) -> io::Result<()> {
         Ok(linkat(CWD, entry(file), CWD, name, AtFlags::SYMLINK_FOLLOW)?)
     }
@@ -134,7 +134,7 @@ mod tests {
 
     use super::*;
 
-    /// What a file system without nameless files is left with: a hidden file, which is gone or has its name in the end.
+    /// Tests the fallback for file systems without nameless files: a hidden file ends up removed or with its name.
     #[test]
     fn a_hidden_file_takes_its_name_or_goes() {
         let folder = tempfile::TempDir::new().unwrap();

@@ -1,4 +1,4 @@
-//! Free flight of the follower, exactly, for every damping and stiffness.
+//! Exact free flight of the follower, for every damping and stiffness.
 //!
 //! `m q'' + b q' + k (q - rest) = -m g`, so `q'' = -2 zeta q' - w0^2 (q - rest) - g`. The flow is written
 //! with two responses of the follower, both from rest: `s(t)` to a unit impulse and `p(t)` to a unit step,
@@ -32,13 +32,13 @@ pub struct State {
 }
 
 impl State {
-    /// How far two states are from each other, m: velocities count over `omega`, rad/s.
+    /// Distance between two states, m: velocities count over `omega`, rad/s.
     pub(crate) fn apart(self, other: Self, omega: f64) -> f64 {
         elementary::hypot(self.position - other.position, (self.velocity - other.velocity) / omega)
     }
 }
 
-/// The follower away from the cam.
+/// Free flight of the follower, away from the cam.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Flight {
     zeta: f64,
@@ -61,8 +61,8 @@ enum Regime {
         /// w, 1/s.
         omega: f64,
     },
-    /// Roots `-slow` and `-fast`, with `slow <= fast` and `slow fast = w0^2`: not below 0, but where the damping drives, as it does in a run
-    /// backwards. Stiffness 0 has the one nearer to 0 at 0.
+    /// Roots `-slow` and `-fast`, with `slow <= fast` and `slow fast = w0^2`. They are not below 0, except for a damping that drives, as in
+    /// a run backwards. With stiffness 0, the root nearer to 0 is 0.
     Monotone {
         /// 1/s.
         slow: f64,
@@ -72,7 +72,7 @@ enum Regime {
 }
 
 impl Flight {
-    /// The free flight of a model's follower.
+    /// Builds the free flight of a model's follower.
     pub fn new(follower: &Follower) -> Self {
         let zeta = follower.damping / (2.0 * follower.mass);
         let omega0_squared = follower.stiffness / follower.mass;
@@ -106,7 +106,7 @@ impl Flight {
         self.gravity
     }
 
-    /// The frequency of the free oscillation, rad/s, or `None` if there is none.
+    /// Frequency of the free oscillation, rad/s, or `None` if there is no oscillation.
     pub fn damped_frequency(&self) -> Option<f64> {
         match self.regime {
             Regime::Undamped { omega } | Regime::Underdamped { omega } => Some(omega),
@@ -114,7 +114,7 @@ impl Flight {
         }
     }
 
-    /// The rate at which a deviation that does not oscillate dies out in the end, 1/s: 0 without a spring. `None` where it oscillates.
+    /// Rate at which a deviation without oscillation finally decays, 1/s; 0 without a spring. `None` if it oscillates.
     pub fn slowest_rate(&self) -> Option<f64> {
         match self.regime {
             Regime::Monotone { slow, .. } => Some(slow),
@@ -147,7 +147,7 @@ impl Flight {
         -2.0 * self.zeta * self.acceleration(state) - self.omega0_squared * state.velocity
     }
 
-    /// A bound on `|q'''|` at `state` and at every later instant of the same flight, m/s^3.
+    /// Bound on `|q'''|` at `state` and at every later instant of the same flight, m/s^3.
     ///
     /// The acceleration obeys the same damped equation as the position, so `j^2 + w0^2 a^2` never grows.
     #[inline]
@@ -155,14 +155,14 @@ impl Flight {
         self.never_above(self.acceleration(state), self.jerk(state))
     }
 
-    /// The same on `|q''''|`, m/s^4: the jerk obeys that equation, too.
+    /// Bound on `|q''''|` at `state` and at every later instant of the same flight, m/s^4: the jerk obeys the same damped equation.
     #[inline]
     pub fn fourth_bound(&self, state: State) -> f64 {
         let (acceleration, jerk) = (self.acceleration(state), self.jerk(state));
         self.never_above(jerk, -2.0 * self.zeta * jerk - self.omega0_squared * acceleration)
     }
 
-    /// What the rate of anything that obeys the damped equation never exceeds, from its value and its rate.
+    /// Bound on the rate of any quantity that obeys the damped equation, from its value and its rate.
     #[inline]
     fn never_above(&self, value: f64, rate: f64) -> f64 {
         let bound = (rate * rate + self.omega0_squared * value * value).sqrt();
@@ -176,7 +176,7 @@ impl Flight {
         self.fly_by(start, &self.response(t))
     }
 
-    /// The same over a time whose responses are known.
+    /// Displacement and state after flying from `start`, from the responses over that time.
     pub fn fly_by(&self, start: State, response: &Response) -> (f64, State) {
         let Response { step, impulse, impulse_rate } = *response;
         let force = self.force(start.position);
@@ -192,16 +192,16 @@ impl Flight {
         self.propagator_by(&self.response(t))
     }
 
-    /// The same over a time whose responses are known.
+    /// Propagator of a deviation, from the responses over the time of the flight.
     pub fn propagator_by(&self, response: &Response) -> Matrix2<f64> {
         let Response { step, impulse, impulse_rate } = *response;
         let spring = self.omega0_squared;
         Matrix2::new(1.0 - spring * step, impulse, -spring * impulse, impulse_rate)
     }
 
-    /// The time, s, up to which position changes one way only: the first instant after the start with `v = 0`.
+    /// Time, s, up to which the position changes in one direction only: the first instant after the start with `v = 0`.
     ///
-    /// Infinite where there is none. From `v = v0 s' + f0 s`.
+    /// Infinite if there is none. From `v = v0 s' + f0 s`.
     pub fn turning_point(&self, start: State) -> f64 {
         let State { position, velocity } = start;
         let force = self.force(position);
@@ -217,7 +217,7 @@ impl Flight {
             Regime::Monotone { slow, fast } => {
                 // s'/s = -f0/v0 =: x, and s'/s falls from infinity to -l1: e^{-(l2 - l1) t} = 1 - (l2 - l1)/(l2 + x).
                 let ratio = -force / velocity;
-                // Not a number for a follower at rest, which goes one way only.
+                // NaN for a follower at rest, which moves in one direction only.
                 if !(ratio + slow > 0.0 && ratio.is_finite()) {
                     return f64::INFINITY;
                 }
@@ -230,9 +230,9 @@ impl Flight {
 
     /// Time (s) and state at which a flight comes down to `level`, m, or `None` if it never does.
     ///
-    /// For a flight that is above the level, or certain to rise above it; whatever it does before it has risen is not looked
-    /// at. Signs decide whether it comes down: of the force at the level, and of what is left at the valley. Rounding may make the
-    /// fall earlier by an ulp, and never puts it off to the next swing.
+    /// The flight must be above the level, or certain to rise above it; its course before it has risen is not examined. Signs decide
+    /// whether it comes down: of the force at the level, and of the height above the level at the valley. Rounding may make the fall
+    /// earlier by an ulp, and never postpones it to the next swing.
     #[inline]
     pub fn fall_to(&self, level: f64, start: State) -> Option<(f64, State)> {
         let omega = match self.regime {
@@ -249,7 +249,7 @@ impl Flight {
         let drop = start.position - level;
         let descent = drop * (x + l);
         let height_squared = descent + y * y;
-        // An equilibrium that is not below the level may leave a swing above it. Over one that is below, every flight comes down.
+        // If the equilibrium is not below the level, a swing may stay above the level. If it is below, every flight comes down.
         if l <= 0.0 && !(height_squared > 0.0) {
             return None;
         }
@@ -265,7 +265,7 @@ impl Flight {
         Some((time, State { position: level, velocity: -omega * height }))
     }
 
-    /// Under gravity alone: from `q0 - l + v0 t - g t^2/2 = 0`, in the form in which nothing cancels.
+    /// Falls under gravity alone: from `q0 - l + v0 t - g t^2/2 = 0`, in the form in which nothing cancels.
     fn fall_freely(&self, level: f64, State { position, velocity }: State) -> Option<(f64, State)> {
         let drop = position - level;
         let speed = (velocity * velocity + 2.0 * self.gravity * drop).max(0.0).sqrt();
@@ -278,7 +278,7 @@ impl Flight {
         time.is_finite().then_some((time, State { position: level, velocity: -speed }))
     }
 
-    /// Any follower: between two turning points position changes one way, so a bracket holds one root.
+    /// Falls with any follower: between two turning points the position changes in one direction, so a bracket has one root.
     fn fall_by_search(&self, level: f64, start: State) -> Option<(f64, State)> {
         let at = |time: f64| self.fly(start, time).1;
         let rising = start.velocity > 0.0 || (start.velocity == 0.0 && self.force(start.position) > 0.0);
@@ -290,7 +290,7 @@ impl Flight {
         let valley = match (rising, self.damped_frequency()) {
             (false, _) => self.turning_point(start),
             (true, Some(omega)) => peak + PI / omega,
-            // Two real rates turn once.
+            // With two real rates there is one turning point.
             (true, None) => f64::INFINITY,
         };
         let drop = begin.position - level;
@@ -308,12 +308,12 @@ impl Flight {
         if !comes_down {
             return None;
         }
-        // As if it fell with the acceleration that it has where it begins to.
+        // As if it fell with the acceleration at the beginning of the fall.
         let fastest = (begin.velocity * begin.velocity - 2.0 * self.acceleration(begin) * drop).sqrt();
         let short = 2.0 * drop / (fastest - begin.velocity);
         let mut high = valley;
         if valley.is_infinite() {
-            // Ever longer falls from the highest point, each longer than what rounding makes of its time.
+            // Ever longer falls from the highest point, each longer than the rounding of its time.
             let decay = match self.regime {
                 Regime::Monotone { fast, .. } if fast > 0.0 => 1.0 / fast,
                 _ => 1.0,
@@ -323,7 +323,7 @@ impl Flight {
             while !(at(high).position < level) {
                 fall *= 2.0;
                 high = peak + fall;
-                // An equilibrium that is below the level by less than the rounding of a position.
+                // The equilibrium is below the level by less than the rounding of a position.
                 if !high.is_finite() {
                     return None;
                 }
@@ -343,7 +343,7 @@ impl Flight {
             let (acceleration, newton) = (self.acceleration(state), (level - state.position) / state.velocity);
             let bend = 0.5 * newton * acceleration / state.velocity;
             let step = newton / (1.0 + bend);
-            // What is left after the step is at most the part bend^2 + (w0^2 + 4 zeta^2) step^2 of it.
+            // The error after the step is at most the fraction bend^2 + (w0^2 + 4 zeta^2) step^2 of it.
             let rates = self.omega0_squared + 4.0 * self.zeta * self.zeta;
             if (bend * bend + rates * step * step) * step.abs() <= tolerance::ULP.value * time {
                 let velocity = state.velocity + step * (acceleration + 0.5 * step * self.jerk(state));

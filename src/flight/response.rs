@@ -1,23 +1,23 @@
-//! The follower's responses to a unit impulse and a unit step: over a time in doubles, over a range of times in intervals.
+//! Responses of the follower to a unit impulse and a unit step: over a time in doubles, over a range of times in intervals.
 
 use super::{Flight, Regime};
 use crate::elementary;
 use crate::interval::{Interval, Number};
 use crate::tolerance;
 
-/// What the follower does `t` after a unit impulse and a unit step, from rest.
+/// Responses of the follower at a time `t` after a unit impulse and after a unit step, from rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Response<N = f64> {
     /// `p(t)`, s^2: displacement under a unit acceleration switched on.
     pub step: N,
     /// `s(t)`, s: displacement after a unit velocity; also the velocity under a unit step.
     pub impulse: N,
-    /// `s'(t)`: velocity left of a unit velocity.
+    /// `s'(t)`: velocity remaining of a unit velocity.
     pub impulse_rate: N,
 }
 
 impl Flight {
-    /// The responses at `t`, s, zero or more.
+    /// Responses at `t`, s, zero or more.
     #[inline]
     pub fn response(&self, t: f64) -> Response {
         match self.regime {
@@ -104,10 +104,10 @@ impl Flight {
         Response { step: t * t * (step + tail), impulse: t * (impulse + tail), impulse_rate: impulse_rate + tail }
     }
 
-    /// What certainly holds the responses over a range of times, s.
+    /// Encloses the responses over a range of times, s.
     ///
-    /// Without damping by sine and cosine, whose ranges are known. With it near 0 by their series. From a time m on by `x` they are
-    /// those at m, put together with those at `x`; and those at m come from half of m in the same way, so that nothing cancels.
+    /// Without damping, sine and cosine are used, whose ranges are known. With damping, the series is used near 0. At a time `m + x` the
+    /// responses at m and those at `x` are combined; the responses at m are combined from those at half of m, so that nothing cancels.
     pub fn response_over(&self, t: Interval) -> Response<Interval> {
         if let Regime::Undamped { .. } = self.regime {
             let omega = Interval::from(self.omega0_squared).sqrt();
@@ -130,13 +130,13 @@ impl Flight {
         self.together(&self.response_over(middle.into()), &self.response_over(t - middle))
     }
 
-    /// `s''`, 1/s: what a unit velocity is slowed down by, where these are the responses.
+    /// `s''`, 1/s: the deceleration of a unit velocity, from the responses at that time.
     pub fn impulse_bend(&self, response: &Response<Interval>) -> Interval {
         // s'' = -2 zeta s' - w0^2 s
         -(response.impulse_rate * (2.0 * self.zeta) + response.impulse * self.omega0_squared)
     }
 
-    /// The responses at the sum of two times.
+    /// Responses at the sum of two times.
     fn together(&self, one: &Response<Interval>, two: &Response<Interval>) -> Response<Interval> {
         // Under a unit step: at p, with velocity s and the force 1 - w0^2 p left.
         let left = -(one.step * self.omega0_squared) + 1.0;

@@ -1,4 +1,4 @@
-//! A model with other numbers than its file has, each under the name that a user calls it by.
+//! A model with some numbers changed from its file, each under the name that the user gives it.
 
 use std::collections::BTreeMap;
 
@@ -6,8 +6,8 @@ use super::fields::{Field, Value};
 use super::{CamProfile, Model, ModelError, Numeral, Spline, TableProfile, Tolerance, nearest};
 
 impl Model {
-    /// The dotted path of the number of follower or cam that a user calls `name`: the path itself, or the end of one that no
-    /// other has. `beside` are names that are allowed as well, for a complaint to tell.
+    /// Dotted path of the number of follower or cam that a user calls `name`: the full path, or a path's end that no other
+    /// path has. `beside` are further names that are allowed; complaints list them too.
     pub fn path_of(&self, name: &str, beside: &[&str]) -> Result<&str, ModelError> {
         self.path_in(&["follower", "cam"], name, beside)
     }
@@ -18,7 +18,7 @@ impl Model {
         match paths.iter().copied().filter(|path| ends(path)).collect::<Vec<_>>().as_slice() {
             [path] => Ok(path),
             [] => {
-                // Nearest by the whole path, or by its end where the name has no dot.
+                // Compare whole paths if the name has a dot, else their ends.
                 let ends = paths.iter().map(|path| path.rsplit('.').next().unwrap_or(path));
                 let names: Vec<&str> = if name.contains('.') { paths.clone() } else { ends.collect() };
                 let meant = nearest(name, names.into_iter().chain(beside.iter().copied()));
@@ -30,13 +30,13 @@ impl Model {
         }
     }
 
-    /// The same model with another number in `field`, a dotted path, checked as the file is but for what needs the cam.
+    /// Copy of the model with another number in `field`, a dotted path. It is checked as the file is, except for what needs the cam.
     pub(crate) fn rewritten(&self, field: &str, number: f64) -> Result<Self, ModelError> {
         Self::from_fields(self.fields.with_number(field, number.into())?)
     }
 
-    /// The same model with other numbers, of `[study]` as well, each named as for [`Self::path_of`], checked together as the file is but for
-    /// what needs the cam; they become a part of its name.
+    /// Copy of the model with other numbers, including those of `[study]`, each named as for [`Self::path_of`]. All are checked together as
+    /// the file is, except for what needs the cam. The model's name lists the changes.
     pub(crate) fn renamed(&self, numbers: &[(String, Numeral)]) -> Result<Self, ModelError> {
         let (mut fields, mut new) = (self.fields.clone(), Vec::new());
         for (name, number) in numbers {
@@ -58,8 +58,9 @@ impl Model {
         Ok(Self { changes, ..model })
     }
 
-    /// The same model with a smoothing spline near other lifts at the angles of its table, m, of a weight by its logarithm, with
-    /// corners at these places, or near them, and these dwells, degrees, but for what needs the cam. Read once more with another number, it has a weight of its own.
+    /// Copy of the model with a smoothing spline near other lifts, m, at the angles of its table. The caller gives the weight, by its
+    /// logarithm, the corners (exactly or nearly at these places) and the dwells, degrees. Checks that need the cam are not made here.
+    /// Reading the model again with another number computes a new weight.
     pub(crate) fn relifted(
         &self,
         lifts: &[f64],
@@ -89,7 +90,7 @@ impl Model {
         Ok(model)
     }
 
-    /// The fields of follower, cam, study and units that hold a number or a text, as documents have them, by dotted path.
+    /// Numeric and text fields of follower, cam, study and units by dotted path, as JSON documents have them.
     pub(crate) fn values(&self) -> BTreeMap<&str, serde_json::Value> {
         let of = |(path, field): (&'_ String, &Field)| match &field.value {
             _ if !path.contains('.') => None,
@@ -100,7 +101,7 @@ impl Model {
         self.fields.fields.iter().filter_map(|entry| Some((entry.0.as_str(), of(entry)?))).collect()
     }
 
-    /// The numbers that are not those of the file, by dotted path.
+    /// The numbers that differ from the file, by dotted path.
     pub fn changes(&self) -> &[(String, f64)] {
         &self.changes
     }

@@ -1,4 +1,4 @@
-//! What is wrong with a model file, as a value that points into it.
+//! Errors in a model file, as values that point into it.
 
 use std::fmt;
 use std::ops::Range;
@@ -6,31 +6,31 @@ use std::sync::Arc;
 
 use crate::foreign;
 
-/// A complaint about a model file: where, what was found, what would be allowed.
+/// A complaint about a model file: where, what was found, what is allowed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub struct ModelError {
     /// The file as the user named it.
     pub file: Box<str>,
-    /// Line in the file, from 1; of the table where a field is missing.
+    /// Line in the file, from 1; for a missing field, the line of its table.
     pub line: Option<usize>,
     /// Dotted path of the field.
     pub field: Option<String>,
     /// The value as written.
     pub value: Option<String>,
-    /// What is wrong and what is allowed.
+    /// The allowed values, or the error.
     pub allowed: String,
-    /// Where exactly, and what may have been meant.
+    /// Exact place in the text, and a suggestion.
     pub pointer: Box<Pointer>,
 }
 
-/// What a complaint points at.
+/// Place and suggestion of a complaint.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Pointer {
-    /// The file's text, where there is some.
+    /// Text of the file, if there is one.
     pub text: Option<Arc<str>>,
-    /// What the complaint is about, in bytes of the text.
+    /// Range of the text that the complaint is about, in bytes.
     pub span: Option<Range<usize>>,
-    /// What may have been meant, as a question.
+    /// Suggested correction, as a question.
     pub meant: Option<String>,
 }
 
@@ -39,30 +39,30 @@ impl ModelError {
         Self { file: file.into(), line: None, field: None, value: None, allowed, pointer: Box::default() }
     }
 
-    /// What is allowed, of which field.
+    /// The field, if any, with what it allows.
     pub fn rule(&self) -> String {
         self.field.as_ref().map_or_else(|| self.allowed.clone(), |field| format!("{field} {}", self.allowed))
     }
 
-    /// The same complaint, pointing at `span` of `text`.
+    /// Adds `span` of `text` as the place.
     pub(super) fn at(mut self, text: Option<Arc<str>>, span: Option<Range<usize>>) -> Self {
         (self.pointer.text, self.pointer.span) = (text, span);
         self
     }
 
-    /// The same complaint with what may have been meant, a question.
+    /// Adds a suggested correction, a question.
     pub(super) fn meaning(mut self, meant: Option<String>) -> Self {
         self.pointer.meant = meant;
         self
     }
 
-    /// The same complaint with what was found instead.
+    /// Appends a description of what was found instead.
     pub(super) fn found(mut self, words: &str) -> Self {
         self.allowed.push_str(words);
         self
     }
 
-    /// The same complaint, pointing at its line of `text`: at `value` in it where it is there, else at all of it.
+    /// Adds the complaint's line of `text` as the place: `value` in that line if it is there, else the whole line.
     pub(super) fn in_line(self, text: &str, value: Option<&str>) -> Self {
         let Some(line) = self.line else { return self };
         let start = text.split_inclusive('\n').take(line - 1).map(str::len).sum::<usize>();

@@ -1,4 +1,4 @@
-//! A model that another program hands over as a document: the fields of a model file, without the file.
+//! A model that another program passes as a document: the fields of a model file, without the file.
 
 use serde_json::{Map, Value as Item};
 
@@ -6,7 +6,7 @@ use super::ModelError;
 use super::fields::{Field, Fields, Value};
 
 impl Fields {
-    /// The fields of a document that came without a file: they have no lines.
+    /// Fields of a document without a file; they have no line numbers.
     pub(super) fn of_document(name: &str, document: &Item) -> Result<Self, ModelError> {
         let mut fields = Self::none(name, None);
         match document {

@@ -1,6 +1,6 @@
-//! The numbers of a model as proofs take them: the rationals that are written, as text.
+//! The exact numbers of a model for proofs: the rationals as written, as text.
 //!
-//! Each number is a decimal, or a decimal times a quotient of whole numbers, `"1.25 * 1/1000"`, which takes it to the units inside.
+//! Each number is a decimal, or a decimal times a quotient of whole numbers, `"1.25 * 1/1000"`, which converts it to internal units.
 
 use serde_json::{Map, Value as Item, json};
 
@@ -9,9 +9,9 @@ use super::numeral::Numeral;
 use super::{Model, Unit};
 
 impl Model {
-    /// The follower and the cam as tables of a model file in SI units, or in the file's unit of length, with every number as text.
+    /// Tables of the follower and the cam, as in a model file in SI units or in the file's unit of length, with every number as text.
     ///
-    /// A preload is there in the place of the rest position where the file has it. A number that no field of the file has, such as a lift of
+    /// If the file gives a preload, it replaces the rest position. A number that no field of the file has, such as a lift of
     /// another table, is the shortest decimal that reads back as its double.
     pub fn exact(&self) -> Item {
         let it = &self.follower;
@@ -44,7 +44,7 @@ impl Model {
     }
 }
 
-/// A decimal in a unit, as it is inside.
+/// A decimal in a unit, as an expression in internal units.
 fn times(decimal: String, unit: Option<&Unit>) -> String {
     match unit.and_then(Unit::factor) {
         Some([above, below]) => format!("{decimal} * {above}/{below}"),
@@ -53,7 +53,7 @@ fn times(decimal: String, unit: Option<&Unit>) -> String {
 }
 
 impl Fields {
-    /// The text of a number that became `inside`; that of the double where no such field is there.
+    /// Text of the number that became `inside`; the digits of that double where no field has it.
     fn exact(&self, path: &str, unit: Option<&Unit>, inside: f64) -> String {
         let became = |number: f64| unit.map_or(number, |unit| unit.inside(number));
         match self.fields.get(path) {
@@ -67,7 +67,7 @@ impl Fields {
         }
     }
 
-    /// Puts the text of each number in its place.
+    /// Replaces each number by its text.
     fn make_exact(&self, path: &str, item: &mut Item) {
         match item {
             Item::Object(table) => {

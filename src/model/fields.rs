@@ -26,7 +26,7 @@ impl Allowed {
         Self { low, low_is_allowed: true, high }
     }
 
-    /// Above `low`, and up to `high`.
+    /// The range above `low`, up to and including `high`.
     pub(super) const fn above(low: f64, high: f64) -> Self {
         Self { low, low_is_allowed: false, high }
     }
@@ -50,15 +50,15 @@ impl fmt::Display for Allowed {
     }
 }
 
-/// Two numbers, and their line.
+/// Two numbers and their line.
 pub(super) type Pair = ([f64; 2], Option<usize>);
 
 #[derive(Clone, Debug)]
 pub(super) enum Value {
     Table,
-    /// Its elements are fields of their own: `path[0]`, `path[1]`, ...
+    /// Length of an array whose elements are fields of their own: `path[0]`, `path[1]`, ...
     Array(usize),
-    /// An array of pairs of numbers: there may be a million.
+    /// An array of pairs of numbers; it may have a million rows.
     Rows(Vec<Pair>),
     Text(String),
     Number(f64),
@@ -67,13 +67,13 @@ pub(super) enum Value {
 
 #[derive(Clone, Debug)]
 pub(super) struct Field {
-    /// None of what the file does not say: a default, what was put there in its place, or what came without a file.
+    /// Line in the file; `None` for a default, a replaced value, or a field that came without a file.
     pub(super) line: Option<usize>,
-    /// Not of a default.
+    /// Whether the field was given; false for a default.
     pub(super) is_there: bool,
-    /// Of its name in the text; of an element of an array, of its value.
+    /// Range of the name in the text; for an element of an array, of its value.
     pub(super) key: Range<usize>,
-    /// Of its value in the text.
+    /// Range of the value in the text.
     pub(super) span: Range<usize>,
     pub(super) written: String,
     pub(super) value: Value,
@@ -94,37 +94,37 @@ impl Field {
     }
 }
 
-/// Every name of a field or a table: none of them is a slip for another.
+/// Every field and table name of the format; none of them counts as a misspelling of another.
 const NAMES: &str = "name source follower cam study mass damping stiffness gravity rest_position restitution law base_radius \
     flank_radius nose_radius flank_start_deg nose_end_deg offset amplitude amplitudes phases_deg base \
     corner_rounding_deg preload units length force angle segment motion span_deg rise start_deg coefficients file rows spline \
     tolerance corners_deg dwells_deg unit angle_unit rpm_min rpm_max lift";
 
-/// The fields of a model file by dotted path, and which of them have been asked for.
+/// The fields of a model file by dotted path, and the set of those that the format has.
 #[derive(Clone, Debug)]
 pub(super) struct Fields {
     file: String,
-    /// As long as the fields are what it says.
+    /// Text of the file; `None` once a field is changed.
     text: Option<Arc<str>>,
     pub(super) fields: BTreeMap<String, Field>,
     known: BTreeSet<String>,
 }
 
 impl Fields {
-    /// What parts the names of a path.
+    /// Separators of the names in a path.
     pub(super) const PARTS: [char; 2] = ['.', '['];
 
-    /// No fields yet, of a file with a text, or of what is not a file.
+    /// Empty fields, of a file with a text or of a source that is not a file.
     pub(super) fn none(file: &str, text: Option<&str>) -> Self {
         Self { file: file.into(), text: text.map(Arc::from), fields: BTreeMap::new(), known: BTreeSet::new() }
     }
 
-    /// Puts a field there, in the place of one that may be there.
+    /// Inserts a field, or replaces it.
     pub(super) fn put(&mut self, path: &str, value: Value) {
         self.fields.insert(path.into(), Field::without_line(String::new(), value));
     }
 
-    /// The text of the file, as long as the fields are what it says.
+    /// Text of the file; empty once a field is changed.
     pub(super) fn source(&self) -> &str {
         self.text.as_deref().unwrap_or_default()
     }
@@ -142,7 +142,7 @@ impl Fields {
         })
     }
 
-    /// The same fields with another number in one of them.
+    /// Copy of the fields with another number at `path`; fails if there is no number there.
     pub(super) fn with_number(&self, path: &str, number: Numeral) -> Result<Self, ModelError> {
         let mut fields = self.clone();
         match fields.fields.get_mut(path) {
@@ -157,7 +157,7 @@ impl Fields {
         }
     }
 
-    /// The same fields as of no file.
+    /// Copy of the fields without the text of a file.
     pub(super) fn without_text(&self) -> Self {
         Self { text: None, known: BTreeSet::new(), ..self.clone() }
     }
@@ -174,7 +174,7 @@ impl Fields {
         }
     }
 
-    /// A finite number within `allowed`. Where the field is missing it is `default`, and may be changed all the same.
+    /// A finite number within `allowed`. A missing field gets `default` and can still be changed.
     pub(super) fn number_or(&mut self, path: &str, allowed: Allowed, default: f64) -> Result<f64, ModelError> {
         if !self.has(path) {
             let table = path.rsplit_once('.').and_then(|(table, _)| self.fields.get(table));
@@ -185,7 +185,7 @@ impl Fields {
         self.number(path, allowed)
     }
 
-    /// How many elements an array has, at least one and at most `most`.
+    /// Length of an array, at least one and at most `most`.
     pub(super) fn length(&mut self, path: &str, what: &str, most: usize) -> Result<usize, ModelError> {
         match self.take(path)?.value {
             Value::Array(length) if (1..=most).contains(&length) => Ok(length),
@@ -212,12 +212,12 @@ impl Fields {
         }
     }
 
-    /// Whether a list has nothing in it.
+    /// Whether a list is empty.
     pub(super) fn is_empty_list(&self, path: &str) -> bool {
         matches!(self.fields.get(path), Some(Field { value: Value::Array(0), .. }))
     }
 
-    /// How many tables `[[path]]` there are, at least one.
+    /// Number of tables `[[path]]`, at least one and at most `most`.
     pub(super) fn tables(&mut self, path: &str, most: usize) -> Result<usize, ModelError> {
         let length = self.length(path, "tables", most)?;
         let is_table = |field: Option<&Field>| matches!(field, Some(Field { value: Value::Table, .. }));
@@ -230,7 +230,7 @@ impl Fields {
     }
 
     pub(super) fn text(&mut self, path: &str) -> Result<String, ModelError> {
-        /// Longer ones are on every page and figure that they name, characters.
+        /// Most characters: every page and figure shows the text.
         const LONGEST: usize = 1000;
         match self.take(path)?.value {
             Value::Text(text) if text.chars().count() <= LONGEST => Ok(text),
@@ -247,7 +247,7 @@ impl Fields {
     fn take(&mut self, path: &str) -> Result<Field, ModelError> {
         self.known.insert(path.into());
         self.fields.get(path).cloned().ok_or_else(|| {
-            // A mistyped field is missing under its own name: show what stands there.
+            // A mistyped field is missing under its own name, so list the fields of its table.
             let table = path.rsplit_once('.').map_or("", |(table, _)| table);
             let inside = |(name, field): &(&String, &Field)| {
                 let is_there = field.is_there && !name.ends_with(']');
@@ -262,7 +262,7 @@ impl Fields {
         })
     }
 
-    /// The complaint about a missing field where something stands that may be meant for it, or for its table.
+    /// Complaint about a missing field, if a similar name in its place may be meant for the field or for its table.
     fn mistyped(&self, path: &str) -> Option<ModelError> {
         let (table, name) = path.rsplit_once('.').unwrap_or(("", path));
         let in_table = |at: &str, name: &str| if at.is_empty() { name.to_owned() } else { format!("{at}.{name}") };
@@ -272,7 +272,7 @@ impl Fields {
             let (at, meant) = table.rsplit_once('.').unwrap_or(("", table));
             (at, meant, format!("[{meant}]"))
         };
-        // What is a name of the format stands for itself.
+        // A name of the format is not a misspelling of another.
         let is_name = |word: &str| NAMES.split_whitespace().any(|name| name == word);
         let inside = |path: &str| path.strip_prefix(at).map(|rest| rest.trim_start_matches('.').to_owned());
         let stray: Vec<String> = self.fields.keys().filter_map(|path| inside(path)).collect();
@@ -291,7 +291,7 @@ impl Fields {
         })
     }
 
-    /// Says that `path` is a field of the format, whether it is there or not.
+    /// Registers `path` as a field of the format, whether or not it is present.
     pub(super) fn may_hold(&mut self, path: &str) {
         self.known.insert(path.into());
     }
@@ -309,7 +309,7 @@ impl Fields {
         }
     }
 
-    /// The entry of `choices` that a text field names.
+    /// Returns the entry of `choices` that a text field names.
     pub(super) fn choice<T: Copy>(&mut self, path: &str, choices: &[(&str, T)]) -> Result<T, ModelError> {
         let text = self.text(path)?;
         if let Some((_, entry)) = choices.iter().find(|(name, _)| *name == text) {
@@ -321,7 +321,7 @@ impl Fields {
         Err(self.reject(path, format!("must be one of: {}", known.join(", "))).meaning(meant))
     }
 
-    /// Complains about the first field in the file that nobody asked for.
+    /// Complains about the first field in the file that the format does not have.
     pub(super) fn finish(&self) -> Result<(), ModelError> {
         let table_of = |path: &str| path.rsplit_once('.').map_or("", |(table, _)| table).to_owned();
         let tables: BTreeSet<String> = self.known.iter().map(|path| table_of(path)).collect();
@@ -336,7 +336,7 @@ impl Fields {
             return Err(self.reject(path, format!("must be a table, [{path}]")));
         }
         let table = table_of(path);
-        // An array is listed by its own name, not once more for each element.
+        // An array is listed once, not once more for each element.
         let listed = |known: &&String| !known.ends_with(']') && table_of(known) == table;
         let siblings = self.known.iter().filter(listed);
         let tables = tables.iter().filter(|known| !known.is_empty() && listed(known));
@@ -344,7 +344,7 @@ impl Fields {
             siblings.chain(tables).map(|known| known.rsplit('.').next().unwrap_or(known)).collect();
         let place = if table.is_empty() { "at the top of the file".to_owned() } else { format!("in [{table}]") };
         let is_table = matches!(field.value, Value::Table);
-        // A table has no value between its name and these words.
+        // For a table, no value is shown between its name and these words.
         let is = if is_table { "is an " } else { "" };
         let words = format!("{is}unknown field; allowed {place}: {}", allowed.join(", "));
         let name = path.rsplit('.').next().unwrap_or(path);

@@ -1,7 +1,7 @@
-//! What the user wrote, checked: follower, cam profile, and where to look.
+//! A checked model file: follower, cam profile, and the speed range to search.
 //!
-//! A [`Model`] holds numbers that have passed the checks a single field allows. What needs geometry
-//! (circles that cannot touch) is found in [`crate::cam`], which reports it through
+//! A [`Model`] has numbers that passed the checks of a single field. Errors that need geometry
+//! (circles that cannot touch) are found in [`crate::cam`]. It reports them through
 //! [`Model::reject`], so that every complaint about a file names file, line, field and value.
 
 mod changed;
@@ -45,17 +45,17 @@ pub const OSORIO_2008: &str = include_str!("../../models/osorio-2008.toml");
 pub struct Model {
     /// Label for headings; never used to decide anything.
     pub name: String,
-    /// Where each number comes from, in the author's words.
+    /// Source of the numbers, in the author's words.
     pub source: String,
     /// The moving body and its spring.
     pub follower: Follower,
-    /// The profile of the cam, as written.
+    /// The cam profile as written.
     pub cam: CamProfile,
-    /// Where to look for a corner impact.
+    /// Range of speeds in which to look for a corner impact.
     pub study: Option<Study>,
-    /// What its numbers are in, and answers about it.
+    /// Units of the model file's numbers and of the answers.
     pub units: Units,
-    /// The spring's force on the base circle, as it is inside, where that is given and not `rest_position`.
+    /// Spring force on the base circle, in internal units, where the file gives it instead of `rest_position`.
     pub preload: Option<f64>,
     fields: Fields,
     changes: Vec<(String, f64)>,
@@ -72,7 +72,7 @@ pub struct Follower {
     pub stiffness: f64,
     /// g, m/s^2.
     pub gravity: f64,
-    /// Where the spring is slack, m, in the cam's coordinates.
+    /// Position at which the spring is slack, m, in the cam's coordinates.
     pub rest_position: f64,
     /// r, 0 (plastic) to 1 (elastic).
     pub restitution: f64,
@@ -88,15 +88,15 @@ pub struct Study {
 }
 
 impl Model {
-    /// What complaints call the built-in model where others have a file.
+    /// Name of the built-in model in complaints, in place of a file name.
     pub(crate) const BUILT_IN: &str = "the built-in model";
 
-    /// The text of a model file, checked but for what needs the cam; `file` is the name that complaints carry.
+    /// Parses and checks the text of a model file, except for what needs the cam; complaints name the file as `file`.
     pub(crate) fn written(file: &str, text: &str) -> Result<Self, ModelError> {
         Self::from_fields(Fields::parse(file, text)?)
     }
 
-    /// The same of a document with the fields of a model file; `name` is the name that complaints carry.
+    /// Checks a document with the fields of a model file, except for what needs the cam; complaints call it `name`.
     pub(crate) fn written_as(name: &str, document: &serde_json::Value) -> Result<Self, ModelError> {
         Self::from_fields(Fields::of_document(name, document)?)
     }
@@ -128,7 +128,7 @@ impl Model {
             None
         };
         let rest_position = match preload {
-            // The cam has the lowest lift, which says where the spring is slack.
+            // The slack position follows from the cam's lowest lift, which is unknown here.
             Some(_) => f64::NAN,
             None => {
                 let meant = "; or give follower.preload, the force of the spring where the lift is lowest";
@@ -155,7 +155,7 @@ impl Model {
         Ok(Self { name, source, follower, cam, study, units, preload, fields, changes: Vec::new() })
     }
 
-    /// The fields that hold a number and shape the motion, by dotted path, with their values: what a study may vary.
+    /// Numeric fields that shape the motion, by dotted path, with their values. These are the numbers that a study may vary.
     pub fn numbers(&self) -> impl Iterator<Item = (&str, f64)> {
         self.fields.numbers_in(&["follower", "cam"])
     }
@@ -167,7 +167,7 @@ impl Model {
         })
     }
 
-    /// The table of lifts that its cam is given by, if it is.
+    /// The table of lifts that gives the cam its profile, if there is one.
     pub(crate) fn table(&self) -> Option<&TableProfile> {
         let mut sharp = &self.cam;
         while let CamProfile::Rounded { sharp: inside, .. } = sharp {
@@ -176,17 +176,17 @@ impl Model {
         if let CamProfile::Table(table) = sharp { Some(table) } else { None }
     }
 
-    /// Whether its cam is a smoothing spline near the rows of a table.
+    /// Whether the cam is a smoothing spline near the rows of a table.
     pub(crate) fn is_smoothed(&self) -> bool {
         self.table().is_some_and(|table| table.spline.smoothing().is_some())
     }
 
-    /// A complaint about `field` found by a later stage; `allowed` says what would be accepted.
+    /// Complaint about `field` from a later stage; `allowed` says what would be accepted.
     pub fn reject(&self, field: &str, allowed: impl Into<String>) -> ModelError {
         self.fields.reject(field, allowed)
     }
 
-    /// The file that commands are to be given for this model; none for the built-in one.
+    /// Path of the model file, to pass to commands for this model; `None` for the built-in model.
     pub fn path(&self) -> Option<&Path> {
         (self.file() != Self::BUILT_IN).then(|| Path::new(self.file()))
     }

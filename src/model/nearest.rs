@@ -1,13 +1,13 @@
-//! "Did you mean": the name that is allowed and nearest to one that is not.
+//! "Did you mean": the allowed name nearest to an unknown one.
 
-/// The one of `names` nearest to `word`, if it is near: a slip or two, more in a long word; upper case, hyphens and
-/// underscores are no difference.
+/// The one of `names` nearest to `word`, if it is near: one or two typing errors, more in a long word. Case, hyphens and
+/// underscores make no difference.
 pub fn nearest<'a>(word: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let plain = |word: &str| word.to_lowercase().replace('-', "_");
     let word = plain(word);
     let distances = names.into_iter().map(|name| {
         let plain = plain(name);
-        // That both are in one table says nothing about their names.
+        // A table that both names share does not count for their similarity.
         let (one, other) = match (word.rsplit_once('.'), plain.rsplit_once('.')) {
             (Some((table, one)), Some((its, other))) if table == its => (one, other),
             _ => (&word[..], &plain[..]),

@@ -1,16 +1,16 @@
-//! A number with the text that it is written in: proofs take the decimal, everything else the double nearest to it.
+//! A number with the text that it was written in: proofs use the decimal, everything else the nearest double.
 
-/// A number as somebody wrote it.
+/// A number as the user wrote it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Numeral {
-    /// The double nearest to it.
+    /// The nearest double.
     pub number: f64,
-    /// The text that it is written in.
+    /// The text as written.
     pub text: String,
 }
 
 impl Numeral {
-    /// The decimal that the text is, without the signs and marks that TOML allows besides; that of the double where the text is another one.
+    /// Decimal form of the text, without the plus sign and underscores that TOML also allows. If the text is not that number, the double's.
     pub(super) fn decimal(&self) -> String {
         let text = self.text.trim().replace('_', "");
         let text = text.trim_start_matches('+');
@@ -22,7 +22,7 @@ impl Numeral {
 }
 
 impl From<f64> for Numeral {
-    /// In digits, but for what nobody would count.
+    /// Writes the number in plain digits, or with an exponent if it has more than 24 of them.
     fn from(number: f64) -> Self {
         let digits = number.to_string();
         Self { number, text: if digits.len() > 24 { format!("{number:e}") } else { digits } }

@@ -1,4 +1,4 @@
-//! The `[cam]` table: one entry for every lift law, and the fields of each.
+//! The `[cam]` table: one entry for each lift law, and the fields of each.
 
 use serde::{Serialize, Serializer};
 
@@ -16,23 +16,23 @@ pub enum CamProfile {
     Harmonic(HarmonicProfile),
     /// The absolute value of a sine.
     RectifiedSine(RectifiedSineProfile),
-    /// Rises, dwells and returns, one after the other.
+    /// Rises, dwells and returns, in sequence.
     Program(ProgramProfile),
-    /// Polynomials in the angle, in order of where they start.
+    /// Polynomials in the angle, ordered by their start.
     Polynomial(Vec<PolynomialSegment>),
     /// A spline through measured lifts.
     Table(TableProfile),
-    /// One of these with the corners of its acceleration rounded.
+    /// Another profile, with the corners of its acceleration rounded.
     Rounded {
-        /// The angle that each is rounded over, degrees, above 0.
+        /// Angle over which each corner is rounded, degrees, above 0.
         corner_rounding_deg: f64,
-        /// The profile without it.
+        /// The profile without the rounding.
         sharp: Box<Self>,
     },
 }
 
 impl CamProfile {
-    /// The name that `law` gives it.
+    /// Name of this lift law in the field `law`.
     pub fn law(&self) -> &'static str {
         match self {
             Self::Arcs(_) => "arcs",
@@ -46,7 +46,7 @@ impl CamProfile {
     }
 }
 
-/// As the table of a model file has it, a table of lifts with its rows in the place of the file.
+/// Serializes the profile as the table of a model file; a table of lifts has its rows in place of the file.
 impl Serialize for CamProfile {
     fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
         match self {
@@ -80,7 +80,7 @@ impl CamProfile {
                 Named { law, corner_rounding_deg, profile: Segments { segment } }.serialize(to)
             }
             Self::Table(profile) => Named { law, corner_rounding_deg, profile }.serialize(to),
-            // A profile is rounded once.
+            // A profile is rounded at most once.
             Self::Rounded { .. } => Named { law, corner_rounding_deg, profile: () }.serialize(to),
         }
     }
@@ -108,7 +108,7 @@ pub struct HarmonicProfile {
     pub offset: f64,
     /// a_k, m; at least one.
     pub amplitudes: Vec<f64>,
-    /// p_k, degrees; as many.
+    /// p_k, degrees; as many as the amplitudes.
     pub phases_deg: Vec<f64>,
 }
 
@@ -126,7 +126,7 @@ pub struct RectifiedSineProfile {
 pub struct ProgramProfile {
     /// Lift at theta = 0, m.
     pub base: f64,
-    /// In order; at least one.
+    /// The motions in order; at least one.
     #[serde(rename = "segment")]
     pub segments: Vec<MotionSegment>,
 }
@@ -134,11 +134,11 @@ pub struct ProgramProfile {
 /// One motion of a program.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct MotionSegment {
-    /// How the lift gets from one end to the other.
+    /// Shape of the lift curve between the two ends.
     pub motion: Motion,
-    /// Angle that it takes, degrees, positive.
+    /// Cam angle of the motion, degrees, positive.
     pub span_deg: f64,
-    /// What it adds to the lift, m; negative is a return, 0 a dwell.
+    /// Change of the lift, m; negative is a return, 0 a dwell.
     pub rise: f64,
 }
 
@@ -165,7 +165,7 @@ pub enum Motion {
 }
 
 impl Motion {
-    /// Every motion, by the name that `motion` gives it.
+    /// Every motion, with its name in the field `motion`.
     pub const NAMES: [(&'static str, Self); 8] = [
         ("dwell", Self::Dwell),
         ("parabolic", Self::Parabolic),
@@ -178,26 +178,26 @@ impl Motion {
     ];
 }
 
-/// `c = sum a_k (theta - start)^k` from its start to the next one's.
+/// `c = sum a_k (theta - start)^k` from its start to the start of the next segment.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PolynomialSegment {
-    /// Where it starts, degrees, from 0 to below 360.
+    /// Start, degrees, from 0 to below 360.
     pub start_deg: f64,
     /// a_k, m/rad^k, k from 0.
     pub coefficients: Vec<f64>,
 }
 
-/// Most segments of a program or of polynomials: more than anyone writes by hand; a table takes more.
+/// Most segments of a program or of polynomials: more than anyone writes by hand. A table may have more rows.
 const MOST_SEGMENTS: usize = 10_000;
 /// Most cosines: the hundredth harmonic is already shorter than any cutter that could make it.
 const MOST_HARMONICS: usize = 1000;
 
-/// Most coefficients of a polynomial: powers of a radian beyond the 31st say nothing that fewer would not.
+/// Most coefficients of a polynomial: powers of a radian beyond the 31st add nothing.
 pub const MOST_COEFFICIENTS: usize = 32;
 
 type ReadProfile = fn(&mut Fields) -> Result<CamProfile, ModelError>;
 
-/// Every lift law, by the name that `law` gives it.
+/// Every lift law, with its name in the field `law`.
 static CAM_LAWS: [(&str, ReadProfile); 6] = [
     ("arcs", arcs),
     ("harmonic", harmonic),
@@ -207,7 +207,7 @@ static CAM_LAWS: [(&str, ReadProfile); 6] = [
     ("table", |fields| table::read(fields).map(CamProfile::Table)),
 ];
 
-/// The field of the angle that corners are rounded over.
+/// Field of the angle over which corners are rounded.
 pub const CORNER_ROUNDING: &str = "cam.corner_rounding_deg";
 
 pub(super) fn read(fields: &mut Fields) -> Result<CamProfile, ModelError> {

@@ -1,4 +1,4 @@
-//! The text of a table of lifts: what parts its columns, what its header says, and its numbers row by row.
+//! The text of a table of lifts: its column separator, its header, and its numbers row by row.
 
 use std::borrow::Cow;
 
@@ -13,21 +13,21 @@ pub struct Row {
     pub angle_deg: f64,
     /// Lift, m.
     pub lift: f64,
-    /// Line in the file, from 1; of rows that came without a file, which one it is.
+    /// Line in the file, from 1; for rows that came without a file, the row's number.
     pub line: usize,
 }
 
-/// A table being read, for complaints.
+/// A table while it is read; complaints use it.
 pub(super) struct Table<'a> {
     pub(super) file: String,
     pub(super) text: &'a str,
-    /// Whether rows are told by their lines in the text, and not by their numbers.
+    /// Whether complaints name rows by their lines in the text; otherwise by their numbers.
     pub(super) has_lines: bool,
     /// Whether complaints name angles in radians, as the table does; rows have them in degrees.
     pub(super) in_radians: bool,
 }
 
-/// What parts the columns.
+/// Separator of the columns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Separator {
@@ -41,30 +41,30 @@ pub enum Separator {
     Blanks,
 }
 
-/// How a text is laid out.
+/// Layout of a text.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Layout {
-    /// What parts the columns.
+    /// Separator of the columns.
     pub separator: Separator,
-    /// Whether decimals stand behind a comma.
+    /// Whether numbers have a decimal comma.
     pub decimal_comma: bool,
-    /// Lines with a comment.
+    /// Number of lines with a comment.
     pub comments: usize,
     /// The line that names the columns.
     pub header: Option<String>,
-    /// The unit of angles that it names.
+    /// Whether the header gives angles in radians; `None` where it names no unit.
     #[serde(skip)]
     pub radians: Option<bool>,
-    /// The unit of lifts that it names, by its place in the table of lengths.
+    /// Unit of lifts that the header names, by its index in the table of lengths.
     #[serde(skip)]
     pub length: Option<usize>,
 }
 
-/// More are finer than any cam is made or measured.
+/// Most rows: more would be finer than any cam is made or measured.
 pub(super) const MOST_ROWS: usize = 1_000_000;
-/// What the first line may be, for complaints.
+/// Example of a header line, for complaints.
 const HEADER: &str = "angle_deg,lift";
-/// Words for the first column.
+/// Names of the first column.
 const ANGLES: [&str; 12] =
     ["angle", "angles", "theta", "θ", "phi", "φ", "alpha", "rotation", "winkel", "drehwinkel", "cam", "crank"];
 /// "Grad" is German; a turn of 400 of them is refused by its rows.
@@ -72,10 +72,10 @@ const DEGREES: [&str; 5] = ["deg", "degree", "degrees", "°", "grad"];
 const RADIANS: [&str; 3] = ["rad", "radian", "radians"];
 
 impl Separator {
-    /// Of a line of two numbers.
+    /// Separator of a line of two numbers.
     fn of(line: &str) -> Self {
         let numbers: Vec<&str> = line.split_whitespace().collect();
-        // A decimal comma stands between two digits: of `0 ,15` it parts the columns.
+        // A decimal comma is between two digits; in `0 ,15` the comma separates the columns.
         let is_number = |text: &&str| {
             text.replacen(',', ".", 1).parse::<f64>().is_ok() && !text.starts_with(',') && !text.ends_with(',')
         };
@@ -90,7 +90,7 @@ impl Separator {
         }
     }
 
-    /// The two columns of a line, the second with all that follows.
+    /// Splits a line into two columns, the second with all that follows.
     fn columns(self, line: &str) -> Option<[&str; 2]> {
         let at = match self {
             Self::Comma => line.split_once(','),
@@ -108,13 +108,13 @@ impl Separator {
     }
 }
 
-/// The words of a header's cell, in small letters.
+/// Words of a header's cell, in lower case.
 fn words(cell: &str) -> Vec<String> {
     let parts = cell.split(|letter: char| !letter.is_alphanumeric() && letter != '°');
     parts.filter(|word| !word.is_empty()).map(str::to_lowercase).collect()
 }
 
-/// What a line that names the columns says: whether angles are in radians, and the unit of lifts by its place in the table.
+/// Units in a header line: whether angles are in radians, and the unit of lifts by its index in the table of lengths.
 fn header([angle, lift]: [&str; 2]) -> Option<(Option<bool>, Option<usize>)> {
     let (angle, lift) = (words(angle), words(lift));
     let has = |cell: &[String], names: &[&str]| cell.iter().any(|word| names.contains(&word.as_str()));
@@ -127,20 +127,20 @@ fn header([angle, lift]: [&str; 2]) -> Option<(Option<bool>, Option<usize>)> {
     Some(((degrees || radians).then_some(radians), length))
 }
 
-/// What a header's cell has between brackets, in small letters.
+/// Text between brackets in a header's cell, in lower case.
 fn bracketed(cell: &str) -> Option<String> {
     let (_, inside) = cell.split_once(['[', '('])?;
     Some(inside.split([']', ')']).next().unwrap_or_default().trim().to_lowercase())
 }
 
-/// A line without its comment, and whether it had one.
+/// The line without its comment, and whether it had one.
 fn without_comment(line: &str) -> (&str, bool) {
     let at = ["#", "%", "//"].iter().filter_map(|mark| line.find(mark)).min();
     at.map_or((line.trim(), false), |at| (line[..at].trim(), true))
 }
 
 impl Table<'_> {
-    /// Refuses a unit in brackets that is none: it would be taken for another one.
+    /// Refuses an unknown unit in brackets, which would otherwise be taken for another one.
     fn known_unit(&self, line: usize, cell: &str, column: &str) -> Result<(), ModelError> {
         let lengths: Vec<&str> = LENGTHS.iter().map(Unit::name).collect();
         let (units, field) = if column == "angle" { (vec!["deg", "rad"], "angle_unit") } else { (lengths, "unit") };
@@ -173,14 +173,14 @@ impl Table<'_> {
         ModelError { line, ..ModelError::file(&self.file, allowed) }.in_line(self.text, None)
     }
 
-    /// Angle and lift of the row in a line, as they are written but for the decimal point.
+    /// Angle and lift of the row in a line, as written except for the decimal point.
     pub(super) fn cells(&self, layout: &Layout, line: usize) -> Option<[String; 2]> {
         let (text, _) = without_comment(self.text.lines().nth(line.checked_sub(1)?)?);
         let cells = layout.separator.columns(text)?;
         Some(cells.map(|cell| if layout.decimal_comma { cell.replace(',', ".") } else { cell.to_owned() }))
     }
 
-    /// The rows of the text, and how it is laid out.
+    /// Reads the rows of the text and its layout.
     pub(super) fn rows(&self) -> Result<(Vec<Row>, Layout), ModelError> {
         let lines = || self.text.lines().enumerate().map(|(index, line)| (index + 1, line.trim()));
         let filled =
@@ -192,7 +192,7 @@ impl Table<'_> {
         let is_numeric =
             |text: &str| text.starts_with(|letter: char| letter.is_ascii_digit() || "+-.".contains(letter));
         let numbers = filled().map(|(_, text)| text).find(|text| is_numeric(text));
-        // A row of one number is told by what its header has.
+        // If the row is one number without a separator, the header decides.
         let is_one = |text: &&str| !text.contains([',', ';']) && !text.contains(char::is_whitespace);
         let separator = Separator::of(numbers.filter(|text| !is_one(text)).unwrap_or(first));
         let has_header = !is_numeric(first);

@@ -1,4 +1,4 @@
-//! Measured lifts: rows of angle and lift, in a file of their own or in the model's, read whole and checked row by row.
+//! Measured lifts: rows of angle and lift, in a file of their own or in the model file, read whole and checked row by row.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -13,19 +13,19 @@ use super::units::{LENGTHS, Unit, Units};
 use crate::file;
 use crate::tolerance;
 
-/// Rows of a table that proofs take.
+/// Most rows of a table in proofs.
 pub(crate) const MOST_PROVED_ROWS: usize = 1000;
 
-/// A spline through the rows of a file, or near them.
+/// A spline through the rows of a table, or near them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TableProfile {
-    /// The file as the model names it, from where the model file is; none where the model has the rows itself.
+    /// Path of the file as in the model, relative to the model file; `None` where the model has the rows itself.
     pub file: Option<String>,
-    /// How the lift goes from row to row.
+    /// Kind of the spline.
     pub spline: Spline,
-    /// In order of angle, one for each angle of `[0, 360)`; shared, because a table may be long.
+    /// Rows in order of angle, one for each angle in `[0, 360)`; shared, because a table may be long.
     pub rows: Arc<[Row]>,
-    /// How the rows were understood.
+    /// How the rows were interpreted.
     pub reading: Arc<Reading>,
 }
 
@@ -39,18 +39,18 @@ document!(TableProfile as it {
 });
 
 impl TableProfile {
-    /// Whether it has rows enough for what is measured to be told from the motion.
+    /// Whether there are enough rows to separate the motion from errors of measurement.
     pub(crate) fn may_be_smoothed(&self) -> bool {
         self.rows.len() >= FEWEST_SMOOTHED
     }
 
-    /// From its lowest lift to its highest.
+    /// Difference between the highest and the lowest lift.
     pub(crate) fn rise(&self) -> f64 {
         let lifts = self.rows.iter().map(|row| row.lift);
         lifts.clone().fold(f64::NEG_INFINITY, f64::max) - lifts.fold(f64::INFINITY, f64::min)
     }
 
-    /// The field that says where its rows are.
+    /// Field that gives the rows.
     pub fn place(&self) -> &'static str {
         if self.file.is_some() { "cam.file" } else { "cam.rows" }
     }
@@ -68,7 +68,7 @@ pub enum Spline {
 }
 
 impl Spline {
-    /// What a model file calls it.
+    /// Name in a model file.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Cubic => "cubic",
@@ -77,50 +77,50 @@ impl Spline {
         }
     }
 
-    /// What a smoothing spline is to keep to.
+    /// Constraints of a smoothing spline; `None` for the other splines.
     pub fn smoothing(&self) -> Option<&Smoothing> {
         if let Self::Smoothing(smoothing) = self { Some(smoothing) } else { None }
     }
 }
 
-/// What a smoothing spline keeps to.
+/// Constraints of a smoothing spline.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Smoothing {
-    /// How far it may be from a row.
+    /// Largest distance from a row.
     pub tolerance: Tolerance,
-    /// Where its second derivative may jump, degrees, by rising angle; none where they are to be found.
+    /// Angles at which the second derivative may jump, degrees, ascending; `None` where they are to be found.
     pub corners_deg: Option<Vec<f64>>,
-    /// Where the lift stays, from and to, degrees, by rising angle of where they begin; none where they are to be found.
+    /// Dwells, from and to, degrees, ascending by their start; `None` where they are to be found.
     pub dwells_deg: Option<Vec<[f64; 2]>>,
-    /// Whether corners are near where they are given, and not there.
+    /// Whether corners are only near the given angles, not exactly there.
     pub are_near: bool,
 }
 
-/// How far a smoothing spline may be from a row.
+/// Largest distance of a smoothing spline from a row.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Tolerance {
-    /// As far as the rows themselves say.
+    /// Estimated from the rows themselves.
     #[default]
     Auto,
-    /// So far, in the model's unit of length.
+    /// This distance, in the model's unit of length.
     #[serde(untagged)]
     Within(f64),
-    /// As far as this weight of the rows lets it, by its logarithm: that of another table.
+    /// The distance that results from this weight of the rows, given by its logarithm; the weight is that of another table.
     #[serde(untagged)]
     Weighted(f64),
 }
 
-/// How the rows of a table were understood.
+/// How the rows of a table were interpreted.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Reading {
     /// The unit of lifts in the table.
     pub unit: String,
-    /// It, as a part of the model's unit of length.
+    /// Unit of lifts as a multiple of the model's unit of length.
     #[serde(skip)]
     pub in_model: Unit,
-    /// Angle and lift of every row as they are written, degrees and the unit of lifts; none of angles in radians, of lifts that are
-    /// those of another table, and of more rows than proofs take.
+    /// Angle and lift of every row as written, in degrees and the unit of lifts. Empty where angles are in radians, where the lifts are
+    /// those of another table, and where there are more rows than proofs take.
     #[serde(skip)]
     pub(crate) written: Vec<[String; 2]>,
     /// The unit of angles in the table.
@@ -128,25 +128,25 @@ pub struct Reading {
     /// The layout of its text; none where the model has the rows itself.
     #[serde(flatten)]
     pub layout: Option<Layout>,
-    /// Rows that are kept.
+    /// Number of rows kept.
     pub rows: usize,
-    /// The angle of the first row as it is written, degrees.
+    /// Angle of the first row as written, degrees.
     pub first_deg: f64,
-    /// Whether a last row repeated the first and was left out.
+    /// Whether the last row repeated the first and was dropped.
     pub repeats_first: bool,
-    /// The step of the decimal grid that all lifts lie on, in the table's unit; none where there is none above the rounding of a
+    /// Step of the decimal grid that all lifts lie on, in the table's unit; `None` if no such step is above the rounding of a
     /// double.
     pub step: Option<f64>,
 }
 
 impl Reading {
-    /// Half of the step that the lifts are rounded to, in the model's unit of length; 0 where there is none.
+    /// Half of the step that the lifts are rounded to, in the model's unit of length; 0 without such a step.
     pub fn half_step(&self) -> f64 {
         self.step.map_or(0.0, |step| self.in_model.inside(0.5 * step))
     }
 }
 
-/// A spline, without what it is to keep to.
+/// Kind of a spline, without its constraints.
 #[derive(Clone, Copy, PartialEq)]
 enum Kind {
     Cubic,
@@ -154,17 +154,17 @@ enum Kind {
     Smoothing,
 }
 
-/// The splines by the names that `spline` gives them.
+/// The splines, with their names in the field `spline`.
 const SPLINES: [(&str, Kind); 3] = [("cubic", Kind::Cubic), ("quintic", Kind::Quintic), ("smoothing", Kind::Smoothing)];
-/// A periodic spline needs three rows to have a neighbour on either side.
+/// Fewest rows: a periodic spline needs three for every row to have a neighbour on either side.
 const FEWEST_ROWS: usize = 3;
-/// A smoothing spline has to tell a motion from what is measured about it.
+/// Fewest rows of a smoothing spline, which has to separate the motion from errors of measurement.
 const FEWEST_SMOOTHED: usize = 12;
-/// More corners or dwells than any cam has.
+/// Most corners or dwells: more than any cam has.
 const MOST_FEATURES: usize = 1000;
-/// Rows of a table that proofs take, and a last one that repeats the first.
+/// Most rows of a table in proofs, plus a last one that repeats the first.
 const MOST_WRITTEN: usize = MOST_PROVED_ROWS + 1;
-/// The fields of `law = "table"`, and the file that they name, if they do not have its rows.
+/// Reads the fields of `law = "table"`, and the file that they name unless they have its rows.
 pub(super) fn read(fields: &mut Fields) -> Result<TableProfile, ModelError> {
     fields.may_hold("cam.rows");
     if fields.has("cam.rows") {
@@ -194,14 +194,14 @@ pub(super) fn read(fields: &mut Fields) -> Result<TableProfile, ModelError> {
     let shown = path.display().to_string();
     let text = file::text_of_any_age(&path)
         .map_err(|error| fields.reject("cam.file", format!("cannot be read at {shown}: {error}")))?;
-    // Spreadsheets begin UTF-8 with a mark.
+    // Spreadsheets begin UTF-8 with a byte order mark.
     let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
     let table = Table { file: shown, text, has_lines: true, in_radians: false };
     let (rows, layout) = table.rows()?;
     table.profile(fields, (Some(file), spline), rows, Some(layout))
 }
 
-/// The unit that a field or a header names, by its place in a table; where neither does, the first.
+/// Index of the unit that a field or a header names; 0 if neither names one.
 fn unit(fields: &mut Fields, path: &str, names: &[&str], header: Option<usize>) -> Result<usize, ModelError> {
     fields.may_hold(path);
     if !fields.has(path) {
@@ -215,8 +215,8 @@ fn unit(fields: &mut Fields, path: &str, names: &[&str], header: Option<usize>) 
     }
 }
 
-/// The fields of `spline = "smoothing"`; `step` is that of the lifts, in the table's unit, and `in_model` that as a part of the model's
-/// unit of length.
+/// Reads the fields of `spline = "smoothing"`. `step` is the step of the lifts in the table's unit; `in_model` is that unit as a multiple
+/// of the model's unit of length.
 fn smoothing(fields: &mut Fields, step: Option<f64>, in_model: &Unit) -> Result<Smoothing, ModelError> {
     let path = "cam.tolerance";
     fields.may_hold(path);
@@ -225,7 +225,7 @@ fn smoothing(fields: &mut Fields, step: Option<f64>, in_model: &Unit) -> Result<
         Some(Value::Text(_)) => fields.choice(path, &[("auto", Tolerance::Auto)])?,
         Some(_) => {
             let within = fields.number(path, Allowed::POSITIVE)?;
-            // Half of a decimal step is no decimal number of as many digits.
+            // Half of a decimal step has one digit more; allow for its rounding.
             if let Some(step) = step.filter(|step| within < 0.5 * step * (1.0 - 8.0 * tolerance::ULP.value)) {
                 let words =
                     format!("must be at least {}, half of the step {step} that the lifts are rounded to", 0.5 * step);
@@ -271,7 +271,7 @@ fn smoothing(fields: &mut Fields, step: Option<f64>, in_model: &Unit) -> Result<
         corners.sort_by(f64::total_cmp);
         corners.dedup();
         let inside = |corner: &&f64| {
-            // An end of a dwell may be a corner, in another rounding.
+            // A corner may be an end of a dwell, up to rounding.
             let room = tolerance::SAME_KNOT.value;
             let is_inside =
                 |[from, to]: &[f64; 2]| (room..to - from - room).contains(&(**corner - from).rem_euclid(360.0));
@@ -285,12 +285,12 @@ fn smoothing(fields: &mut Fields, step: Option<f64>, in_model: &Unit) -> Result<
     Ok(Smoothing { tolerance, corners_deg, dwells_deg, are_near: false })
 }
 
-/// The step of the coarsest decimal grid, 1, 2 or 5 times a power of ten, that all numbers lie on; none where they have as many
+/// Step of the coarsest decimal grid, 1, 2 or 5 times a power of ten, that all numbers lie on. `None` if they have as many
 /// digits as a double, or are all 0.
 fn grid(numbers: &[Row]) -> Option<f64> {
-    /// Digits of every number that a double can hold.
+    /// Upper limit of whole numbers of which a double has every digit.
     const DIGITS: f64 = 1e15;
-    // The shortest digits that read back as the same double are those that were written, but for zeros at the end.
+    // The shortest digits that read back as the same double are the written ones, except for zeros at the end.
     let decimals = |row: &Row| row.lift.to_string().split_once('.').map_or(0, |(_, behind)| behind.len());
     let decimals = numbers.iter().map(decimals).max().unwrap_or_default();
     let power = 10.0_f64.powi(i32::try_from(decimals).ok()?);
@@ -315,7 +315,7 @@ fn grid(numbers: &[Row]) -> Option<f64> {
 }
 
 impl Table<'_> {
-    /// The profile of rows, each of which may stand alone, and of the fields beside them.
+    /// Builds the profile from rows that are each valid alone, and from the fields beside them.
     fn profile(
         mut self,
         fields: &mut Fields,
@@ -375,13 +375,13 @@ impl Table<'_> {
         Ok(TableProfile { file, spline, rows: rows.into(), reading: Arc::new(reading) })
     }
 
-    /// Puts the rows of one turn, from whatever angle on, in order from 0 to below 360; whether a last one repeated the first.
+    /// Orders the rows of one turn from 0 to below 360, from any first angle. Returns whether the last row repeated the first.
     fn turned(&self, rows: &mut Vec<Row>) -> Result<bool, ModelError> {
-        /// How far back angles go where they begin a new turn, degrees.
+        /// Smallest fall of the angle that begins a new turn, degrees.
         const BACK: f64 = 180.0;
         let mut turns = 0.0;
         let first = rows.first().map_or(0.0, |row| row.angle_deg);
-        // A turn is 2 pi to as many digits as were written.
+        // In radians, a turn is 2 pi to as many digits as were written.
         let slack = tolerance::TURN_CLOSED.value * 360.0 / rows.len() as f64;
         let mut before_written = first;
         for index in 1..rows.len() {
@@ -424,7 +424,7 @@ impl Table<'_> {
         format!("{} {}", if self.has_lines { "line" } else { "row" }, row.line)
     }
 
-    /// An angle, degrees, in the unit that the table has: to the digits that are left once it has been there and back.
+    /// Converts an angle, degrees, to the table's unit, to the digits that survive a conversion there and back.
     fn shown(&self, angle_deg: f64) -> f64 {
         let shown = if self.in_radians { format!("{:.14e}", angle_deg.to_radians()).parse().ok() } else { None };
         shown.unwrap_or(angle_deg)
@@ -435,10 +435,10 @@ impl Table<'_> {
         self.reject(line, field, &self.shown(angle_deg).to_string(), words)
     }
 
-    /// Refuses a row that is not above the one before it, each with its angle as it is written, degrees.
+    /// Refuses a row that is not above the one before it; each comes with its angle as written, degrees.
     fn in_order(&self, rows: [(&Row, f64); 2], begins_turn: bool) -> Result<(), ModelError> {
         let [(before, above), (row, written)] = rows;
-        // What cannot be told apart in radians is one angle.
+        // Angles that are equal in radians count as one.
         if row.angle_deg.to_radians() > before.angle_deg.to_radians() {
             return Ok(());
         }
@@ -449,7 +449,7 @@ impl Table<'_> {
         Err(self.reject_angle(row.line, written, words))
     }
 
-    /// A last row a turn after the first says the same.
+    /// Checks that a last row one turn after the first has the same lift.
     fn closes(&self, rows: &[Row], first: &Row, last: &Row) -> Result<(), ModelError> {
         let largest = rows.iter().fold(0.0_f64, |largest, row| largest.max(row.lift.abs()));
         if (last.lift - first.lift).abs() > tolerance::CAM_CLOSURE.value * largest {
@@ -466,9 +466,9 @@ impl Table<'_> {
 
     /// Refuses a gap where rows are missing.
     fn even(&self, rows: &[Row]) -> Result<(), ModelError> {
-        /// A gap that no table has, however few its rows are.
+        /// Smallest gap that is refused for any number of rows, degrees.
         const HALF: f64 = 180.0;
-        /// From how much of a turn without a row on the rows are those of another part of it.
+        /// Gap, degrees, above which the rows cover only a part of the turn.
         const PART: f64 = 90.0;
         let next = |index: usize| match rows.get(index + 1) {
             Some(row) => row.angle_deg,
@@ -478,12 +478,12 @@ impl Table<'_> {
         let mut sorted = gaps.clone();
         let (_, median, _) = sorted.select_nth_unstable_by(gaps.len() / 2, f64::total_cmp);
         let widest = *median / tolerance::TABLE_GAP.value;
-        // To as many digits as a turn is written to.
+        // Allow for the digits to which a turn is written.
         let half = HALF - tolerance::TURN_CLOSED.value * 360.0 / rows.len() as f64;
         let Some(index) = gaps.iter().position(|gap| *gap > widest || *gap > half) else {
             return Ok(());
         };
-        // The difference of two angles does not have as many digits as they.
+        // The difference of two angles has fewer digits than the angles.
         let covered = ((360.0 - gaps[index]) * 1e9).round() / 1e9;
         let words = if gaps[index] > PART {
             format!(

@@ -1,4 +1,4 @@
-//! A model as the text of a model file, with all that it needs inside.
+//! A model as the text of a self-contained model file.
 
 use std::fmt::Write;
 
@@ -6,8 +6,8 @@ use super::fields::{Fields, Value};
 use super::{Model, TableProfile, Tolerance};
 
 impl Model {
-    /// The model as a file that needs no other: its own name, every number in the digits that read back as the same double, and the
-    /// rows of a table in the place of their file. It is read as the same model, whose text is the same.
+    /// Text of a self-contained model file: the model's name, every number in digits that read back as the same double,
+    /// and a table's rows in place of their file. Reading the text gives the same model and the same text.
     pub fn text(&self) -> String {
         let mut fields = self.fields.clone();
         fields.put("name", Value::Text(self.name.clone()));
@@ -22,7 +22,7 @@ impl Model {
 }
 
 impl Fields {
-    /// Puts rows in the place of those of a table and of its file: its angles, with other lifts, in the units of the model.
+    /// Replaces a table's rows and file by rows at the same angles with other lifts, in the units of the model.
     pub(super) fn put_lifts(&mut self, table: &TableProfile, lifts: impl Iterator<Item = f64>) {
         for path in ["cam.file", "cam.unit", "cam.angle_unit"] {
             self.fields.remove(path);
@@ -34,7 +34,7 @@ impl Fields {
         self.put("cam.rows", Value::Rows(rows.collect()));
     }
 
-    /// Writes what is inside of the table at `path`: what follows the header of a table within belongs to that, so values come first.
+    /// Writes the contents of the table at `path`. Values come first, because lines after a nested table's header belong to that table.
     fn write(&self, text: &mut String, path: &str) {
         let prefix = if path.is_empty() { String::new() } else { format!("{path}.") };
         let below = self.fields.range(prefix.clone()..).take_while(|(path, _)| path.starts_with(&prefix));
@@ -65,16 +65,16 @@ impl Fields {
         }
     }
 
-    /// Whether the array at `path` is one of tables.
+    /// Whether the array at `path` is an array of tables.
     fn holds_tables(&self, path: &str) -> bool {
         self.fields.get(&format!("{path}[0]")).is_some_and(|first| matches!(first.value, Value::Table))
     }
 
-    /// A value in one line; none for what has headers of its own.
+    /// The value in one line; `None` for a table or an array of tables, which have headers of their own.
     fn written(&self, path: &str, value: &Value) -> Option<String> {
         match value {
             Value::Number(number) => Some(format!("{number:?}")),
-            // What JSON escapes TOML does, too, but for one character.
+            // TOML escapes as JSON does, except for one character.
             Value::Text(text) => Some(serde_json::Value::String(text.clone()).to_string().replace('\u{7f}', "\\u007f")),
             Value::Rows(rows) => {
                 let rows: String = rows.iter().map(|([one, two], _)| format!("    [{one:?}, {two:?}],\n")).collect();

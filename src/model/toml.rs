@@ -1,4 +1,4 @@
-//! TOML as fields with their places in the text.
+//! Reads TOML into fields with their places in the text.
 
 use std::ops::Range;
 
@@ -9,7 +9,7 @@ use super::ModelError;
 use super::fields::{Field, Fields, Value};
 use super::numeral::Numeral;
 
-/// The number that a value of TOML is.
+/// A TOML number as a double; `None` for any other value.
 fn number(value: &DeValue<'_>) -> Option<f64> {
     match value {
         DeValue::Integer(integer) => {
@@ -20,7 +20,7 @@ fn number(value: &DeValue<'_>) -> Option<f64> {
     }
 }
 
-/// The two numbers that a value of TOML lists.
+/// The two numbers of a TOML array; `None` for any other value.
 fn pair(value: &DeValue<'_>) -> Option<[f64; 2]> {
     let DeValue::Array(items) = value else { return None };
     let mut items = items.iter().map(|item| number(item.get_ref()));
@@ -30,7 +30,7 @@ fn pair(value: &DeValue<'_>) -> Option<[f64; 2]> {
     }
 }
 
-/// Pairs of numbers in an array of TOML, each number as the decimal that is written; none where it is something else.
+/// Pairs of numbers in a TOML array, each number as the decimal written; empty if the text is anything else.
 pub(super) fn pairs(array: &str) -> Vec<[String; 2]> {
     let text = format!("rows = {array}");
     let Ok(table) = DeTable::parse(&text) else { return Vec::new() };
@@ -48,7 +48,7 @@ pub(super) fn pairs(array: &str) -> Vec<[String; 2]> {
 }
 
 impl Fields {
-    /// The fields of a text; `file` is the name that complaints carry.
+    /// Parses a text into fields; complaints name the file as `file`.
     pub(super) fn parse(file: &str, text: &str) -> Result<Self, ModelError> {
         let line_ends: Vec<usize> = text.match_indices('\n').map(|(at, _)| at).collect();
         let line_of = |offset: usize| 1 + line_ends.partition_point(|end| *end < offset);
@@ -60,7 +60,7 @@ impl Fields {
         };
         let root = DeTable::parse(text).map_err(|error| ModelError {
             line: error.span().map(|span| line_of(span.start)),
-            // Some of them are two lines long.
+            // Some messages are two lines long.
             ..ModelError::file(file, format!("not valid TOML: {}", error.message().replace('\n', ", ")))
                 .at(Some(text.into()), error.span())
                 .meaning(error.span().is_some_and(comma).then(|| "did you mean a decimal point?".into()))
@@ -88,7 +88,7 @@ impl Fields {
                     ..ModelError::file(self.file(), words.into()).at(Some(self.source().into()), Some(key.span()))
                 });
             }
-            // A table's own span is not its header's; the key's is.
+            // The span of a table is not that of its header; the span of its key is.
             let (line, _) = place(key.span());
             self.add(&path, (line, key.span()), value, place)?;
         }

@@ -1,15 +1,15 @@
-//! `[units]`: what the numbers of a model file are in, and what answers are told in.
+//! `[units]`: the units of a model file's numbers and of the answers.
 //!
-//! Inside, masses are in kg, times in s and lengths in the file's own unit: every position, velocity and matrix is then in
-//! the units of the file as it is computed. Stiffness and damping, kg/s^2 and kg/s, are N/m and N s/m whatever the length. Only
-//! forces, kg times that length over s^2, are converted where they are told.
+//! Internally, masses are in kg, times in s and lengths in the file's own unit. So every position, velocity and matrix is computed
+//! in the units of the file. Stiffness and damping, kg/s^2 and kg/s, are N/m and N s/m whatever the length. Only
+//! forces, kg times that length over s^2, are converted for output.
 
 use std::borrow::Cow;
 
 use super::ModelError;
 use super::fields::{Allowed, Fields};
 
-/// A unit: its name, and how much of the unit inside one of it is, as a quotient of whole numbers, which is exact.
+/// A unit: its name, and its size in the internal unit as a quotient of whole numbers, which is exact.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unit {
     name: Cow<'static, str>,
@@ -21,27 +21,27 @@ impl Unit {
         Self { name: Cow::Borrowed(name), ratio: [above, below] }
     }
 
-    /// What it is called in files and answers.
+    /// Name in files and answers.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// A value in it as it is inside.
+    /// Converts a value from this unit to the internal unit.
     pub fn inside(&self, value: f64) -> f64 {
         value * self.ratio[0] as f64 / self.ratio[1] as f64
     }
 
-    /// A value from inside in it.
+    /// Converts a value from the internal unit to this unit.
     pub fn told(&self, value: f64) -> f64 {
         value * self.ratio[1] as f64 / self.ratio[0] as f64
     }
 
-    /// The quotient that takes it to the unit inside; none where that is 1.
+    /// Exact factor from this unit to the internal unit; `None` where that is 1.
     pub(super) fn factor(&self) -> Option<[u128; 2]> {
         (self.ratio[0] != self.ratio[1]).then_some(self.ratio)
     }
 
-    /// The same unit as a part of another one, which is then the unit inside.
+    /// This unit as a multiple of `other`, which then becomes the internal unit.
     pub(super) fn in_parts_of(&self, other: &Self) -> Self {
         let ratio = if self.ratio == other.ratio { [1; 2] } else { self.over(other) };
         Self { name: self.name.clone(), ratio }
@@ -52,7 +52,7 @@ impl Unit {
     }
 }
 
-/// Units by name, as parts of the SI's; the first is the SI's own.
+/// Units by name, as multiples of the SI unit; the first is the SI unit itself.
 pub(super) static LENGTHS: [Unit; 6] = [
     Unit::new("m", 1, 1),
     Unit::new("cm", 1, 100),
@@ -80,30 +80,30 @@ const FORCES: [Unit; 5] = [
 /// The units of a model file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Units {
-    /// Whether the file says any of them.
+    /// Whether the file gives any unit.
     pub are_given: bool,
-    /// Whether it says that of lengths, masses and stiffness, in this order.
+    /// Whether the file gives the units of length, mass and stiffness, in this order.
     pub(crate) says: [bool; 3],
-    /// The unit of length, as a part of a metre: lengths are in it inside, too.
+    /// Unit of length, as a multiple of a metre; internal lengths are in it too.
     pub length: Unit,
-    /// As a part of a kilogram.
+    /// Unit of mass, as a multiple of a kilogram.
     pub mass: Unit,
-    /// Of forces, inside kg times the unit of length over s^2.
+    /// Unit of force; internally kg times the unit of length over s^2.
     pub force: Unit,
-    /// As a part of N/m.
+    /// Unit of stiffness, as a multiple of N/m.
     pub stiffness: Unit,
-    /// As a part of N s/m.
+    /// Unit of damping, as a multiple of N s/m.
     pub damping: Unit,
-    /// Of gravity, inside the unit of length over s^2.
+    /// Unit of gravity; internally the unit of length over s^2.
     pub gravity: Unit,
     /// Whether answers give angles in degrees.
     pub degrees: bool,
 }
 
-/// How a value from inside is told.
+/// Converts an internal value for output.
 pub type Converted = fn(&Units, f64) -> f64;
 
-/// The unit of a table that a field names, its own name where it names none.
+/// The unit from `table` that a field names; the first one if the field is missing.
 fn simple(fields: &mut Fields, path: &str, table: &[Unit]) -> Result<Unit, ModelError> {
     let choices: Vec<(&str, usize)> = table.iter().enumerate().map(|(index, unit)| (unit.name(), index)).collect();
     if !fields.has(path) {
@@ -117,7 +117,7 @@ fn named(table: &[Unit], name: &str) -> Option<Unit> {
     table.iter().find(|unit| unit.name() == name.trim()).cloned()
 }
 
-/// A quotient that a field names: `part` makes two units of what stands before and behind the stroke.
+/// The quotient of units that a field names; `part` looks up the units before and behind the slash.
 fn quotient(
     fields: &mut Fields,
     path: &str,
@@ -133,7 +133,7 @@ fn quotient(
 }
 
 impl Units {
-    /// The table `[units]`; where it says nothing, the SI's.
+    /// Reads the table `[units]`; missing entries are SI units.
     pub(super) fn read(fields: &mut Fields) -> Result<Self, ModelError> {
         let length = simple(fields, "units.length", &LENGTHS)?;
         let mass = simple(fields, "units.mass", &MASSES)?;
@@ -160,7 +160,7 @@ impl Units {
         Ok(Self { are_given: fields.has("units"), says, length, mass, force, stiffness, damping, gravity, degrees })
     }
 
-    /// The unit of a number of the follower, or none of a pure number or a length.
+    /// Unit of a number of the follower; `None` for a pure number or a length.
     pub fn of_follower(&self, name: &str) -> Option<&Unit> {
         match name {
             "mass" => Some(&self.mass),
@@ -172,7 +172,7 @@ impl Units {
         }
     }
 
-    /// What a number is told in that varies, by its dotted path or `rpm`; nothing of a pure number, or of one of the cam.
+    /// Output unit of a number that varies, by its dotted path or `rpm`; empty for a pure number and for one of the cam.
     pub fn of_number(&self, path: &str) -> String {
         let name = path.strip_prefix("follower.").unwrap_or(path);
         match name {
@@ -182,22 +182,22 @@ impl Units {
         }
     }
 
-    /// A number of the follower as it is inside.
+    /// Reads a number of the follower and converts it to internal units.
     pub(super) fn number(&self, fields: &mut Fields, name: &str, allowed: Allowed) -> Result<f64, ModelError> {
         let path = format!("follower.{name}");
         let written = fields.number(&path, allowed)?;
         let number = self.of_follower(name).map_or(written, |unit| unit.inside(written));
-        // What is too large for a number, or 0 where that may not be, once it is converted.
+        // After conversion, a number may have overflowed, or become 0 where that is not allowed.
         if allowed.contains(number) { Ok(number) } else { Err(fields.reject(&path, "is too large or too small")) }
     }
 
-    /// A unit of a length, its velocity or its acceleration that is written in metres, in this file's length: `m/s` is `mm/s`.
+    /// Rewrites a unit of length, velocity or acceleration from metres to this file's length: `m/s` is `mm/s`.
     pub fn spelled(&self, unit: &str) -> String {
         let rest = unit.strip_prefix('m').filter(|rest| rest.is_empty() || rest.starts_with(['/', ' ']));
         rest.map_or_else(|| unit.to_owned(), |rest| format!("{}{rest}", self.length.name()))
     }
 
-    /// The name of a field or a column in these units: `gap_m` is `gap_mm`.
+    /// Name of a field or a column in these units: `gap_m` is `gap_mm`.
     pub fn field(&self, name: &str) -> String {
         let (head, unit) = ["_m_s", "_m", "_rad", "_n"]
             .into_iter()
@@ -213,13 +213,13 @@ impl Units {
         }
     }
 
-    /// The first line of a table, with its line end, in these units.
+    /// Header line of a table, with its line end, in these units.
     pub fn columns(&self, line: &str) -> String {
         let names = line.trim_end().split(',').map(|name| self.field(name));
         names.collect::<Vec<_>>().join(",") + "\n"
     }
 
-    /// What becomes of the values of a field or a column whose name is another in these units, where they are not lengths.
+    /// Conversion of the values of a field or column whose name changes in these units; `None` for lengths, which need none.
     pub fn converted(&self, name: &str) -> Option<Converted> {
         if name.ends_with("_rad") && self.degrees {
             Some(|_, angle| angle.to_degrees())
@@ -232,7 +232,7 @@ impl Units {
 }
 
 impl Default for Units {
-    /// The SI's.
+    /// SI units.
     fn default() -> Self {
         let [length, mass, force] = [&LENGTHS[0], &MASSES[0], &FORCES[0]].map(Unit::clone);
         let [stiffness, damping, gravity] = ["N/m", "N s/m", "m/s^2"].map(|name| Unit::new(name, 1, 1));

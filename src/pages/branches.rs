@@ -1,4 +1,4 @@
-//! The accounts of `continue` and `curve`: what a branch of orbits and a curve of events pass, and where they end.
+//! The texts of `continue` and `curve`: special points along a branch of orbits and along a curve of events, and their ends.
 
 use crate::border_collision::event_curve::EventPoint;
 use crate::border_collision::{EventCurve, RoundedCorner};
@@ -6,9 +6,9 @@ use crate::orbit::branch::{Border, Branch, BranchPoint, Kind, Special};
 use crate::show::words;
 use crate::tolerance;
 
-/// What a branch passes and where it ends.
+/// Special points of a branch, and its ends.
 pub(crate) fn branch(branch: &Branch, parameter: &str, index: usize) -> String {
-    /// Special points that are listed.
+    /// Most special points that are listed.
     const LISTED: usize = 40;
     let points = &branch.points;
     let (Some(first), Some(last)) = (points.first(), points.last()) else { return String::new() };
@@ -50,7 +50,7 @@ fn passed(point: &BranchPoint, kind: Kind) -> String {
     }
 }
 
-/// What changes along a curve.
+/// Quantity that changes along a curve.
 fn on_curve(kind: Kind) -> String {
     match kind {
         Kind::Type { after_corner, multiplier } => {
@@ -76,7 +76,7 @@ fn on_curve(kind: Kind) -> String {
     }
 }
 
-/// What a curve passes and where it ends, in the number of this name, which is `own` in the model.
+/// Special points and ends of a curve over the named number, which is `own` in the model.
 pub(crate) fn curve(
     curve: &EventCurve,
     (parameter, own): (&str, f64),
@@ -89,7 +89,7 @@ pub(crate) fn curve(
     let place = |point: &EventPoint| format!("{parameter} = {:.9}, {:.6} rpm", point.value, point.rpm);
     let what = words::events(curve.kind);
     let of_what = match curve.kind {
-        // Of an event that could not be followed at all it is not known where on the cam it is.
+        // If an event could not be followed at all, its cam angle is unknown.
         Kind::Graze { .. } if !angle.is_finite() => format!("from {impacts} to {} impacts", impacts + 1),
         _ if !angle.is_finite() => format!("of {impacts} impact(s) in {} revolution(s)", here.revolutions),
         Kind::Corner { impact, jump_order, .. } => {
@@ -108,13 +108,13 @@ pub(crate) fn curve(
         format!("curve {index}: {count} {what}, {of_what}"),
         format!("  begins at {}: {}", place(first), curve.ends[0].words()),
     ];
-    // The last one is the second of a pair below.
+    // The last point is the second of a pair below.
     lines.extend(first.special.map(|special| format!("  {}: {}", place(first), on_curve(special.kind))));
     let (mut before, mut from) = (None, first);
     for pair in curve.points.windows(2) {
         let [point, next] = pair else { continue };
         if let Some(now) = point.happening.filter(|now| point.special.is_none() && before != Some(*now)) {
-            // From the special point on, if one came right before.
+            // Start at the special point, if one came directly before.
             lines.push(format!("  {}: {now} from here", place(from)));
             before = Some(now);
         }
@@ -129,7 +129,7 @@ pub(crate) fn curve(
     lines.join("\n") + "\n"
 }
 
-/// Where a fold of rounded corners comes from, beside the closed form.
+/// Origin of a fold of rounded corners, compared with the closed form.
 fn rounding(curve: &EventCurve, sharp: &[(f64, RoundedCorner)]) -> Option<String> {
     let least = curve.points.iter().min_by(|one, two| one.value.total_cmp(&two.value))?;
     let off = |rpm: f64| (least.rpm - rpm).abs();

@@ -9,7 +9,7 @@ use crate::show::digits::{Digits, with_error};
 use crate::show::words;
 use crate::study::cam::{CamSheet, Largest};
 
-/// The longest list that a terminal prints line by line.
+/// Most items that a terminal prints line by line.
 const LONGEST: usize = 40;
 
 impl Paged for CamSheet {
@@ -25,7 +25,7 @@ impl Paged for CamSheet {
     }
 }
 
-/// The largest velocity, acceleration and jerk, each in a line.
+/// The largest velocity, acceleration and jerk, a line each.
 fn largest(sheet: &CamSheet) -> Vec<Block> {
     const NAMES: [(&str, &str); 3] = [("velocity", "m/rad"), ("acceleration", "m/rad^2"), ("jerk", "m/rad^3")];
     let line = |(largest, (name, unit)): (&Largest, (&'static str, &'static str))| {
@@ -43,13 +43,13 @@ pub(crate) fn parts(sheet: &CamSheet) -> Vec<Block> {
 
 const NINE: Digits = Digits::Significant(9);
 
-/// The law, and the range of its lift.
+/// The lift law, and the range of its lift.
 pub(crate) fn lift(sheet: &CamSheet) -> Words {
     let [low, high] = sheet.lift_m;
     words![format!("law \"{}\", lift from ", sheet.law), (low, NINE), " to ", (high, NINE), " ", Span::Unit("m")]
 }
 
-/// How the table was understood, how well the cam is known, and what a smoothing spline has.
+/// Interpretation of the table, uncertainty of the cam, and features of a smoothing spline.
 pub(crate) fn measured(measured: &Measured) -> Vec<Block> {
     let told =
         |length: f64| words![(measured.reading.in_model.told(length), Digits::Aligned(2)), " ", &measured.reading.unit];

@@ -1,4 +1,4 @@
-//! The page of `certify`: what is proved of each corner impact, with the digits that are, and what is not.
+//! The page of `certify`: what is proved about each corner impact, with the proved digits, and what is not.
 
 use crate::ball::Ball;
 use crate::orbit::Stability;
@@ -173,7 +173,7 @@ impl Paged for ProvedResting {
     }
 }
 
-/// How many orbits there are of each kind.
+/// Number of orbits of each kind.
 fn kinds(all: &[Option<OrbitKind>]) -> Words {
     if all.is_empty() {
         return "none".into();
@@ -209,7 +209,7 @@ fn certificate(of: &Certificate) -> Vec<Block> {
         conditions.row([condition.name.as_str().into(), words![&condition.value.mid], (Mark::Good, sign).into()]);
     }
     let near = |side: &ProvedSide| {
-        // No eigenvalue is on the unit circle: there nothing is proved.
+        // Proofs exclude eigenvalues on the unit circle.
         let stability = if side.stable { Stability::Stable } else { Stability::Unstable };
         format!("{}, {}", words::speeds(Some(side.fixed_point_exists_for)), words::stability(stability))
     };

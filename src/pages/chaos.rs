@@ -1,4 +1,4 @@
-//! The page of `chaos`: the theorem first, then what it rests on, then where nothing is proved.
+//! The page of `chaos`: the theorem first, then its basis, then the places where nothing is proved.
 
 use crate::covering::prove::Refused;
 use crate::covering::region::{Escape, Region};
@@ -38,10 +38,10 @@ impl Paged for Chaos {
     }
 }
 
-/// What is proved, in a sentence or two.
+/// Theorem in a sentence or two.
 pub(crate) fn statement(found: &Chaos) -> String {
     let is_one = found.rpm[0] == found.rpm[1];
-    // At one speed the first theorem is that with cones, where there is one, and another one of more strips without.
+    // At one speed, the first theorem is the one with cones, if any; another one may have more strips but no cones.
     let (told, more) = match found.theorems.as_slice() {
         [first, more @ ..] if is_one => (std::slice::from_ref(first), more),
         all => (all, &[][..]),
@@ -86,7 +86,7 @@ pub(crate) fn statement(found: &Chaos) -> String {
     )
 }
 
-/// What is proved of a region.
+/// States what is proved about a region.
 fn trapped(found: &Trapped, rpm: f64) -> String {
     let Region { cells, velocities_m_s, part, angles_deg, .. } = found.region;
     let chaos = match found.holds_chaos {
@@ -98,7 +98,7 @@ fn trapped(found: &Trapped, rpm: f64) -> String {
             " Some deviations of every motion in it grow at each impact, by a factor of at least {}: no periodic orbit in it is stable, and \
              the largest Lyapunov exponent of no motion is below {} an impact.",
             at_least(growth, 4),
-            // The logarithm is off by less than an ulp.
+            // The logarithm has an error below one ulp.
             at_least(elementary::ln(growth).next_down().next_down(), 4)
         )
     });
@@ -114,20 +114,20 @@ fn trapped(found: &Trapped, rpm: f64) -> String {
     )
 }
 
-/// Decimals of a number from 0 on, rounded down, as a bound from below must be.
+/// Decimals of a number, zero or more, rounded down, as a lower bound must be.
 fn at_least(number: f64, places: usize) -> String {
-    // More places than a double has are exact, and what is left of them is below it.
+    // This many places print a double exactly, so cutting them rounds down.
     let exact = format!("{number:.1074}");
     let end = exact.find('.').map_or(exact.len(), |point| point + 1 + places);
     exact.get(..end).unwrap_or(&exact).to_owned()
 }
 
-/// Ends to four places, such that nothing between them is left out.
+/// Ends of a range to four places, rounded outwards.
 fn outwards([low, high]: [f64; 2]) -> [f64; 2] {
     [(1e4 * low).floor() / 1e4, (1e4 * high).ceil() / 1e4]
 }
 
-/// How far it came.
+/// Explains why no trapping region was proved, and after how many cells.
 fn escaped(escapes: &[Escape], rpm: f64) -> String {
     let each = escapes.iter().map(|escape| {
         let [angle, velocity] = escape.at;
@@ -147,7 +147,7 @@ fn escaped(escapes: &[Escape], rpm: f64) -> String {
     format!("No region that traps is proved at {rpm} rpm: {}.", each.collect::<Vec<_>>().join("; "))
 }
 
-/// The strips, with what is proved of each.
+/// Table of the strips, with what is proved about each.
 pub(crate) fn strips(theorem: &Theorem) -> Table {
     let head = ["impacts", "revolutions", "strip, x", "image, y", "growth", "boxes"];
     let least = [7, 11, 18, 18, 7, 6];
@@ -167,7 +167,7 @@ pub(crate) fn strips(theorem: &Theorem) -> Table {
     table
 }
 
-/// Ranges of speeds with the same symbols, one next to the other.
+/// Table of ranges of speeds with the same symbols, in order.
 fn ranges(found: &Chaos) -> Table {
     let right = |head: &str, least: usize| Column { gap: 2, ..Column::right(head, least) };
     let columns = [right("from (rpm)", 10), right("to (rpm)", 10), right("h-sets", 6), Column::left("impacts", 2, 0)];
@@ -189,7 +189,7 @@ fn ranges(found: &Chaos) -> Table {
     table
 }
 
-/// Why a strip was given up.
+/// Reason why a strip was refused.
 fn refused(why: &Refused) -> String {
     let how = if why.is_refuted { "does not hold" } else { "could not be decided" };
     let flight = why.flight.map_or_else(String::new, |flight| format!(" ({})", words::unproved(flight)));

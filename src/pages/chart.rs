@@ -1,4 +1,4 @@
-//! The page of `chart`: how many points there are of each kind.
+//! The page of `chart`: the number of points of each kind.
 
 use crate::show::Paged;
 use crate::show::block::Block;

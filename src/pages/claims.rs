@@ -1,4 +1,4 @@
-//! The pages of `claims`: for a terminal, and the one under `docs/`.
+//! The pages of `claims`: one for a terminal, and one under `docs/`.
 
 use crate::explain::{ExplainError, Links};
 use crate::known::Known;
@@ -39,7 +39,7 @@ pub(crate) fn terminal(found: &Claims) -> Vec<Block> {
     blocks
 }
 
-/// How many statements have a verdict, and of wrong ones how many make a slip.
+/// Number of statements with a verdict. For a wrong verdict, also the number with an error of their own.
 fn count(found: &Claims, verdict: Verdict, all: usize) -> String {
     if !verdict.is_wrong() {
         return all.to_string();
@@ -47,13 +47,13 @@ fn count(found: &Claims, verdict: Verdict, all: usize) -> String {
     format!("{all}: {}", words::slips(found.slips_and_consequences(verdict)))
 }
 
-/// Which slips made elsewhere make a statement wrong.
+/// Errors in other statements that make a statement wrong.
 fn by_slip(claim: &Held) -> Option<String> {
     let others: Vec<&str> = claim.slips.iter().filter(|slip| **slip != claim.id).map(String::as_str).collect();
     (!others.is_empty()).then(|| format!("By the slip of: {}", others.join("; ")))
 }
 
-/// The page under `docs/`: what stands before its sections, and these.
+/// The page under `docs/`: its introduction and its sections.
 pub fn document(found: &Claims) -> Result<(Vec<Block>, Vec<Section>), ExplainError> {
     let links = Links::read()?;
     let behind_claims = links.of_claims();
@@ -113,7 +113,7 @@ pub fn document(found: &Claims) -> Result<(Vec<Block>, Vec<Section>), ExplainErr
     Ok((lead, [by_knowledge(found), slips(found)].into_iter().chain(sections).collect()))
 }
 
-/// How many statements have which verdict, known how.
+/// Number of statements for each verdict and each kind of knowledge.
 fn by_knowledge(found: &Claims) -> Section {
     let ways = [Known::Proved, Known::Computed, Known::Sampled, Known::Read];
     let heads = ["".to_owned()].into_iter().chain(ways.map(|known| known.to_string()));
@@ -130,7 +130,7 @@ fn by_knowledge(found: &Claims) -> Section {
     Section { id: "", title: "How each is known".into(), blocks: vec![Block::Table(table), Block::paragraph(filter)] }
 }
 
-/// Each slip and what is wrong by it.
+/// Each error, with the statements that it makes wrong.
 fn slips(found: &Claims) -> Section {
     let heads = ["made in", "verdict", "where", "right instead", "wrong by it as well"];
     let mut table = Table::new("", heads.map(|head| Column::left(head, 0, 0)));

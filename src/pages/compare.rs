@@ -1,4 +1,4 @@
-//! The page of `compare`: the verdict, the fields that differ, then what moved, the most first.
+//! The page of `compare`: the verdict, the fields that differ, then the numbers that changed, the largest change first.
 
 use serde_json::Value;
 
@@ -7,9 +7,9 @@ use crate::show::block::{Block, Column, Mark, Span, Table, Words, words};
 use crate::show::digits::Digits;
 use crate::study::compare::{Change, Comparison};
 
-/// So many times its error a difference is beyond doubt.
+/// Ratio of a difference to its error above which only a bound is shown.
 const MANY: f64 = 1e6;
-/// The longest list of names that a page has.
+/// Most names in a list.
 const LONGEST: usize = 40;
 
 impl Paged for Comparison {
@@ -40,7 +40,7 @@ impl Paged for Comparison {
         if known.is_empty() && unknown.is_empty() {
             page.extend([Block::Gap, Block::paragraph("No number that both have moved by more than its error.")]);
         } else {
-            // The column is there where it tells something.
+            // The column appears only if it has informative values.
             let is_told = known.iter().filter_map(|change| change.times_error).any(|times| times <= MANY);
             let times = if is_told { "times error: the difference over how far it may be off. " } else { "" };
             let note = format!(
@@ -84,7 +84,7 @@ fn fields(found: &Comparison) -> Vec<Block> {
     vec![Block::Heading("What differs in the files".into()), Block::Table(table)]
 }
 
-/// What is told by words, and is another.
+/// Fields with changed words.
 fn kinds(changes: &[&Change]) -> Vec<Block> {
     if changes.is_empty() {
         return Vec::new();
@@ -96,7 +96,7 @@ fn kinds(changes: &[&Change]) -> Vec<Block> {
     vec![Block::Heading("What is of another kind".into()), Block::Table(table)]
 }
 
-/// In the order of the first of each, those of which both numbers have the same digits.
+/// Groups changes whose two numbers look alike in the displayed digits, ordered by the first change of each group.
 fn alike<'a>(changes: &[&'a Change]) -> Vec<Vec<&'a Change>> {
     let short = |value: &Option<Value>| value.as_ref().and_then(Value::as_f64).map(|number| Digits::Short.text(number));
     let digits = |change: &Change| [&change.a, &change.b].map(short);
@@ -111,7 +111,7 @@ fn alike<'a>(changes: &[&'a Change]) -> Vec<Vec<&'a Change>> {
     all.into_iter().map(|(_, alike)| alike).collect()
 }
 
-/// How many times its error a difference is, as far as that tells something.
+/// Ratio of a difference to its error, or a bound if it is very large.
 fn times(error: f64) -> Words {
     if error > MANY { "> 1e6".into() } else { words![(error, Digits::Size)] }
 }
@@ -122,7 +122,7 @@ fn moved(title: &str, changes: &[&Change]) -> Vec<Block> {
     }
     let number = |head: &str| Column { gap: 2, ..Column::number(head) };
     let mut columns = vec![number("first"), number("second"), number("moved %")];
-    // Where each is many times its error, a column of that tells nothing.
+    // If every change is many times its error, the column has no information.
     let errors = || changes.iter().filter_map(|change| change.times_error);
     let has_errors = errors().any(|times| times <= MANY);
     let many =
@@ -133,7 +133,7 @@ fn moved(title: &str, changes: &[&Change]) -> Vec<Block> {
     for alike in alike(changes) {
         let change = alike[0];
         let percent = change.relative.map_or("".into(), |part| {
-            // Less than the places that a column has would be 0.
+            // Fewer digits than the column has places for would show 0.
             let digits = if part.abs() < 0.001 { Digits::Size } else { Digits::Significant(3) };
             words![(100.0 * part, digits)]
         });

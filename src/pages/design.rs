@@ -1,4 +1,4 @@
-//! The page of `design`: the answer in sentences first, then speeds, limits and what must be changed.
+//! The page of `design`: the answer in sentences first, then speeds, limits and required changes.
 
 use crate::known::Known;
 use crate::measured::Measured;
@@ -13,7 +13,7 @@ use crate::study::design::contact::Separation;
 use crate::study::design::needs::Answer;
 use crate::study::design::{Design, Pair, Trade};
 
-/// A column of numbers, apart from the one before.
+/// A column of numbers with a gap before it.
 fn number(head: impl Into<Words>) -> Column {
     Column { gap: 2, ..Column::number(head) }
 }
@@ -40,7 +40,7 @@ impl Paged for Design {
     }
 }
 
-/// Where the follower leaves the cam, in a sentence.
+/// States in a sentence where the follower leaves the cam.
 pub(crate) fn separation(found: &Design) -> Words {
     let degrees = |angle: f64| (angle.to_degrees(), Digits::Fixed(3));
     match found.separation {
@@ -82,11 +82,11 @@ pub(crate) fn separation(found: &Design) -> Words {
     }
 }
 
-/// The least force at the highest speed at which they touch everywhere.
+/// Least force at the highest tabulated speed below separation.
 pub(crate) fn margin(found: &Design) -> Option<Words> {
-    /// Of the speed of separation: at that itself what is left is rounding.
+    /// Share of the separation speed above which rounding dominates the force.
     const BELOW: f64 = 0.999;
-    // Over another number the speed of separation is another at each value.
+    // For a survey over another number, each value has its own separation speed.
     if found.over.is_some() {
         return None;
     }
@@ -133,7 +133,7 @@ pub(crate) fn speeds(found: &Design) -> Vec<Block> {
             match found.loads.iter().find(|loads| loads.place.across() == value) {
                 Some(loads) => {
                     let error = |index: usize| loads.errors.map(|errors| errors[index]);
-                    // In per cent it is no number of the document.
+                    // In per cent, which no document field has.
                     let off_cam = error(2).map(|error| 100.0 * error);
                     let force = error(4).map(|error| found.force(error));
                     let unknown = if is_open && loads.errors.is_none() { " ± ?" } else { "" };
@@ -226,7 +226,7 @@ fn needs(found: &Design) -> Vec<Block> {
             let Answer { lever, now, unit, note, known, .. } = answer;
             let digits = if *known == Known::Computed { Digits::Significant(9) } else { Digits::Significant(3) };
             let bound = if answer.is_upper_bound { "at most" } else { "at least" };
-            // Of any value that will do nothing is open, and that is said.
+            // If any value will do, there is no uncertainty, and the note says so.
             let unknown = if is_open && answer.error.is_none() && note.is_empty() { " ± ?" } else { "" };
             let value = answer.value.map(|value| words![with_open(value, answer.error, digits), unknown]);
             let other = answer.other.map(|other| with_open(other, answer.other_error, digits));
@@ -273,14 +273,14 @@ fn rounded(found: &Design) -> Vec<Block> {
     vec![Block::Heading("Jumps of the acceleration".into()), Block::paragraph(words), Block::Table(table)]
 }
 
-/// A load with what the cam leaves open of it, or in as many digits as that leaves it; what may be none is below something.
+/// A load with its uncertainty due to the cam, or in the digits that this leaves. A load that may be zero is shown as an upper bound.
 fn load(value: f64, error: Option<f64>, digits: Digits, is_told: bool) -> Words {
-    /// Of the value: what leaves it three digits.
+    /// Relative uncertainty that leaves a value three digits.
     const KNOWN: f64 = 0.005;
     let Some(error) = error.filter(|error| *error > 0.0) else { return words![(value, digits)] };
     let (open, rounded) = with_error(error);
     match error < value {
-        // Three digits and no more were meant.
+        // Three digits are enough here.
         true if !is_told && error < KNOWN * value => words![(value, digits)],
         true if is_told => words![(value, open), " ± ", (rounded, open)],
         true => words![(value, open)],
@@ -291,7 +291,7 @@ fn load(value: f64, error: Option<f64>, digits: Digits, is_told: bool) -> Words 
     }
 }
 
-/// A value, with what the cam leaves open of it.
+/// A value with its uncertainty due to the cam.
 fn with_open(value: f64, error: Option<f64>, digits: Digits) -> Words {
     match error.map(with_error) {
         Some((digits, error)) => words![(value, digits), " ± ", (error, digits)],

@@ -1,4 +1,4 @@
-//! The page of `explain`, and the same behind a number of the report.
+//! The page of `explain`, also used for the numbers of the report.
 
 use serde_json::Value;
 
@@ -8,7 +8,7 @@ use crate::show::block::{Block, Column, Mark, Span, Table, Words, words};
 use crate::show::digits::Digits;
 use crate::show::words;
 
-/// Digits of an entry that routes are read against one another in.
+/// Digits of an entry when routes are compared.
 const TWELVE: Digits = Digits::Aligned(12);
 
 impl Paged for Explanation {
@@ -17,7 +17,7 @@ impl Paged for Explanation {
     }
 }
 
-/// What a name stands for, without its title.
+/// Body of an explanation, without its title.
 pub(crate) fn explained(it: &Explanation) -> Vec<Block> {
     let code = |text: &str| Words::from(Span::Code(text.into()));
     let mut entries: Vec<(Words, Words)> = Vec::new();
@@ -77,7 +77,7 @@ pub(crate) fn explained(it: &Explanation) -> Vec<Block> {
     blocks
 }
 
-/// What evaluates, proves and tests it: each empty where there is none.
+/// The function, the proof and the tests of a quantity; each is empty if there is none.
 pub(crate) fn behind(it: &Explanation) -> [Words; 3] {
     let code = |text: &str| Words::from(Span::Code(text.into()));
     let place = |file: &str, name: &str| words![code(file), ": ", code(name)];
@@ -87,7 +87,7 @@ pub(crate) fn behind(it: &Explanation) -> [Words; 3] {
     [function.unwrap_or_default(), proof.unwrap_or_default(), tests]
 }
 
-/// What a value has several parts of, each with its name: fields, or the rows of a list; nothing of one that reads well in a line.
+/// Named parts of a value: fields, or the rows of a list. `None` if the value fits in one line.
 fn parts(found: &Value) -> Option<Vec<(Words, Words)>> {
     const NAMES: [&str; 4] = ["name", "quantity", "speeds", "compared"];
     let of = |name: &str, found: &Value| (Words::from(words::spoken(name)), value(found, Digits::Short));
@@ -105,7 +105,7 @@ fn parts(found: &Value) -> Option<Vec<(Words, Words)>> {
     }
 }
 
-/// A value of a document.
+/// Words for a value of a document.
 fn value(found: &Value, digits: Digits) -> Words {
     let each = |found: &Value| value(found, digits);
     match found {

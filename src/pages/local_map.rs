@@ -1,4 +1,4 @@
-//! The part of the page on the local map: how generic it is, what it predicts by itself, how far it holds.
+//! The page section on the local map: how generic it is, its own predictions, and its range of validity.
 
 use crate::border_collision::feigin::{Speeds, speeds_at};
 use crate::border_collision::local_map::PeriodicOrbit;
@@ -14,13 +14,13 @@ use crate::show::words;
 use crate::study::verify::Verification;
 use crate::tolerance;
 
-/// Where the second column begins.
+/// Start of the second column.
 const COLUMN: usize = 20;
 
-/// Orbits of a kind that a line has room for.
+/// Most orbits of a kind in a line.
 const SHOWN: usize = 6;
 
-/// The condition nearest to failing, and those that fail.
+/// The condition nearest to failing, and the failing ones.
 pub(crate) fn conditions(found: &Verification) -> Vec<(Words, Words)> {
     let (holding, count) =
         (found.conditions.iter().filter(|condition| condition.holds()).count(), found.conditions.len());
@@ -51,7 +51,7 @@ pub(crate) fn every_condition(found: &Verification) -> Table {
     table
 }
 
-/// The local map's own motions and how far it holds.
+/// Motions of the local map, and its range of validity.
 pub(crate) fn blocks(found: &Verification) -> Vec<Block> {
     if found.outcomes.is_empty() {
         return Vec::new();
@@ -113,7 +113,7 @@ fn motions(outcome: &LocalOutcome) -> Vec<(Words, Words)> {
     lines
 }
 
-/// What the theorem of robust chaos says, and on what it rests.
+/// Statement of the theorem of robust chaos, and its conditions.
 fn theorem(chaos: &RobustChaos) -> Words {
     let (three, four) = (Digits::Significant(3), Digits::Fixed(4));
     let rests = chaos.hypotheses.iter().map(|hypothesis| words![hypothesis.name, " = ", (hypothesis.value, three)]);
@@ -130,7 +130,7 @@ fn theorem(chaos: &RobustChaos) -> Words {
     ]
 }
 
-/// The words of some orbits.
+/// Symbol sequences of some orbits.
 fn listed(orbits: &[&PeriodicOrbit]) -> String {
     let some = orbits.iter().take(SHOWN).map(|orbit| orbit.word.to_string()).collect::<Vec<_>>().join(", ");
     match orbits.len() {
@@ -140,7 +140,7 @@ fn listed(orbits: &[&PeriodicOrbit]) -> String {
     }
 }
 
-/// Some of the ranges, by what is compared.
+/// Selected ranges of validity, by the compared prediction.
 fn held(found: &Verification, asked: impl Fn(&Range) -> bool + Copy) -> impl Iterator<Item = (Words, Words)> {
     let all = [Compared::OneRevolution, Compared::FixedPointMinus, Compared::FixedPointPlus].into_iter();
     all.flat_map(move |compared| {
@@ -151,7 +151,7 @@ fn held(found: &Verification, asked: impl Fn(&Range) -> bool + Copy) -> impl Ite
     })
 }
 
-/// Where the fixed point of a side is.
+/// Position of the fixed point of a side.
 fn branch(side: Side, [first, second]: [Vector2<f64>; 2]) -> (Words, Words) {
     let pair = |of: Vector2<f64>| Words::prose("({}, {})", [0, 1].map(|row| words![(of[row], Digits::Significant(8))]));
     (

@@ -1,4 +1,4 @@
-//! The page of `locate`: the corner impacts of a range of speeds, and what happens at each.
+//! The page of `locate`: the corner impacts in a range of speeds, and the scenario at each.
 
 use crate::border_collision::Classification;
 use crate::corner::Way;
@@ -80,7 +80,7 @@ fn table(found: &[LocatedImpact]) -> Table {
     table
 }
 
-/// A sentence for each border collision, and one for each other thing that happens.
+/// A sentence for each scenario of border collision, and one for each other kind of event.
 fn meanings(found: &[LocatedImpact]) -> Vec<Block> {
     let mut said: Vec<String> = Vec::new();
     let mut meanings = Vec::new();
@@ -113,7 +113,7 @@ fn meanings(found: &[LocatedImpact]) -> Vec<Block> {
 }
 
 fn rejected(found: &Located) -> Vec<Block> {
-    /// Longest list of refusals that is printed line by line.
+    /// Most refusals that are printed line by line.
     const LONGEST: usize = 12;
     let all = &found.looked_at.rejected;
     if all.is_empty() {
@@ -173,12 +173,12 @@ fn searched(found: &Located) -> String {
     words
 }
 
-/// What each way of looking found, which one way alone, and how many there may be besides.
+/// Numbers of corner impacts that each search found, that only one search found, and that are probably missing.
 fn found_by(found: &Located) -> String {
     let recaptured = found.looked_at.recaptured();
     let sum = |count: fn(&Recaptured) -> usize| recaptured.values().map(count).sum::<usize>();
     let (branches, shots, both) = (sum(|it| it.branches), sum(|it| it.shots), sum(|it| it.both));
-    /// Fewer that both find tell too little.
+    /// Fewest corner impacts found by both searches from which the missing ones are estimated.
     const TELLING: usize = 10;
     let missing = match recaptured.values().map(Recaptured::missing).sum::<f64>() {
         _ if both < TELLING => "too few to tell how many more there may be".to_owned(),
@@ -202,7 +202,7 @@ fn found_by(found: &Located) -> String {
     )
 }
 
-/// What the routes say, in a word or two.
+/// Agreement of the routes, in a word or two.
 fn verdict(impact: &LocatedImpact) -> &'static str {
     match (impact.agrees, impact.comparisons.iter().all(|entry| entry.agrees)) {
         (true, _) => "agree",
@@ -211,7 +211,7 @@ fn verdict(impact: &LocatedImpact) -> &'static str {
     }
 }
 
-/// What does not agree at a corner impact.
+/// Disagreements at a corner impact, and routes that failed.
 fn disagreement(impact: &LocatedImpact) -> String {
     let missing = impact.skipped.iter().filter(|skipped| skipped.failed);
     let missing = missing.map(|skipped| format!("{}: {}", skipped.route, skipped.why));

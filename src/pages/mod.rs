@@ -1,4 +1,4 @@
-//! The page of each command, laid out from what was found.
+//! The page of each command, laid out from its results.
 
 use crate::show::block::{Block, Words};
 use crate::show::words;
@@ -21,14 +21,14 @@ mod simulate;
 mod speeds;
 mod verify;
 
-/// Where a model's numbers come from, where it says so.
+/// Source of a model's numbers, if the model states one.
 fn source(said: &str) -> Option<Block> {
     (!said.is_empty()).then(|| Block::paragraph(said))
 }
 
-/// Each in a line, but for a long list's rest.
+/// One line for each item, up to a limit.
 fn some_of<T>(all: &[T], what: &str, line: impl Fn(&T) -> Words) -> Vec<Block> {
-    /// Longest list that is printed line by line.
+    /// Most items that are printed line by line.
     const LONGEST: usize = 12;
     let mut lines: Vec<_> = all.iter().take(LONGEST).map(|one| Block::Paragraph(4, line(one))).collect();
     if all.len() > LONGEST {

@@ -1,4 +1,4 @@
-//! The page of `orbit`: each periodic orbit, its multipliers, and where it meets the cam.
+//! The page of `orbit`: each periodic orbit, its multipliers, and its impacts on the cam.
 
 use crate::known::{Complete, Known};
 use crate::measured::Measured;
@@ -35,7 +35,7 @@ impl Paged for Orbits {
     }
 }
 
-/// Whether there may be others.
+/// States whether other orbits are possible.
 fn complete(of: &Complete) -> Block {
     let (impacts, turns) = (words::many(of.impacts as u64, "impact"), words::many(of.revolutions, "revolution"));
     let others = match of.known {
@@ -50,7 +50,7 @@ fn undecided(at: &Undecided) -> Words {
     format!("Not decided: impacts at {} deg.", angles.collect::<Vec<_>>().join(" and ")).into()
 }
 
-/// What is proved of the orbits, and what is computed only.
+/// States what is proved about the orbits, and what is only computed.
 fn how_known(orbits: &[PeriodicOrbit]) -> Option<Block> {
     let proved = orbits.iter().filter(|orbit| orbit.known == Known::Proved).count();
     let judged = orbits.iter().filter(|orbit| orbit.judgement.known == Known::Proved).count();
@@ -62,7 +62,7 @@ fn how_known(orbits: &[PeriodicOrbit]) -> Option<Block> {
     })
 }
 
-/// How far an orbit's numbers may be off, and why.
+/// Uncertainty of an orbit's numbers, and its cause.
 fn left_open(cam: &Measured, error: Option<&OrbitError>) -> Block {
     let why = words::accuracy(cam);
     let Some(error) = error else {
@@ -91,7 +91,7 @@ fn left_open(cam: &Measured, error: Option<&OrbitError>) -> Block {
     Block::paragraph(text)
 }
 
-/// So many places, or as many as the cam leaves.
+/// The given number of places, or fewer if the uncertainty due to the cam is larger.
 fn known(places: usize, error: Option<f64>) -> Digits {
     match error.filter(|error| *error > 0.0).map(|error| with_error(error).0) {
         Some(Digits::Fixed(left)) => Digits::Fixed(left.min(places)),
@@ -100,7 +100,7 @@ fn known(places: usize, error: Option<f64>) -> Digits {
 }
 
 fn one(number: usize, orbit: &PeriodicOrbit, error: Option<&OrbitError>) -> Vec<Block> {
-    /// Impacts that are shown of an orbit.
+    /// Most impacts that are shown of an orbit.
     const SHOWN: usize = 8;
     let impacts = orbit.impacts().count();
     let turns = words::many(orbit.revolutions, "revolution");

@@ -1,4 +1,4 @@
-//! The pages of `simulate` and `diagram`: what a run and a sweep came to.
+//! The pages of `simulate` and `diagram`: the results of a run and of a sweep.
 
 use crate::show::block::{Block, Span, Words, words as sentence};
 use crate::show::digits::Digits;
@@ -55,7 +55,7 @@ impl Paged for Swept {
     }
 }
 
-/// The time that a revolution took, where there was one.
+/// Computing time for a revolution; empty if there were no revolutions.
 fn per_turn(wall_s: f64, revolutions: f64) -> String {
     if revolutions > 0.0 { format!(", {:.0} ns a revolution", wall_s / revolutions * 1e9) } else { String::new() }
 }

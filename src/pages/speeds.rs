@@ -1,4 +1,4 @@
-//! The page of `speeds`: the short answer first, then every attractor with where it begins and ends.
+//! The page of `speeds`: the short answer first, then every attractor with its beginning and end.
 
 use crate::elementary;
 use crate::measured::Measured;
@@ -46,7 +46,7 @@ impl Paged for SpeedSurvey {
     }
 }
 
-/// Where there are several attractors, ranges that meet as one.
+/// Ranges with several attractors; adjacent ranges are joined.
 pub(crate) fn together(found: &SpeedSurvey) -> Vec<Words> {
     let mut joined: Vec<[f64; 2]> = Vec::new();
     for over in &found.coexistence {
@@ -58,32 +58,32 @@ pub(crate) fn together(found: &SpeedSurvey) -> Vec<Words> {
     joined.into_iter().map(|[from, to]| words![open_to(found, from), "–", open_to(found, to)]).collect()
 }
 
-/// Where attractors begin and end.
+/// Beginnings and ends of attractors.
 fn ends(found: &SpeedSurvey) -> impl Iterator<Item = &Transition> {
     found.attractors.iter().flat_map(|attractor| attractor.birth.iter().chain(&attractor.death))
 }
 
-/// A value at which an attractor begins or ends, in no more digits than a measured cam leaves it.
+/// A value at which an attractor begins or ends, in the digits that the uncertainty of a measured cam leaves.
 fn open_to(found: &SpeedSurvey, value: f64) -> Words {
     let usual = if found.over.is_speed() { Digits::Fixed(2) } else { Digits::Significant(5) };
     let end = ends(found).find(|end| end.value() == value);
     words![(value, end.and_then(|end| open(found, end)).map_or(usual, |error| with_error(error).0))]
 }
 
-/// The unit behind a value, with a space.
+/// The unit after a value, with a space.
 fn unit(found: &SpeedSurvey) -> String {
     found.over.words("").trim_end().to_owned()
 }
 
-/// How far a measured cam may have moved an end, as far as digits go, rpm: one of which that is not known has no more of them than
-/// the best known, and no decimals where none is known.
+/// Uncertainty of an end due to a measured cam, for the choice of digits, rpm. An end of unknown uncertainty gets the smallest known
+/// one. If none is known, it gets no decimals.
 fn open(found: &SpeedSurvey, end: &Transition) -> Option<f64> {
     const WHOLE: f64 = 10.0;
     let best = || ends(found).filter_map(|end| end.error).reduce(f64::min);
     end.error.or_else(|| Measured::noisy(&found.measured).map(|_| best().unwrap_or(WHOLE)))
 }
 
-/// Where the follower first leaves the cam.
+/// Speed at which the follower first leaves the cam.
 pub(crate) fn detachment(found: &SpeedSurvey) -> Words {
     let Some(separation) = found.separation else {
         return match found.detachment() {
@@ -98,7 +98,7 @@ pub(crate) fn detachment(found: &SpeedSurvey) -> Words {
     }
 }
 
-/// A speed with what the accuracy of a measured cam leaves open, and why.
+/// A speed with its uncertainty due to a measured cam, and the cause.
 pub(crate) fn measured_speed(rpm: f64, digits: Digits, error: Option<f64>, cam: Option<&Measured>) -> Words {
     match (error, cam.filter(|cam| cam.is_noisy)) {
         (Some(error), Some(cam)) => {
@@ -112,7 +112,7 @@ pub(crate) fn measured_speed(rpm: f64, digits: Digits, error: Option<f64>, cam: 
     }
 }
 
-/// How it was found out, and what that can miss.
+/// Method of the search, and what it can miss.
 pub(crate) fn how(found: &SpeedSurvey) -> String {
     const LOCATED: &str = " A speed with six decimals was located by the equations of what happens there; others are known from runs \
                            alone, to the digits shown.";
@@ -148,7 +148,7 @@ pub(crate) fn how(found: &SpeedSurvey) -> String {
     )
 }
 
-/// What errors stand for, where the cam is measured.
+/// Meaning of the errors if the cam is measured.
 pub(crate) fn cam(measured: &Measured) -> Option<Block> {
     if let Some(why) = &measured.noise_unknown {
         return Some(Block::paragraph(words::noise_unknown(why)));
@@ -161,7 +161,7 @@ pub(crate) fn cam(measured: &Measured) -> Option<Block> {
     measured.is_noisy.then(|| Block::paragraph(words))
 }
 
-/// How often a motion rests that bounces as chaos does in between.
+/// Frequency of rests of a motion that bounces chaotically in between.
 pub(crate) fn rests(attractor: &AttractorRow) -> Option<String> {
     let rests = attractor.rests()?;
     let id = &attractor.id;
@@ -182,7 +182,7 @@ pub(crate) fn rests(attractor: &AttractorRow) -> Option<String> {
     })
 }
 
-/// The corner impacts at which there is danger.
+/// Corner impacts with a danger.
 pub(crate) fn dangers(found: &SpeedSurvey) -> impl Iterator<Item = Block> {
     found.dangers.iter().map(|it| {
         let (value, angle) = ((it.at.across(), digits(found)), (it.cam_angle.to_degrees(), Digits::Fixed(2)));
@@ -194,7 +194,7 @@ pub(crate) fn dangers(found: &SpeedSurvey) -> impl Iterator<Item = Block> {
     })
 }
 
-/// The attractors, with where each begins and ends.
+/// Table of the attractors, with the beginning and end of each.
 pub(crate) fn table(found: &SpeedSurvey) -> Table {
     let ends = if found.over.is_speed() { ["from (rpm)", "to (rpm)"] } else { ["from", "to"] };
     let columns = [
@@ -229,14 +229,14 @@ pub(crate) fn table(found: &SpeedSurvey) -> Table {
     table
 }
 
-/// The digits of a located value: six decimals of a speed.
+/// Digits of a located value: six decimals for a speed.
 fn digits(found: &SpeedSurvey) -> Digits {
     if found.over.is_speed() { Digits::Fixed(6) } else { Digits::Significant(9) }
 }
 
-/// A value to the digits that it is known to.
+/// A value in the digits that are known.
 fn end(found: &SpeedSurvey, value: f64, change: Option<&Transition>) -> Words {
-    /// The most decimals: of a speed those of one that is located.
+    /// Most decimals of a speed, as many as a located one has, and of another number.
     const MOST: [f64; 2] = [6.0, 12.0];
     let most = MOST[usize::from(!found.over.is_speed())];
     let Some(change) = change else { return words![(value, Digits::UpTo(most as usize))] };

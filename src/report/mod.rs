@@ -1,4 +1,4 @@
-//! Everything that is found about one model in one value: what the HTML page is made of.
+//! All results for one model in one value: the contents of the HTML page.
 
 pub(crate) mod quantities;
 pub mod through;
@@ -31,62 +31,62 @@ use crate::study::verify::{External, Tally, Verification, verify_watched};
 /// A report on one model; serializes to the document `corner-impact/report/1`.
 #[derive(Clone, Debug)]
 pub struct Report {
-    /// Whether nothing that was checked disagrees.
+    /// Whether no check disagrees.
     pub agrees: bool,
     /// Whether follower and cam are the paper's.
     pub is_paper: bool,
-    /// What the model is.
+    /// Description of the model.
     pub model: ModelSheet,
-    /// The corner impact and its map by every route, or why there is none.
+    /// The corner impact and its map by every route, or the reason why there is none.
     pub verification: Result<Verification, String>,
-    /// The motion at speeds on either side of the corner impact, or why there is none.
+    /// Motion at speeds on either side of the corner impact, or the reason why there is none.
     pub through: Result<ThroughCorner, String>,
-    /// The paper's statements, where the model is the paper's.
+    /// The paper's statements, if the model is the paper's.
     pub claims: Option<Claims>,
-    /// Where the follower first leaves the cam, by the force between them.
+    /// Speed at which the follower first leaves the cam, from the contact force.
     pub separation: Separation,
-    /// How well the cam is known, if it is measured.
+    /// Accuracy of the cam, if it is measured.
     pub measured: Option<Measured>,
-    /// That force below there; nothing where the follower leaves the cam however slow, or never.
+    /// Contact force below separation; `None` if the follower leaves the cam at any speed, or never.
     pub margin: Option<Margin>,
-    /// What the model's lengths are told in.
+    /// Units of the model's lengths in the report.
     pub units: Units,
     /// The model.
     pub parsed: Model,
-    /// What the follower does at other speeds, or why that is not known.
+    /// Motions at other speeds, or the reason why they are unknown.
     pub speeds: Result<SpeedSurvey, String>,
-    /// Where its impacts fall over these speeds: the picture of the answer.
+    /// Impact phases over these speeds: the picture of the answer.
     pub overview: Option<Plate>,
-    /// What cam and follower bear over the range; none where a run cannot go on.
+    /// Loads on cam and follower over the range; `None` if a run cannot continue.
     pub design: Option<Design>,
-    /// That drawn.
+    /// Figure of these loads.
     pub loads: Option<Plate>,
-    /// The same with every attractor and its share of the starts.
+    /// Figure of the overview with every attractor and its share of the starts.
     pub attractors: Option<Plate>,
     /// The figures, in the paper's order.
     pub plates: Vec<Plate>,
-    /// Commands that do all this again, each with what it does.
+    /// Commands that reproduce the report, each with its purpose.
     pub commands: Vec<(String, &'static str)>,
 }
 
-/// How much is left of the force between follower and cam below the speed at which it comes to nothing.
+/// Remaining contact force below the speed at which it becomes zero.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Margin {
-    /// The speed at which it does, rpm.
+    /// Separation speed, at which the force becomes zero, rpm.
     pub separation_rpm: f64,
-    /// Where on the cam, deg.
+    /// Cam angle of the separation, deg.
     pub separation_deg: f64,
-    /// The speed that this is about, rpm.
+    /// Speed of this margin, rpm.
     pub speed_rpm: f64,
-    /// The least force round the cam at that speed, and as the cam stands still, in the unit.
+    /// Least force round the cam at that speed, and on the resting cam, in `force_unit`.
     pub least_force: [f64; 2],
-    /// Where on the cam the former is, deg.
+    /// Cam angle of the least force at that speed, deg.
     pub cam_angle_deg: f64,
-    /// The unit of the force.
+    /// Unit of the force.
     pub force_unit: String,
 }
 
-/// At four fifths of the speed of separation.
+/// Computes the margin at four fifths of the separation speed.
 fn margin(contact: &Contact<'_>, units: &Units) -> Option<Margin> {
     const SHARE: f64 = 0.8;
     let Separation::At { rpm, cam_angle, .. } = contact.separation() else { return None };
@@ -101,7 +101,7 @@ fn margin(contact: &Contact<'_>, units: &Units) -> Option<Margin> {
     })
 }
 
-/// The version of this program.
+/// Version of this program.
 pub(crate) const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 document!(Report as it {
@@ -132,7 +132,7 @@ document!(Report as it {
     commands: it.commands,
 });
 
-/// The findings in brief.
+/// Summary of the findings.
 struct Headline<'a>(&'a Report);
 
 document!(Headline<'_> as it {
@@ -150,7 +150,7 @@ document!(Headline<'_> as it {
     claims_otherwise: it.0.claims_otherwise(),
 });
 
-/// One side's matrices by every route.
+/// The matrices of one side by every route.
 struct MapTable<'a> {
     found: &'a Verification,
     side: Side,
@@ -158,44 +158,44 @@ struct MapTable<'a> {
 
 document!(MapTable<'_> as it { side: it.side, routes: names(it.found), rows: it.found.entries(it.side) });
 
-/// The routes that ran.
+/// Names of the routes that ran.
 fn names(found: &Verification) -> Vec<String> {
     found.routes_by_name().map(|route| words::route(route.name)).collect()
 }
 
-/// What the model is.
+/// Description of the model.
 #[derive(Clone, Debug, Serialize)]
 pub struct ModelSheet {
-    /// Its name.
+    /// Name of the model.
     pub name: String,
-    /// Where its numbers come from.
+    /// Source of its numbers.
     pub source: String,
-    /// Its file, as given.
+    /// Model file as given.
     pub file: String,
-    /// Every number of it.
+    /// All numbers of the model.
     pub quantities: Vec<Quantity>,
-    /// Segments and corners.
+    /// Segments and corners of the cam.
     pub cam: CamSheet,
 }
 
-/// Why there is no report.
+/// Reason why there is no report.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ReportError {
     /// The model is impossible.
     #[error(transparent)]
     Model(#[from] ModelError),
-    /// The ledger cannot be held against it.
+    /// The ledger cannot be checked against the model.
     #[error(transparent)]
     Ledger(#[from] LedgerError),
 }
 
-/// Speeds that are run for the section on speeds, and starts at each of them.
+/// Number of speeds for the section on speeds, and of starts at each speed.
 const SPEEDS: (u32, usize) = (30, 12);
-/// Of the paper's machine, whose chaos is quick to run.
+/// Number of speeds and of starts for the paper's machine, whose chaos is quick to run.
 const PAPERS_SPEEDS: (u32, usize) = (100, 32);
-/// Speeds at which loads are told.
+/// Number of speeds at which loads are computed.
 const LOADED: u32 = 21;
-/// Parts of the work that are done when each stage is, of one.
+/// Share of the work that is done at the end of each stage.
 const VERIFIED: f64 = 0.1;
 const HELD: f64 = 0.25;
 const SURVEYED: f64 = 0.55;
@@ -203,7 +203,7 @@ const LOADS: f64 = 0.58;
 const THROUGH: f64 = 0.6;
 
 impl Report {
-    /// Everything about a model, at speeds of this range, rpm, or of its own.
+    /// Computes the report on a model, at speeds of this range, rpm, or of the model's own.
     ///
     /// A model without a corner impact to verify has a report that says so.
     pub fn of(
@@ -275,24 +275,24 @@ impl Report {
         })
     }
 
-    /// Comparisons and printed numbers by what came of them; none without a corner impact.
+    /// Counts of comparisons and printed numbers by their result; empty without a corner impact.
     pub(crate) fn tally(&self) -> Tally {
         self.verification.as_ref().map(Verification::tally).unwrap_or_default()
     }
 
-    /// What should have run and did not.
+    /// Routes that should have run and did not.
     pub(crate) fn failed(&self) -> Vec<String> {
         let skipped = self.verification.iter().flat_map(|found| &found.skipped);
         skipped.filter(|skipped| skipped.failed).map(|skipped| words::spoken(&skipped.route)).collect()
     }
 
-    /// Statements that came out otherwise than the ledger says.
+    /// Number of statements whose check disagrees with the ledger.
     pub(crate) fn claims_otherwise(&self) -> usize {
         self.claims.iter().flat_map(|ledger| &ledger.claims).filter(|claim| !claim.as_found).count()
     }
 }
 
-/// Where runs hit the cam at which speed.
+/// Figure of impact phases over speeds.
 fn overview(model: &Model, cam: &Cam, found: &SpeedSurvey) -> Plate {
     let figure = impacts_by_speed(found, &corner_marks(cam));
     let title = figure.title.clone();
@@ -305,7 +305,7 @@ fn overview(model: &Model, cam: &Cam, found: &SpeedSurvey) -> Plate {
     Plate { id: "overview", place: "", title, command, drawn: Ok(Drawn { figure, caption }) }
 }
 
-/// What cam and follower bear, drawn.
+/// Figure of the loads on cam and follower.
 fn loads(model: &Model, found: &Design, [low, high]: [f64; 2]) -> Plate {
     let figure = design_figure(found).in_units(|unit| model.units.spelled(unit));
     let title = figure.title.clone();
@@ -318,7 +318,7 @@ fn loads(model: &Model, found: &Design, [low, high]: [f64; 2]) -> Plate {
     Plate { id: "loads", place: "", title, command, drawn: Ok(Drawn { figure, caption }) }
 }
 
-/// What runs end on, drawn.
+/// Figure of the attractors of runs.
 fn attractors(model: &Model, cam: &Cam, found: &SpeedSurvey) -> Plate {
     let figure = speeds_figure(found, &corner_marks(cam), WIDTH);
     let title = figure.title.clone();
@@ -330,7 +330,7 @@ fn attractors(model: &Model, cam: &Cam, found: &SpeedSurvey) -> Plate {
     Plate { id: "attractors", place: "", title, command, drawn: Ok(Drawn { figure, caption }) }
 }
 
-/// The motion on either side of the corner impact, or why there is none.
+/// Motion on either side of the corner impact, or the reason why there is none.
 fn through(model: &Model, cam: &Cam, found: &Verification) -> Result<ThroughCorner, String> {
     match through_corner(model, cam, &found.at) {
         Ok(Some(found_there)) => {
@@ -343,7 +343,7 @@ fn through(model: &Model, cam: &Cam, found: &Verification) -> Result<ThroughCorn
     }
 }
 
-/// A part of the work, told as its share of the whole.
+/// A part of the work, which reports its progress as a share of the whole.
 struct Part<'a> {
     watch: &'a dyn Watch,
     from: f64,

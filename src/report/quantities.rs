@@ -8,20 +8,20 @@ use crate::model::{CORNER_ROUNDING, Model, Units};
 /// A number of a model.
 #[derive(Clone, Debug, Serialize)]
 pub struct Quantity {
-    /// Its path in the model file; empty for what follows from others.
+    /// Path in the model file; empty for a derived number.
     pub field: String,
-    /// The paper's symbol, where it has one.
+    /// Symbol in the paper, if any.
     pub symbol: &'static str,
-    /// What it is.
+    /// Meaning of the number.
     pub meaning: String,
-    /// Its value.
+    /// Value of the number.
     pub value: f64,
-    /// Its unit; empty for a pure number.
+    /// Unit; empty for a pure number.
     pub unit: String,
 }
 
 impl Quantity {
-    /// What `explain` knows it by.
+    /// Name of the number in `explain`.
     pub(crate) fn name(&self) -> &str {
         match (self.field.as_str(), self.symbol) {
             ("", "ζ") => "zeta",
@@ -31,7 +31,7 @@ impl Quantity {
     }
 }
 
-/// Fields that are known by name: path, symbol, meaning, unit.
+/// Known fields: path, symbol, meaning, unit.
 const KNOWN: [(&str, &str, &str, &str); 16] = [
     ("follower.mass", "m", "mass of the follower", "kg"),
     ("follower.damping", "b", "damping", "N s/m"),
@@ -51,12 +51,12 @@ const KNOWN: [(&str, &str, &str, &str); 16] = [
     ("cam.corner_rounding_deg", "", "angle that corners are rounded over", "deg"),
 ];
 
-/// Every number of the model in the order of its file, then what follows from them.
+/// All numbers of the model in the order of its file, then derived ones.
 pub(crate) fn quantities(model: &Model) -> Vec<Quantity> {
     let place = |field: &str| KNOWN.iter().position(|(path, ..)| *path == field);
     let is_said = |(field, value): &(&str, f64)| *field != CORNER_ROUNDING || *value != 0.0;
     let mut numbers: Vec<(&str, f64)> = model.numbers().filter(is_said).collect();
-    // Those of the table in its order, the others after them as they come.
+    // Known fields in the order of the table, then the others in the order of the file.
     numbers.sort_by_key(|(field, _)| place(field).unwrap_or(KNOWN.len()));
     let mut quantities: Vec<Quantity> =
         numbers.into_iter().map(|(field, value)| written(&model.units, field, value)).collect();
@@ -98,7 +98,7 @@ fn written(units: &Units, field: &str, value: f64) -> Quantity {
     let unit = match name.split('[').next().unwrap_or(name) {
         "amplitudes" | "rise" => "m",
         "phases_deg" | "span_deg" | "start_deg" => "deg",
-        // A coefficient's power is its place in the list.
+        // The power of a coefficient is its index in the list.
         "coefficients" => "m/rad^place",
         _ => "",
     };

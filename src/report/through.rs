@@ -1,5 +1,5 @@
-//! The motion at speeds on either side of the corner impact, as a document: what the slider of the page shows. Numbers are
-//! rounded to what a picture or its readout can show.
+//! The motion at speeds on either side of the corner impact, as a document for the slider of the page. Numbers are
+//! rounded to the precision of a picture or its readout.
 
 use serde::Serialize;
 
@@ -11,88 +11,88 @@ use crate::figures::through_corner::{Moment, Place, Shown, profile};
 use crate::figures::{CornerMark, Outline, corner_marks};
 use crate::model::Units;
 
-/// Why there is nothing to show.
+/// Reason why there is nothing to show.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("at {rpm} rpm a number of the motion is not finite")]
 pub struct NotFinite {
-    /// The speed.
+    /// Speed, rpm.
     pub rpm: f64,
 }
 
-/// What the slider shows.
+/// Data of the slider.
 #[derive(Clone, Debug, Serialize)]
 pub struct ThroughCorner {
-    /// How finely its numbers are told.
+    /// Decimal places of its numbers.
     pub places: Places,
-    /// Letter of the corner, or its angle.
+    /// Letter of the corner, or its cam angle.
     pub corner: String,
-    /// Its cam angle.
+    /// Cam angle of the corner, deg.
     pub corner_deg: f64,
     /// Index of the frame at the corner impact.
     pub at_corner: usize,
     /// Axes of the drawings.
     pub axes: Axes,
-    /// Angle, deg; lift, m; acceleration, m/rad^2; each corner twice, with the law before it and the law after it.
+    /// Profile: angle, deg; lift, m; acceleration, m/rad^2. Each corner appears twice, with the law before it and the law after it.
     pub cam: Vec<[f64; 3]>,
-    /// Added to the lift where the cam is drawn as a shape, m.
+    /// Radius added to the lift where the cam is drawn as a shape, m.
     pub drawn_on_m: f64,
-    /// Largest radius of that shape, m.
+    /// Largest radius of the drawn shape, m.
     pub drawn_radius_m: f64,
-    /// Corners that have a label: angle, deg, and label.
+    /// Labelled corners: angle, deg, and label.
     pub corners: Vec<(f64, String)>,
-    /// By rising speed.
+    /// Frames in order of rising speed.
     pub frames: Vec<Moment>,
 }
 
-/// The axes.
+/// Axes of the drawings.
 #[derive(Clone, Debug, Serialize)]
 pub struct Axes {
     /// Speed, rpm.
     pub speed: AxisEntry,
-    /// Cam angle, deg, once round.
+    /// Cam angle over one revolution, deg.
     pub angle: AxisEntry,
     /// Position, m.
     pub position: AxisEntry,
     /// Cam angles of impacts near the corner, deg.
     pub near: AxisEntry,
-    /// Acceleration of the cam there, m/rad^2.
+    /// Acceleration of the cam near the corner, m/rad^2.
     pub acceleration: AxisEntry,
-    /// Real and imaginary part.
+    /// Real and imaginary part of multipliers.
     pub plane: AxisEntry,
 }
 
 /// An axis.
 #[derive(Clone, Debug, Serialize)]
 pub struct AxisEntry {
-    /// Its ends.
+    /// Ends of the axis.
     pub range: [f64; 2],
-    /// Its unit, with the power of ten that labels are to be multiplied by.
+    /// Unit, with the power of ten by which labels are multiplied.
     pub unit: String,
-    /// Where ticks stand, and their labels.
+    /// Positions and labels of the ticks.
     pub ticks: Vec<(f64, String)>,
 }
 
-/// Places after the point of an angle in degrees, and of one that is only drawn.
+/// Decimal places of an angle in degrees, and of an angle that is only drawn.
 const ANGLE: i32 = 4;
 const DRAWN_ANGLE: i32 = 1;
-/// Digits of a quantity's extent: more than a picture can show, fewer than fill a page.
+/// Significant digits relative to a quantity's extent: more than a picture can show, few enough to keep the page small.
 const POSITION: i32 = 5;
 const VELOCITY: i32 = 6;
 const ACCELERATION: i32 = 5;
-/// Places of a multiplier.
+/// Decimal places of a multiplier.
 const MULTIPLIER: i32 = 6;
-/// The largest part of a multiplier that the plane has room for.
+/// Largest real or imaginary part of a multiplier for which the plane has room.
 const WIDEST: f64 = 2.5;
-/// Margins of an axis, of what it shows.
+/// Margin of an axis, as a share of its data.
 const MARGIN: f64 = 0.06;
 
-/// Places after the point: a model's unit of length is its own.
+/// Decimal places of each quantity; they depend on the model, because its unit of length may be any.
 #[derive(Clone, Copy, Debug, Serialize)]
 #[expect(missing_docs, reason = "each is of the quantity that it is named after")]
 pub struct Places {
-    /// So many that neighbouring frames differ.
+    /// Enough places that neighbouring frames differ.
     pub speed: i32,
-    /// By the cam's travel.
+    /// Places that follow from the cam's travel.
     pub position: i32,
     pub velocity: i32,
     pub acceleration: i32,
@@ -119,7 +119,7 @@ impl Places {
         }
     }
 
-    /// Rounds every number of a speed; whether all of them are finite.
+    /// Rounds all numbers of a frame; returns whether all are finite.
     fn round(&self, moment: &mut Moment) -> bool {
         let numbers = moment.orbits.iter_mut().flat_map(|orbit| self.numbers(orbit));
         let mut finite = true;
@@ -138,7 +138,7 @@ impl Places {
         finite
     }
 
-    /// The numbers of an orbit, each with its places.
+    /// Numbers of an orbit, each with its decimal places.
     fn numbers<'a>(&self, orbit: &'a mut Shown) -> [(&'a mut f64, i32); 10] {
         let [one, other] = &mut orbit.multipliers;
         [
@@ -156,7 +156,7 @@ impl Places {
     }
 }
 
-/// The places after the point that give the extent of a quantity so many digits.
+/// Decimal places that give the extent of a quantity this many digits.
 fn of_extent(extent: f64, digits: i32) -> i32 {
     const MOST: i32 = 15;
     if !(extent > 0.0 && extent.is_finite()) {
@@ -167,14 +167,14 @@ fn of_extent(extent: f64, digits: i32) -> i32 {
 
 fn rounded(value: f64, places: i32) -> f64 {
     let scale = 10_f64.powi(places);
-    // Without the sign of a zero.
+    // Adding 0 removes the sign of a negative zero.
     (value * scale).round() / scale + 0.0
 }
 
 impl ThroughCorner {
-    /// The motions `frames` of a machine by rising speed, of which that of index `at_corner` has its impact at `corner`, rad.
+    /// Collects the motions `frames` of a machine, by rising speed. The frame `at_corner` has its impact at the cam angle `corner`, rad.
     ///
-    /// An error where a number is not finite: the page's data have no way to write one.
+    /// Fails if a number is not finite, because the page's data cannot represent it.
     pub fn new((mut frames, at_corner): (Vec<Moment>, usize), cam: &Cam, corner: f64) -> Result<Self, NotFinite> {
         let (corner_deg, profile, marks) = (corner.to_degrees(), profile(cam), corner_marks(cam));
         let places = Places::new(&frames, &profile);
@@ -209,11 +209,11 @@ impl ThroughCorner {
 }
 
 impl ThroughCorner {
-    /// With the lengths on its axes told in the length of a model.
+    /// Converts the lengths on its axes to the model's unit.
     pub(crate) fn in_units(mut self, units: &Units) -> Self {
         if units.are_given {
             for axis in [&mut self.axes.position, &mut self.axes.acceleration] {
-                // Behind a power of ten, if there is one.
+                // The unit follows a power of ten, if there is one.
                 let (power, unit) = axis.unit.rsplit_once(' ').unwrap_or(("", &axis.unit));
                 axis.unit = format!("{power} {}", units.spelled(unit)).trim().to_owned();
             }
@@ -233,7 +233,7 @@ impl AxisEntry {
     }
 
     fn around([low, high]: [f64; 2], name: &str, most: usize) -> Self {
-        // What is the same all over still has room above and below.
+        // A constant also gets room above and below.
         let wide = if high > low { high - low } else { high.abs().max(1.0) };
         Self::over([low - MARGIN * wide, high + MARGIN * wide], name, Spacing::Decimal, most)
     }
@@ -248,7 +248,7 @@ impl Axes {
         let positions = extent(of_orbits.chain(of_runs).map(|point| point[1]).chain(lifts));
         let beside = orbits().filter(|orbit| orbit.place != Place::Elsewhere);
         let [first, last] = extent(beside.map(|orbit| corner_deg + orbit.from_corner_deg).chain([corner_deg]));
-        // At least a few degrees, so that a corner shows that nothing moves over.
+        // At least a few degrees, so that the corner is visible even if nothing moves across it.
         let reach = 0.12 * (last - first).max(20.0);
         let near = [rounded(first - reach, 1), rounded(last + reach, 1)];
         let seen = |point: &&[f64; 3]| {

@@ -1,26 +1,26 @@
 //! A page as a tree of blocks: written once, shown on a terminal, in a browser and as Markdown.
 //!
-//! Whoever lays out a page says what a word is, never how it looks. Where a terminal has room for a summary only, the page for
-//! a browser carries more: [`Block::Brief`] is for the one, [`Block::Full`] for the other.
+//! The code that lays out a page gives the meaning of a word, never its appearance. Where a terminal has room for a summary only, the page
+//! for a browser says more: [`Block::Brief`] is for the terminal, [`Block::Full`] for the browser.
 
 use maud::Markup;
 
 use crate::model::Units;
 use crate::show::digits::Digits;
 
-/// What a stretch of text is.
+/// Meaning of a stretch of text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mark {
     Heading,
-    /// What matters in a sentence; a terminal leaves it plain.
+    /// Important words of a sentence; a terminal leaves them plain.
     Strong,
-    /// As it should be: agrees, holds.
+    /// A good result: agrees, holds.
     Good,
-    /// Not as it should be: disagrees, refuted, did not run.
+    /// A bad result: disagrees, refuted, did not run.
     Bad,
-    /// A slip that nothing rests on.
+    /// An error on which no other statement depends.
     Doubtful,
-    /// Not decided.
+    /// An undecided result.
     Open,
 }
 
@@ -28,34 +28,34 @@ pub enum Mark {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Span {
     Text(String),
-    /// What the author of a model wrote: in it an underscore is no index.
+    /// Text by the author of a model; an underscore in it does not mean an index.
     Quoted(String),
-    /// A number, and how many of its digits are shown.
+    /// A number with its displayed digits.
     Number(f64, Digits),
-    /// Real and imaginary part; a real number where the latter is 0.
+    /// Real and imaginary part; shown as a real number if the imaginary part is 0.
     Complex([f64; 2], Digits),
-    /// A number beside another one that it should be: a browser underlines the digits that differ.
+    /// A number with its expected value: a browser underlines the digits that differ.
     Against(f64, f64, Digits),
-    /// A symbol of mathematics.
+    /// A mathematical symbol.
     Symbol(Symbol),
     /// A matrix by rows, or a column.
     Matrix(Vec<Vec<f64>>, Digits),
-    /// What is typed: a command, a field of a file.
+    /// Typed text: a command, a field of a file.
     Code(String),
-    /// A unit, written in metres: `m/s`. It is told in the length of the model.
+    /// A unit, written in metres: `m/s`. The page shows it in the model's unit of length.
     Unit(&'static str),
-    /// Words that stand out.
+    /// Emphasized words.
     Marked(Mark, String),
-    /// What stands for something that `explain` knows by this name.
+    /// Words for an entry that `explain` has under this name.
     About(String, Words),
-    /// The end of a line.
+    /// A line break.
     Break,
 }
 
-/// A symbol: a letter, smaller what is below and above it; and how a terminal writes it.
+/// A symbol: a letter with smaller text below and above it, and its form on a terminal.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Symbol {
-    /// As a terminal writes it: `A-`, `T*`.
+    /// Form on a terminal: `A-`, `T*`.
     pub plain: String,
     pub letter: &'static str,
     /// An index; empty where there is none.
@@ -68,7 +68,7 @@ pub struct Symbol {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Words(pub Vec<Span>);
 
-/// Words of strings, numbers of things, `(value, digits)`, spans and other words: `words!["of ", count, " pairs"]`.
+/// Builds words from strings, counts, `(value, digits)`, spans and other words: `words!["of ", count, " pairs"]`.
 macro_rules! words {
     ($($part:expr),* $(,)?) => {{
         let mut words = $crate::show::block::Words::default();
@@ -79,13 +79,13 @@ macro_rules! words {
 pub(crate) use words;
 
 impl Words {
-    /// Puts more words behind these.
+    /// Appends more words.
     pub(crate) fn push(&mut self, more: impl Into<Self>) {
         self.0.extend(more.into().0);
     }
 
-    /// A sentence: each `{}` is the next of the parts, a letter of mathematics stands between two underscores with its side
-    /// behind a `^`, and what is typed between two backticks.
+    /// Builds a sentence. Each `{}` takes the next of the parts, a mathematical letter is between two underscores with its side
+    /// behind a `^`, and typed text is between two backticks.
     pub(crate) fn prose(sentence: &'static str, parts: impl IntoIterator<Item = Self>) -> Self {
         let (mut prose, mut parts) = (Self::default(), parts.into_iter());
         for (place, text) in sentence.split('`').enumerate() {
@@ -108,7 +108,7 @@ impl Words {
         prose
     }
 
-    /// Words with others between each two of them.
+    /// Joins words with a separator between them.
     pub(crate) fn joined(all: impl IntoIterator<Item = Self>, between: &str) -> Self {
         let mut joined = Self::default();
         for (index, words) in all.into_iter().enumerate() {
@@ -172,13 +172,13 @@ impl From<Symbol> for Words {
     }
 }
 
-/// Words that stand for something that `explain` knows by a name.
+/// Words for an entry that `explain` has under a name.
 pub(crate) fn about(what: impl Into<String>, words: impl Into<Words>) -> Words {
     Span::About(what.into(), words.into()).into()
 }
 
 impl Words {
-    /// The same with units in the length of a model.
+    /// Converts units to the length of a model.
     fn in_units(self, units: &Units) -> Self {
         let told = |span| match span {
             Span::Unit(unit) => Span::Text(units.spelled(unit)),
@@ -189,51 +189,51 @@ impl Words {
     }
 }
 
-/// A piece of a page.
+/// One element of a page.
 #[derive(Clone, Debug)]
 pub enum Block {
     /// The title of a page.
     Title(Words),
-    /// The heading of a section or of a part of one.
+    /// The heading of a section or of a subsection.
     Heading(Words),
-    /// A line as it stands, with its spaces; where it does not fit a terminal, it goes on under its second column.
+    /// A literal line with its spaces; if it is too long for a terminal, it continues under its second column.
     Line(Words),
-    /// A paragraph, so many columns from the edge of a terminal.
+    /// A paragraph with an indent, in columns of a terminal.
     Paragraph(usize, Words),
-    /// A remark to what stands before it.
+    /// A remark on the block before it.
     Note(Words),
-    /// A name and what there is to say about it, each; the words begin so many columns behind the name.
+    /// Names with descriptions; the number is the width of the column of names.
     Entries(usize, Vec<(Words, Words)>),
     Table(Table),
-    /// One thing after the other.
+    /// A list of items.
     List(Vec<Words>),
-    /// What a browser folds away under its summary, and a terminal leaves out.
+    /// A block that a browser folds under its summary and a terminal leaves out.
     Details(Words, Vec<Block>),
-    /// For a terminal alone: less than a browser shows.
+    /// Blocks for a terminal only, shorter than those for a browser.
     Brief(Vec<Block>),
-    /// For a browser alone: more than a terminal shows.
+    /// Blocks for a browser only, longer than those for a terminal.
     Full(Vec<Block>),
-    /// All of these stand for something that `explain` knows by this name, but for what says that it stands for something else.
+    /// Blocks for an entry that `explain` has under this name, except for parts that name another entry.
     About(String, Vec<Block>),
-    /// An empty line of a terminal.
+    /// An empty line on a terminal.
     Gap,
-    /// What only a browser can show: a drawing, a form.
+    /// Content for a browser only: a drawing, a form.
     Markup(Markup),
 }
 
 impl Block {
-    /// A paragraph that is indented as most are.
+    /// A paragraph with the usual indent.
     pub(crate) fn paragraph(words: impl Into<Words>) -> Self {
         Self::Paragraph(2, words.into())
     }
 
-    /// This, standing for something that `explain` knows by a name.
+    /// Marks this block as one for an entry that `explain` has under a name.
     pub(crate) fn about(self, what: &str) -> Self {
         Self::About(what.into(), vec![self])
     }
 }
 
-/// Blocks with units in the length of a model.
+/// Converts the units of blocks to the length of a model.
 pub(crate) fn in_units(blocks: Vec<Block>, units: &Units) -> Vec<Block> {
     let told = |words: Words| words.in_units(units);
     let all = |words: Vec<Words>| words.into_iter().map(told).collect::<Vec<_>>();
@@ -261,13 +261,13 @@ pub(crate) fn in_units(blocks: Vec<Block>, units: &Units) -> Vec<Block> {
     blocks.into_iter().map(of_block).collect()
 }
 
-/// A part of a page that can be linked to.
+/// A section of a page that can be linked to.
 #[derive(Clone, Debug)]
 pub struct Section {
-    /// The fragment that leads there.
+    /// URL fragment of the section.
     pub id: &'static str,
     pub title: Words,
-    /// What stands under it.
+    /// Blocks of the section.
     pub blocks: Vec<Block>,
 }
 
@@ -275,31 +275,31 @@ pub struct Section {
 #[derive(Clone, Debug)]
 pub struct Column {
     pub head: Words,
-    /// Spaces before it on a terminal, where there is room.
+    /// Spaces before the column on a terminal, if there is room.
     pub gap: usize,
-    /// The fewest columns that it takes on a terminal, where there is room.
+    /// Least width on a terminal, if there is room.
     pub least: usize,
-    /// Whether its cells begin, and not end, under each other.
+    /// Whether the cells are left-aligned; otherwise right-aligned.
     pub left: bool,
 }
 
 impl Column {
-    /// Cells that begin under each other.
+    /// A left-aligned column.
     pub(crate) fn left(head: impl Into<Words>, gap: usize, least: usize) -> Self {
         Self { head: head.into(), gap, least, left: true }
     }
 
-    /// A column of words in the look that most have.
+    /// A column of words in the usual style.
     pub(crate) fn words(head: impl Into<Words>) -> Self {
         Self::left(head, 2, 0)
     }
 
-    /// A column of numbers in the look that most have.
+    /// A column of numbers in the usual style.
     pub(crate) fn number(head: impl Into<Words>) -> Self {
         Self::right(head, 0)
     }
 
-    /// Cells that end under each other.
+    /// A right-aligned column.
     pub(crate) fn right(head: impl Into<Words>, least: usize) -> Self {
         Self { head: head.into(), gap: 0, least, left: false }
     }
@@ -308,20 +308,20 @@ impl Column {
 /// A row of a table.
 #[derive(Clone, Debug)]
 pub struct Row {
-    /// One for each column; the first one heads the row.
+    /// One cell for each column; the first is the head of the row.
     pub cells: Vec<Words>,
-    /// Whether it says what should not be.
+    /// Whether the row states a bad result.
     pub is_bad: bool,
 }
 
 #[derive(Clone, Debug)]
 pub struct Table {
-    /// What it is of.
+    /// Subject of the table.
     pub label: String,
     pub columns: Vec<Column>,
     pub rows: Vec<Row>,
-    /// Where it is too wide, it is told in several tables that all have the first column and so many of the last ones;
-    /// `None` where it goes on row by row instead.
+    /// Number of last columns that are repeated, besides the first one, if a table that is too wide is split into several.
+    /// `None` if it is written row by row instead.
     pub repeated: Option<usize>,
 }
 
@@ -334,7 +334,7 @@ impl Table {
         self.rows.push(Row { cells: cells.into(), is_bad: false });
     }
 
-    /// Appends a row that says what should not be, where it is so.
+    /// Appends a row and marks it as a bad result if `is_bad`.
     pub(crate) fn row_bad_where(&mut self, is_bad: bool, cells: impl Into<Vec<Words>>) {
         self.rows.push(Row { cells: cells.into(), is_bad });
     }

@@ -1,8 +1,8 @@
-//! Command lines that do again what a report shows.
+//! Command lines that reproduce the contents of a report.
 
 use crate::model::Model;
 
-/// `corner-impact NAME MODEL REST`, without a model file where the model is built in, with the numbers that are changed.
+/// `corner-impact NAME MODEL REST`, without a model file for the built-in model, with options for the changed numbers.
 pub(crate) fn command(name: &str, model: &Model, rest: &str) -> String {
     let mut words = format!("corner-impact {name}");
     if let Some(path) = model.path() {
@@ -14,7 +14,7 @@ pub(crate) fn command(name: &str, model: &Model, rest: &str) -> String {
     if rest.is_empty() { words } else { format!("{words} {rest}") }
 }
 
-/// A word as a shell takes it: in quotes where it has anything but plain letters.
+/// A word quoted for a shell if it has anything but plain letters.
 fn shell_word(word: &str) -> String {
     let plain = |letter: char| letter.is_ascii_alphanumeric() || "/._-+:@%,=".contains(letter);
     if !word.is_empty() && word.chars().all(plain) { word.into() } else { format!("'{}'", word.replace('\'', "'\\''")) }

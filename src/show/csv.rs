@@ -1,5 +1,5 @@
-//! Tables as lines of CSV: numbers in the fewest digits that read back as the same double, without a point where they are
-//! whole and never with a power of ten, which is why the csv crate, that writes `1.0` and `1e-7`, does not write them.
+//! Tables as lines of CSV. Numbers have the fewest digits that read back as the same double, without a point if they are
+//! whole and never with a power of ten. The csv crate is not used, because it writes `1.0` and `1e-7`.
 
 use std::borrow::Cow;
 use std::fmt::{Display, Write};
@@ -21,12 +21,12 @@ use crate::study::design::loads::Loads;
 use crate::study::speeds::{At, AttractorRow, SpeedSurvey};
 use crate::study::survey::{Axis, Beginning, Block, Found, Point, Row, Section, Seen, Sweep};
 
-/// A table in the units of a model.
+/// Converts a table to the units of a model.
 pub(crate) fn told<'a>(table: &'a str, units: &Units) -> Cow<'a, str> {
     in_units(table, table.lines().next().unwrap_or_default(), units)
 }
 
-/// Lines under `columns`, or a whole table whose first line they are, in the units of a model.
+/// Converts lines under `columns`, or a whole table whose first line is `columns`, to the units of a model.
 pub(crate) fn in_units<'a>(lines: &'a str, columns: &str, units: &Units) -> Cow<'a, str> {
     if !units.are_given {
         return lines.into();
@@ -51,7 +51,7 @@ pub(crate) fn in_units<'a>(lines: &'a str, columns: &str, units: &Units) -> Cow<
     told.into()
 }
 
-/// The columns of a run's events.
+/// Columns of a run's events.
 pub(crate) const EVENTS: &str =
     "revolution,time_s,cam_angle_rad,event,position_m,velocity_before_m_s,velocity_after_m_s,cam_velocity_m_s\n";
 
@@ -66,7 +66,7 @@ pub(crate) fn event(line: &mut String, event: &Event, start_angle: f64, angular_
     );
 }
 
-/// The columns of a run's states at one angle.
+/// Columns of a run's states at one angle.
 pub(crate) const STROBE: &str = "revolution,position_m,velocity_m_s,gap_m,contact\n";
 
 /// Appends the state of a run at a section.
@@ -76,10 +76,10 @@ pub(crate) fn strobe(line: &mut String, machine: &Machine, motion: &Motion) {
     let _ = writeln!(line, "{},{position},{velocity},{gap},{contact}", motion.revolution);
 }
 
-/// The columns of a run moment by moment.
+/// Columns of a run's samples.
 pub(crate) const TRACE: &str = "time_s,cam_angle_rad,position_m,velocity_m_s,gap_m,contact_force_n\n";
 
-/// A run moment by moment: time since `start_angle`, rad; the force that the cam presses with on a follower of `mass`, kg.
+/// Samples of a run: time since `start_angle`, rad, and the contact force of the cam on a follower of `mass`, kg.
 pub(crate) fn trace(samples: &[Sample], start_angle: f64, angular_velocity: f64, mass: f64) -> String {
     let mut lines = String::new();
     for Sample { turned, cam_angle, state: State { position, velocity }, gap, pressing, .. } in samples {
@@ -89,7 +89,7 @@ pub(crate) fn trace(samples: &[Sample], start_angle: f64, angular_velocity: f64,
     lines
 }
 
-/// The columns of a diagram.
+/// Columns of a diagram.
 pub(crate) fn diagram(sweep: &Sweep) -> String {
     let seen = match sweep.section {
         Section::Impacts => "cam_angle_rad,event,position_m,velocity_before_m_s,velocity_after_m_s",
@@ -100,12 +100,12 @@ pub(crate) fn diagram(sweep: &Sweep) -> String {
     format!("{},revolution,{seen}{growth}{motion}\n", sweep.over.axis().parameter.name())
 }
 
-/// Lines of a diagram, as a worker makes them.
+/// Lines of a diagram, as one worker writes them.
 #[derive(Debug, Default)]
 pub(crate) struct Lines(pub String);
 
 impl Lines {
-    /// Characters after which lines are sent on.
+    /// Number of characters after which lines are sent on.
     const FULL: usize = 1 << 15;
 }
 
@@ -135,7 +135,7 @@ impl Block for Lines {
     }
 }
 
-/// What there is, or an empty cell.
+/// The value, or an empty cell.
 fn cell(value: Option<impl Display>) -> String {
     value.map_or(String::new(), |value| value.to_string())
 }
@@ -145,7 +145,7 @@ fn multipliers([one, two]: [Eigenvalue; 2]) -> String {
     format!("{},{},{},{}", one.re, one.im, two.re, two.im)
 }
 
-/// A line for each start, row by row; `ending` is empty where the start is below the cam.
+/// Table of starts, a line each, row by row; `ending` is empty if the start is below the cam.
 pub(crate) fn basins(basins: &Basins) -> String {
     let mut lines = String::from("position_m,velocity_m_s,ending,part,revolutions,impacts,followed\n");
     for (index, part) in basins.cells.iter().enumerate() {
@@ -160,7 +160,7 @@ pub(crate) fn basins(basins: &Basins) -> String {
     lines
 }
 
-/// A line for each motion at each value: the share of the starts that end on it.
+/// Table of motions, a line for each at each value: the share of the starts that end on it.
 pub(crate) fn basins_over(found: &BasinsOver) -> String {
     let mut lines = format!(
         "{},ending,part,revolutions,impacts,growth_rate,growth_error,starts,share,share_error,followed\n",
@@ -182,11 +182,11 @@ pub(crate) fn basins_over(found: &BasinsOver) -> String {
     lines
 }
 
-/// The columns of what a run comes to; no cell is empty, so that numerical programs read all but the class.
+/// Columns of a run's motion. No cell is empty, so numerical programs can read all columns but the class.
 const POINT: &str =
     "class,revolutions,impacts,growth_rate,growth_error,impact_speed_m_s,impacts_per_revolution,followed\n";
 
-/// A line of those.
+/// Appends the cells of [`POINT`].
 fn point(lines: &mut String, point: &Result<Point, String>) {
     let class = class(point.as_ref().ok().map(|point| point.kind));
     let _ = match point {
@@ -198,7 +198,7 @@ fn point(lines: &mut String, point: &Result<Point, String>) {
     };
 }
 
-/// A line for each point of a chart, row by row.
+/// Table of the points of a chart, a line each, row by row.
 pub(crate) fn chart(found: &Charted) -> String {
     let mut lines = format!("x,y,{POINT}");
     let Chart { x, y, .. } = &found.chart;
@@ -210,7 +210,7 @@ pub(crate) fn chart(found: &Charted) -> String {
     lines
 }
 
-/// A line for each value: what a run comes to there.
+/// Table of the motions at each value, a line each.
 pub(crate) fn one_row(over: &Axis, points: &Found<Point>) -> String {
     let mut lines = format!("{},{POINT}", over.parameter.name());
     for (value, point) in over.values.iter().zip(points) {
@@ -220,7 +220,7 @@ pub(crate) fn one_row(over: &Axis, points: &Found<Point>) -> String {
     lines
 }
 
-/// A line for each revolution of a sweep: what follower and cam bear in it.
+/// Table of the loads on follower and cam, a line for each revolution of a sweep.
 pub(crate) fn loads(over: &str, sweep: &[Vec<Loads>]) -> String {
     let mut lines = format!("{over},revolution,impact_speed_m_s,gap_m,off_cam_share,energy_lost_j,largest_force_n\n");
     for (revolution, Loads { place, impact_speed, gap, off_cam, energy, force, .. }) in
@@ -232,7 +232,7 @@ pub(crate) fn loads(over: &str, sweep: &[Vec<Loads>]) -> String {
     lines
 }
 
-/// What each attractor is at each value of the grid.
+/// Table of the attractors at each value of the grid.
 pub(crate) fn speeds(found: &SpeedSurvey) -> String {
     let mut lines = format!(
         "{},attractor,kind,revolutions,impacts,growth_rate,growth_error,share,share_error,coexisting,followed\n",
@@ -256,7 +256,7 @@ pub(crate) fn speeds(found: &SpeedSurvey) -> String {
     lines
 }
 
-/// Every orbit of every branch: of its impacts the first, where the state is that right after it; of an orbit without any,
+/// Table of every orbit of every branch, with its first impact and the state just after that. An orbit without impacts has
 /// the state at angle 0.
 pub(crate) fn branches(parameter: &str, branches: &[Branch]) -> String {
     let mut lines = String::from(
@@ -285,7 +285,7 @@ pub(crate) fn branches(parameter: &str, branches: &[Branch]) -> String {
     lines
 }
 
-/// Every event of every curve; what a corner impact alone has is empty for others.
+/// Table of every event of every curve; columns for corner impacts only are empty for other events.
 pub(crate) fn curves(parameter: &str, curves: &[EventCurve]) -> String {
     let mut lines = String::from(
         "rpm,parameter,value,revolutions,impacts,cam_angle_rad,jump_order,scenario,multiplier_minus_1_re,\
@@ -309,8 +309,9 @@ pub(crate) fn curves(parameter: &str, curves: &[EventCurve]) -> String {
     lines
 }
 
-/// What a figure shows: a row for each point of its lines and marks, and for each cell of its clouds, with how many points that has.
-/// Six digits across, where speeds are that differ little, and five up; of a cell one less, as there are two thousand side by side.
+/// Table of a figure's data: a row for each point of its lines and marks, and for each cell of its clouds with the number of points in it.
+/// Values have six digits across, because speeds may differ little, and five up. Cells have one digit less, as two thousand lie side by
+/// side.
 pub fn figure(figure: &Figure) -> String {
     let mut rows = String::from("panel,series,kind,x,y,count\n");
     let word = |text: &str| format!("\"{}\"", text.replace('"', "\"\""));
@@ -341,7 +342,7 @@ pub fn figure(figure: &Figure) -> String {
     rows
 }
 
-/// Empty where a line is broken.
+/// A value with its digits; empty at a break of a line.
 fn shown(value: f64, digits: usize) -> String {
     if value.is_nan() { String::new() } else { Digits::Significant(digits).typed(value) }
 }

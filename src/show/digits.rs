@@ -1,41 +1,41 @@
-//! Numbers as digits: how many are shown is said once, and every page writes them alike.
+//! Numbers as digits: the number of digits is chosen once, and every page writes it alike.
 
 use maud::{Markup, html};
 
 use crate::elementary;
 use crate::tolerance;
 
-/// How many digits of a number are shown.
+/// Number of displayed digits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Digits {
-    /// So many significant digits, without trailing zeros.
+    /// Number of significant digits, without trailing zeros.
     Significant(usize),
-    /// So many significant digits, trailing zeros among them, so that numbers can be read against one another.
+    /// Number of significant digits, including trailing zeros, so that numbers can be compared.
     Aligned(usize),
-    /// So many places after the point.
+    /// Number of decimal places.
     Fixed(usize),
-    /// So many places after the point, without trailing zeros.
+    /// Number of decimal places, without trailing zeros.
     UpTo(usize),
-    /// So many significant digits and a power of ten.
+    /// Number of significant digits, with a power of ten.
     Power(usize),
-    /// Two digits: of a difference or a bound the size is all that matters.
+    /// Two digits, for a difference or a bound, where only the size matters.
     Size,
-    /// Nine digits, or six and a power of ten where zeros would take the place of digits.
+    /// Nine digits, or six and a power of ten where zeros would replace digits.
     Short,
-    /// As many as it takes to read back the same number.
+    /// All digits that are needed to read back the same number.
     All,
 }
 
 impl Digits {
-    /// As a terminal and a file of text have it: `-1.5e-9`.
+    /// Text for a terminal and for a text file: `-1.5e-9`.
     pub(crate) fn text(self, value: f64) -> String {
         match self {
             _ if !value.is_finite() => format!("{value}"),
-            // Rounding's rest of a zero, or its sign, tells nothing.
+            // The rounding error of a zero, or its sign, has no meaning.
             Self::Short if value.abs() < tolerance::DISPLAYED_ZERO.value => "0".into(),
             Self::Short if is_plain(value) => Self::Significant(9).text(value),
             Self::Short => Self::Power(6).text(value),
-            // A column of a terminal is narrow: no more places than digits.
+            // A column of a terminal is narrow: limit the places to the digits.
             Self::Significant(digits) => trimmed(&format!("{value:.*}", places(value, digits).min(digits))),
             Self::Aligned(digits) if value == 0.0 || is_plain(value) => {
                 without_sign_of_zero(format!("{value:.*}", places(value, digits)))
@@ -48,12 +48,12 @@ impl Digits {
         }
     }
 
-    /// As a page for a browser has it, with all digits in the value of a `data` element.
+    /// Markup for a browser, with all digits in the value of a `data` element.
     pub(crate) fn markup(self, value: f64) -> Markup {
         html! { @if value.is_finite() { data value=(value) { (typeset(&self.typed(value))) } } @else { (value) } }
     }
 
-    /// The digits of [`Digits::markup`], before they are set: there is room for all places of a small number.
+    /// Digits of [`Digits::markup`] before typesetting; a small number has room for all its places.
     pub(crate) fn typed(self, value: f64) -> String {
         match self {
             Self::Significant(_) if value.abs() < tolerance::DISPLAYED_ZERO.value => "0".into(),
@@ -67,7 +67,7 @@ impl Digits {
     }
 }
 
-/// The digits of a number that may be off by so much: up to the second of the error; and the error, rounded there.
+/// Digits for a number with this error, down to the second digit of the error, and the error rounded up to that place.
 pub(crate) fn with_error(error: f64) -> (Digits, f64) {
     if !(error > 0.0 && error.is_finite()) {
         return (Digits::Significant(9), error);
@@ -77,7 +77,7 @@ pub(crate) fn with_error(error: f64) -> (Digits, f64) {
     (Digits::Fixed(place.clamp(0.0, 12.0) as usize), (error * unit).ceil() / unit)
 }
 
-/// Digits as print has them: a minus as wide as a plus, a power of ten above the line.
+/// Typesets digits as in print: a minus as wide as a plus, and a raised power of ten.
 pub(crate) fn typeset(text: &str) -> Markup {
     let signed = |text: &str| text.replace('-', "\u{2212}");
     html! {
@@ -88,12 +88,12 @@ pub(crate) fn typeset(text: &str) -> Markup {
     }
 }
 
-/// Whether a number is written without a power of ten: few zeros stand before or behind its digits.
+/// Whether a number is written without a power of ten: only few zeros precede or follow its digits.
 fn is_plain(value: f64) -> bool {
     (-4.0..9.0).contains(&elementary::log10(value.abs()))
 }
 
-/// The places after the point at which a number has so many significant digits.
+/// Decimal places that give a number this many significant digits.
 fn places(value: f64, digits: usize) -> usize {
     if value == 0.0 { 0 } else { (digits as f64 - 1.0 - elementary::log10(value.abs()).floor()).max(0.0) as usize }
 }

@@ -1,8 +1,8 @@
-//! Formulas that stand in sentences, from plain text to what a browser sets: `phi_{T/2} x*` with Greek, lowered and raised letters.
+//! Formulas within sentences, from plain text to markup: `phi_{T/2} x*` with Greek letters, subscripts and superscripts.
 
 use maud::{Markup, html};
 
-/// Names of letters, and the letters.
+/// Names of Greek letters, and the letters.
 const GREEK: [(&str, &str); 12] = [
     ("alpha", "α"),
     ("delta", "δ"),
@@ -17,10 +17,10 @@ const GREEK: [(&str, &str); 12] = [
     ("tau", "τ"),
     ("mu", "μ"),
 ];
-/// Signs that are typed with more than one key.
+/// Signs typed with more than one key.
 const SIGNS: [(&str, &str); 4] = [("+-", "±"), ("->", "→"), ("<=", "≤"), (">=", "≥")];
 
-/// A stretch of a formula.
+/// A part of a formula.
 enum Part {
     Plain(String),
     Letter(String),
@@ -28,9 +28,9 @@ enum Part {
     Above(String),
 }
 
-/// A sentence with its formulas set. What is no formula stays as it is: words, numbers, names with a colon or an underscore in words.
+/// Typesets the formulas in a sentence. Other parts stay unchanged: words, numbers, names with a colon or an underscore in words.
 pub(crate) fn sentence(text: &str) -> Markup {
-    // A space in braces parts no words.
+    // A space in braces does not separate words.
     let mut open = 0;
     let is_gap = |letter: char| {
         open += i32::from(letter == '{') - i32::from(letter == '}');
@@ -61,13 +61,13 @@ fn letter(name: &str) -> Option<&'static str> {
     GREEK.iter().find(|(typed, _)| *typed == name).map(|(_, letter)| *letter)
 }
 
-/// The names in a word: runs of letters.
+/// Names in a word: runs of letters.
 fn names(word: &str) -> impl Iterator<Item = &str> {
     word.split(|letter: char| !letter.is_ascii_alphabetic()).filter(|name| !name.is_empty())
 }
 
-/// Whether a word is a formula: its names are letters of one or two, or of Greek, and it has a sign of mathematics, is such a letter, or
-/// is a derivative, `dP/dx`.
+/// Whether a word is a formula. All its names must have one or two letters or be Greek. Besides, it must have a mathematical sign or a
+/// Greek letter, or be a derivative, `dP/dx`.
 fn is_formula(word: &str) -> bool {
     let short = |name: &str| name.len() <= 2 || letter(name).is_some();
     let is_named = word.trim_end_matches(':').contains(':') || word.contains(".toml") || word.starts_with('"');
@@ -80,7 +80,8 @@ fn is_formula(word: &str) -> bool {
     !is_named && names(word).next().is_some() && names(word).all(short) && is_told
 }
 
-/// A formula as its stretches: after `_` and `^` a letter, a number or what stands in braces; an asterisk, a prime or a side behind a name.
+/// Splits a formula into parts. `_` and `^` apply to a letter, a number or a group in braces; an asterisk, a prime or a side follows a
+/// name.
 fn parts(word: &str) -> Vec<Part> {
     let mut parts = Vec::new();
     let mut rest = word;
@@ -99,7 +100,7 @@ fn parts(word: &str) -> Vec<Part> {
                 parts.push(Part::Plain("′".repeat(primes)));
                 rest = &rest[primes..];
             }
-            // A side or an asterisk ends the name; before a letter or a number it is an operator.
+            // A side or an asterisk ends the name. Before a letter or a number it is an operator.
             let next = rest.chars().nth(1);
             let ends = next.is_none_or(|next| !next.is_alphanumeric() && next != '(');
             if let Some(sign) = rest.chars().next().filter(|sign| "*+-~".contains(*sign) && ends) {
@@ -137,7 +138,7 @@ fn parts(word: &str) -> Vec<Part> {
     parts
 }
 
-/// A name with what ends it, the name as its letter.
+/// Typesets a name, as its letter, and the characters after it.
 fn set(part: &str) -> String {
     let end = part.find(|letter: char| !letter.is_ascii_alphabetic()).unwrap_or(part.len());
     let (name, rest) = part.split_at(end);

@@ -1,4 +1,4 @@
-//! Blocks in a browser: tables whose heads are told as such, in boxes that scroll by themselves.
+//! Blocks in a browser: tables with proper head cells, in boxes that scroll separately.
 
 use maud::{Markup, html};
 
@@ -6,7 +6,7 @@ use crate::show::block::{Block, Column, Mark, Span, Symbol, Table, Words};
 use crate::show::digits::{Digits, typeset};
 use crate::show::formula::sentence;
 
-/// Blocks one after the other.
+/// Blocks in order.
 pub(crate) fn blocks(blocks: &[Block]) -> Markup {
     html! { @for block in blocks { (self::block(block)) } }
 }
@@ -32,7 +32,7 @@ fn block(block: &Block) -> Markup {
     }
 }
 
-/// A block that may be wider than the page, in a box that scrolls by itself.
+/// Wraps a block that may be wider than the page in a box that scrolls separately.
 pub(crate) fn wide(label: &str, body: &Markup) -> Markup {
     html! { div.wide role="region" aria-label=(label) tabindex="0" { (body) } }
 }
@@ -40,7 +40,7 @@ pub(crate) fn wide(label: &str, body: &Markup) -> Markup {
 fn table(table: &Table) -> Markup {
     let number = |index: usize| table.columns.get(index).filter(|column| !column.left).map(|_| "n");
     let headed = table.columns.iter().any(|column| !column.head.is_empty());
-    // For where the cells of a row stand below each other.
+    // Heads for narrow pages, where the cells of a row are below each other.
     let head_of =
         |index: usize| table.columns.get(index).map(|column| plain(&column.head)).filter(|head| !head.is_empty());
     let head =
@@ -66,7 +66,7 @@ fn table(table: &Table) -> Markup {
     )
 }
 
-/// Words without what only a browser shows.
+/// Words as plain text, without content that only a browser shows.
 fn plain(words: &Words) -> String {
     let part = |span: &Span| match span {
         Span::Text(text) | Span::Quoted(text) | Span::Code(text) | Span::Marked(_, text) => text.clone(),
@@ -78,7 +78,7 @@ fn plain(words: &Words) -> String {
     words.0.iter().map(part).collect()
 }
 
-/// Words as a browser has them.
+/// Words as markup for a browser.
 pub(crate) fn words(words: &Words) -> Markup {
     html! { @for span in &words.0 { (self::span(span)) } }
 }
@@ -116,7 +116,7 @@ fn span(span: &Span) -> Markup {
     }
 }
 
-/// A number with those digits underlined in which it is not the other one.
+/// Writes a number and underlines the digits that differ from the other one.
 fn against(value: f64, other: f64, digits: Digits) -> Markup {
     let (text, other) = (digits.typed(value), digits.typed(other));
     let same: usize =

@@ -1,19 +1,19 @@
-//! The document as JSON.
+//! JSON output.
 
 use serde::Serialize;
 
 use crate::model::Units;
 
-/// One JSON document, indented, with a line end, in the units of a model.
+/// Writes one JSON document, indented, with a line end, in the units of a model.
 pub fn render(document: &impl Serialize, units: &Units) -> Result<String, serde_json::Error> {
     let text = serde_json::to_string_pretty(document)? + "\n";
     Ok(if units.are_given { in_units(&text, units) } else { text })
 }
 
-/// Names and values in the units of a model. Each name stands at the beginning of a line of its own, as does each number of a list.
+/// Converts names and values to the units of a model. Each name begins a line of its own, as does each number of a list.
 fn in_units(text: &str, units: &Units) -> String {
     let mut told = String::with_capacity(text.len());
-    // What becomes of the numbers of a list that is open, and how far that is indented.
+    // Conversion of the numbers of the current list, and the indent of that list.
     let mut list = None;
     for line in text.lines() {
         let body = line.trim_start();
@@ -24,7 +24,7 @@ fn in_units(text: &str, units: &Units) -> String {
         let (convert, value) = match entry {
             Some((name, value)) => {
                 let convert = units.converted(name);
-                // A ball is left in the unit that it is proved in.
+                // A ball stays in the unit in which it is proved.
                 let name = if convert.is_some() && value == "{" { name.to_owned() } else { units.field(name) };
                 list = convert.filter(|_| value == "[").map(|convert| (convert, indent)).or(list);
                 told.push_str(&format!("\"{name}\": "));

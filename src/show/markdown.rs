@@ -6,7 +6,7 @@ use crate::foreign;
 use crate::show::block::{Block, Section, Span, Table, Words};
 use crate::show::page;
 
-/// A page: what stands before its sections, and these.
+/// Writes a page: its introduction and its sections.
 pub fn page(lead: &[Block], sections: &[Section]) -> Result<String, fmt::Error> {
     let mut out = String::new();
     blocks(&mut out, lead)?;
@@ -18,12 +18,12 @@ pub fn page(lead: &[Block], sections: &[Section]) -> Result<String, fmt::Error> 
     Ok(out)
 }
 
-/// An empty line between two blocks.
+/// Writes an empty line between two blocks.
 fn after_a_gap(out: &mut String) -> fmt::Result {
     if out.is_empty() { Ok(()) } else { writeln!(out) }
 }
 
-/// Blocks one after the other.
+/// Writes blocks in order.
 fn blocks(out: &mut String, blocks: &[Block]) -> fmt::Result {
     for block in blocks {
         match block {
@@ -63,7 +63,7 @@ fn table(out: &mut String, table: &Table) -> fmt::Result {
     table.rows.iter().try_for_each(|row| writeln!(out, "{}", line(row.cells.iter().map(text).collect())))
 }
 
-/// Words as Markdown has them: bars, stars and angle brackets of a text stand for themselves.
+/// Words as Markdown; bars, stars and angle brackets of a text are escaped.
 fn text(words: &Words) -> String {
     let of = |span: &Span| match span {
         Span::Code(text) => format!("`{}`", foreign::visible(text)),

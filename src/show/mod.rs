@@ -1,4 +1,4 @@
-//! How what was found is shown: blocks on a terminal, in a browser and as Markdown; JSON; CSV. Nothing is computed here.
+//! Output of results: blocks on a terminal, in a browser and as Markdown; JSON; CSV. Nothing is computed here.
 //!
 //! An enum becomes words in `words` and a number digits in `digits`, and nowhere else.
 

@@ -1,4 +1,4 @@
-//! What there is to say of a model before anything is computed with it, a sentence each.
+//! Remarks on a model before any computation, a sentence each.
 
 use crate::cam::Stray;
 use crate::measured::{Openness, Remarks};
@@ -6,8 +6,8 @@ use crate::model::{Model, ModelError, TableProfile};
 use crate::show::digits::Digits;
 use crate::show::words::{accuracy, known_to, noise_unknown};
 
-/// What is odd about a model, at speeds, rpm, that are asked for or those of `[study]`: numbers in unlikely units, rows that are slips, what
-/// was given and the rows contradict.
+/// Remarks on a model at the requested speeds, rpm, or at those of `[study]`: numbers in unlikely units, rows with apparent errors,
+/// and given values that contradict the rows.
 pub fn notes(model: &Model, rpm: Option<[f64; 2]>) -> Result<Vec<String>, ModelError> {
     let mut notes: Vec<String> = model.doubt(rpm)?.into_iter().collect();
     let Some(profile) = model.table() else { return Ok(notes) };
@@ -36,9 +36,9 @@ pub fn notes(model: &Model, rpm: Option<[f64; 2]>) -> Result<Vec<String>, ModelE
     Ok(notes)
 }
 
-/// Rows that are far from where the rows beside them say; only the first are named.
+/// Rows that lie far from the trend of their neighbours; only the first are named.
 fn slips(profile: &TableProfile, strays: &[Stray]) -> Vec<String> {
-    /// How many are named.
+    /// Most rows that are named.
     const NAMED: usize = 3;
     let reading = &profile.reading;
     let told = |Stray { line, cam_angle_deg, lift_m, off_m }: &Stray| {
@@ -58,7 +58,7 @@ fn slips(profile: &TableProfile, strays: &[Stray]) -> Vec<String> {
     slips
 }
 
-/// How well the cam is known that an answer without a ± of its own is about; none where the rows have no noise.
+/// Uncertainty of the cam, for an answer without a ± of its own; `None` if the rows have no noise.
 pub fn as_drawn(model: &Model) -> Result<Option<String>, ModelError> {
     let Some((open, profile)) = Openness::of(model)?.zip(model.table()) else { return Ok(None) };
     let (accuracy, open) = match open {

@@ -1,8 +1,8 @@
-//! Blocks on a terminal: text in lines that fit, and marks on words that stand out.
+//! Blocks on a terminal: wrapped text, and marks on important words.
 //!
-//! How a mark looks only `Page::coloured` tells; `Page::plain` leaves it out, and a mark adds nothing that the words do
-//! not say. Where lines break is textwrap's business. Tables are laid out here: comfy-table, which would do it too, folds
-//! cells where there is no room, but breaks numbers with them, and has no way to go on row by row.
+//! Only `Page::coloured` shows marks; `Page::plain` leaves them out, and a mark adds nothing that the words do
+//! not say. The crate textwrap breaks the lines. Tables are laid out here, not by comfy-table: it wraps
+//! cells where there is no room, but breaks numbers too, and cannot write a table row by row.
 
 use std::fmt::{self, Write};
 
@@ -12,16 +12,16 @@ use textwrap::{Options, WordSeparator, WordSplitter, WrapAlgorithm};
 use crate::foreign;
 use crate::show::block::{Block, Mark, Span, Table, Words};
 
-/// Columns of a page where nothing says how many there are.
+/// Default width of a page, in columns.
 pub(crate) const WIDTH: usize = 100;
 
-/// What ends a mark.
+/// Escape code that ends a mark.
 const RESET: &str = "\x1b[0m";
 
 impl Mark {
     const ALL: [Self; 6] = [Self::Heading, Self::Strong, Self::Good, Self::Bad, Self::Doubtful, Self::Open];
 
-    /// The escape codes that begin it: bold, and colours of the terminal's own sixteen, so that any background will do.
+    /// Escape codes that begin the mark: bold, and the terminal's own sixteen colours, which suit any background.
     fn codes(self) -> &'static str {
         match self {
             Self::Heading => "\x1b[1m",
@@ -39,12 +39,12 @@ impl Mark {
     }
 }
 
-/// Text in lines of at most so many columns, with marks.
+/// Text with marks in lines of a limited width.
 #[derive(Clone, Debug)]
 pub struct Page {
     width: usize,
     text: String,
-    /// Where the line that is being written begins.
+    /// Start of the current line in the text.
     line: usize,
 }
 
@@ -63,38 +63,38 @@ impl Write for Page {
     }
 }
 
-/// What has a page: laid out once as blocks, shown anywhere.
+/// A type that has a page: laid out once as blocks, shown anywhere.
 pub trait Paged {
-    /// What the page says.
+    /// Contents of the page.
     fn blocks(&self) -> Vec<Block>;
 
-    /// The page for a terminal of `width` columns.
+    /// Page for a terminal of `width` columns.
     fn page(&self, width: usize) -> Result<Page, fmt::Error> {
         Page::of(width, &self.blocks())
     }
 
-    /// The page as wide as where nothing says how wide, without marks.
+    /// Text of the page at the default width, without marks.
     fn text(&self) -> Result<String, fmt::Error> {
         Ok(self.page(WIDTH)?.plain())
     }
 }
 
 impl Page {
-    /// A page of `blocks`.
+    /// Lays out `blocks` as a page.
     pub(crate) fn of(width: usize, blocks: &[Block]) -> Result<Self, fmt::Error> {
         let mut page = Self { width, text: String::new(), line: 0 };
         page.blocks(blocks)?;
         Ok(page)
     }
 
-    /// Words that stand out and a line under them.
+    /// Writes emphasized words with a line under them.
     fn underlined(&mut self, text: &str, rule: char) -> fmt::Result {
         self.text.push_str(&Mark::Heading.around(text));
         let length = display_width(text).min(self.width);
         writeln!(self, "\n{}", String::from(rule).repeat(length))
     }
 
-    /// Text in lines that fit, indented.
+    /// Writes an indented paragraph, wrapped.
     fn paragraph(&mut self, indent: usize, text: &str) -> fmt::Result {
         let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
         lines(&text, self.width.saturating_sub(indent))
@@ -102,7 +102,7 @@ impl Page {
             .try_for_each(|line| writeln!(self, "{:indent$}{line}", ""))
     }
 
-    /// Blocks one after the other.
+    /// Writes blocks in order.
     fn blocks(&mut self, blocks: &[Block]) -> fmt::Result {
         blocks.iter().try_for_each(|block| match block {
             Block::Title(words) => self.underlined(&text(words), '='),
@@ -124,7 +124,7 @@ impl Page {
         })
     }
 
-    /// A name, and words that begin `width` columns behind it and go on under one another.
+    /// Writes a name, and its description wrapped in a column that begins `width` columns further.
     fn entry(&mut self, width: usize, name: &str, words: &str) -> fmt::Result {
         let column = 2 + width;
         let hang = if column <= self.width * 2 / 5 { column } else { 4 };
@@ -144,13 +144,13 @@ impl Page {
         codes.chain([RESET]).fold(self.text.clone(), |text, code| text.replace(code, ""))
     }
 
-    /// The text with escape codes around what is marked.
+    /// The text with escape codes around marked words.
     pub(crate) fn coloured(&self) -> &str {
         &self.text
     }
 }
 
-/// Words as a terminal has them.
+/// Words as text for a terminal.
 pub(crate) fn text(words: &Words) -> String {
     let of = |span: &Span| match span {
         Span::Text(text) | Span::Quoted(text) | Span::Code(text) => foreign::visible(text).into_owned(),
@@ -176,7 +176,7 @@ pub(crate) fn text(words: &Words) -> String {
     words.0.iter().map(of).collect()
 }
 
-/// Lines that break at spaces only, as late as they can; a word that is longer than the room stays whole.
+/// Options for wrapping: lines break only at spaces, as late as possible; a word that is too long stays whole.
 pub(crate) fn options<'a>(width: usize) -> Options<'a> {
     Options::new(width)
         .break_words(false)
@@ -189,7 +189,7 @@ fn lines(text: &str, width: usize) -> Vec<String> {
     textwrap::wrap(text, options(width)).into_iter().map(Into::into).collect()
 }
 
-/// A line in lines that fit: what does not goes on under the second column of the line, where it has one.
+/// Wraps a line; the continuation begins under the line's second column, if it has one.
 fn folded(line: &str, width: usize) -> String {
     if display_width(line) <= width {
         return line.into();
@@ -205,14 +205,14 @@ fn folded(line: &str, width: usize) -> String {
     textwrap::wrap(words, options(width).initial_indent(&first).subsequent_indent(&hang)).join("\n")
 }
 
-/// Spaces before a column's cells and the room that they take.
+/// Spaces before each column's cells, and the width of the cells.
 type Layout = Vec<(usize, usize)>;
 
-/// The least room in which the last column's words are folded.
+/// Least width in which the last column's words are wrapped.
 const NARROWEST: usize = 18;
 
 impl Page {
-    /// A table: with its gaps, or close together, or, where even that does not fit, in several tables or row by row.
+    /// Writes a table with its gaps, or without them. If even that is too wide, writes several tables, or row by row.
     fn table(&mut self, table: &Table) -> fmt::Result {
         let Some(last) = table.columns.len().checked_sub(1) else { return Ok(()) };
         let heads: Vec<String> = table.columns.iter().map(|column| text(&column.head)).collect();
@@ -230,7 +230,7 @@ impl Page {
             .collect();
         let close: Layout = natural.iter().map(|widest| (2, *widest)).collect();
         let takes = |layout: &[(usize, usize)]| layout.iter().map(|(gap, width)| gap + width).sum::<usize>();
-        // Words may be folded, numbers not.
+        // Words may be wrapped, numbers not.
         let folded = if table.columns[last].left { natural[last].min(NARROWEST) } else { natural[last] };
         let choices = [(&wide, natural[last]), (&close, natural[last]), (&wide, folded), (&close, folded)];
         let fits = |(layout, room): &(&Layout, usize)| takes(&layout[..last]) + layout[last].0 + room <= self.width;
@@ -243,7 +243,7 @@ impl Page {
         let between = 1..(last + 1).saturating_sub(kept).max(1);
         let each = wide[between.clone()].iter().map(|(gap, width)| gap + width).max().unwrap_or(1);
         let room = self.width.saturating_sub(takes(&wide[..1]) + takes(&wide[between.end..]));
-        // As few tables as hold all columns, and as even.
+        // As few tables as possible, with columns evenly divided.
         let tables = between.len().div_ceil((room / each).max(1)).max(1);
         let columns: Vec<usize> = between.clone().collect();
         for (index, some) in columns.chunks(columns.len().div_ceil(tables).max(1)).enumerate() {
@@ -269,7 +269,7 @@ impl Page {
         rows: &[Vec<String>],
     ) -> fmt::Result {
         let last = layout.len() - 1;
-        // Heads of several lines end on one.
+        // Heads of several lines are aligned at the bottom.
         let depth = heads.iter().map(|head| head.split('\n').count()).max().unwrap_or(1);
         let head_line = |line: usize| {
             let part = |head: &String| {
@@ -295,7 +295,7 @@ impl Page {
                     line.push_str(&" ".repeat(behind));
                 }
             }
-            // Spaces at the end of a line are none.
+            // Spaces at the end of a line are left out.
             writeln!(self, "{}", line.trim_end_matches(' '))?;
         }
         Ok(())
@@ -309,7 +309,7 @@ impl Page {
             }
             for (head, cell) in heads.iter().zip(row).filter(|(_, cell)| !cell.is_empty()) {
                 match head.as_str() {
-                    // The number of a row heads it.
+                    // The number of a row is its head.
                     "" => writeln!(self, "  {cell}")?,
                     head => writeln!(self, "  {head:<longest$}  {cell}")?,
                 }

@@ -1,6 +1,6 @@
-//! Enums as words: what each value is called on a page, once.
+//! Enums as words: the one name of each value on a page.
 //!
-//! The names of values in JSON and in tables are what the values serialize as, and a value is written by that name.
+//! In JSON and in tables, a value has the name that it serializes as.
 
 use std::borrow::Borrow;
 
@@ -27,12 +27,12 @@ use crate::study::attractors::{Cause, Transition};
 use crate::study::speeds::AttractorRow;
 use crate::study::survey::Wandering;
 
-/// A route's name.
+/// Name of a route.
 pub(crate) fn route(name: RouteName) -> String {
     spoken(&name.to_string())
 }
 
-/// A quantity as the paper writes it; on a terminal as documents have it.
+/// A quantity as the paper writes it; on a terminal, in plain text.
 pub(crate) fn quantity(quantity: Quantity) -> Words {
     let (name, side) = quantity.parts();
     let (letter, above) = match quantity {
@@ -51,7 +51,7 @@ pub(crate) fn quantity(quantity: Quantity) -> Words {
     symbol(&quantity.to_string(), letter, "", side.map_or(above, sign)).into()
 }
 
-/// A side as the paper marks it.
+/// Sign of a side in the paper.
 pub(crate) fn sign(side: Side) -> &'static str {
     match side {
         Side::Minus => "\u{2212}",
@@ -59,7 +59,7 @@ pub(crate) fn sign(side: Side) -> &'static str {
     }
 }
 
-/// Several events of the kind of one.
+/// Plural of an event's name.
 pub(crate) fn events(kind: branch::Kind) -> &'static str {
     kind.bifurcation().map_or("points", |event| match event {
         Bifurcation::Corner => "corner impacts",
@@ -71,7 +71,7 @@ pub(crate) fn events(kind: branch::Kind) -> &'static str {
     })
 }
 
-/// What is known of the motions beyond the graze of an orbit without impacts, behind the name of that.
+/// Description of the motions beyond the graze of an orbit without impacts, to follow the name of the graze.
 pub(crate) fn first_touch(touch: FirstTouch) -> String {
     let beyond = match (touch.class, touch.back, touch.doubt) {
         (GrazeClass::Jump, Some((passages, depth)), _) => {
@@ -92,12 +92,12 @@ pub(crate) fn first_touch(touch: FirstTouch) -> String {
     format!(" {}; class {}: {beyond}", touch_side(touch.larger), touch.class)
 }
 
-/// On which side of a number the cam reaches a follower at rest.
+/// Side of the parameter on which the cam reaches a follower at rest.
 pub(crate) fn touch_side(larger: bool) -> &'static str {
     if larger { "at larger values" } else { "at smaller values" }
 }
 
-/// Why the class of a graze is undecided.
+/// Reason why the class of a graze is undecided.
 fn doubted(doubt: Doubt) -> &'static str {
     match doubt {
         Doubt::Sharp => "the cam's velocity jumps at its top",
@@ -109,7 +109,7 @@ fn doubted(doubt: Doubt) -> &'static str {
     }
 }
 
-/// One of several events.
+/// The names of several events, as alternatives.
 pub(crate) fn any_of(events: &[Bifurcation]) -> String {
     let word = |event: &Bifurcation| match event {
         Bifurcation::Corner => "corner impact",
@@ -122,7 +122,7 @@ pub(crate) fn any_of(events: &[Bifurcation]) -> String {
     events.iter().map(word).collect::<Vec<_>>().join(" or ")
 }
 
-/// The decimals that two values share.
+/// Number of decimals that two values share.
 pub(crate) fn shared(decimals: Option<u32>) -> String {
     match decimals {
         Some(1) => "1 decimal".into(),
@@ -136,7 +136,7 @@ pub(crate) fn spoken(name: &str) -> String {
     name.replace(['_', '-'], " ")
 }
 
-/// A verdict of the ledger in words.
+/// Name of a verdict in the ledger.
 pub(crate) fn verdict_word(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::Holds => "holds",
@@ -148,18 +148,18 @@ pub(crate) fn verdict_word(verdict: Verdict) -> &'static str {
     }
 }
 
-/// How many statements make a slip, and how many are wrong by one made before.
+/// Counts of the statements with an error of their own, and of those that are wrong because of an earlier error.
 pub(crate) fn slips((slips, consequences): (usize, usize)) -> String {
     let counted = |count: usize, word: &str| format!("{count} {word}{}", if count == 1 { "" } else { "s" });
     format!("{} and {}", counted(slips, "slip"), counted(consequences, "consequence"))
 }
 
-/// A verdict of the ledger, standing out as what it is.
+/// Verdict of the ledger, with its mark.
 pub(crate) fn verdict(verdict: Verdict) -> Words {
     (mark(verdict), verdict_word(verdict)).into()
 }
 
-/// What a verdict of the ledger is.
+/// Mark of a verdict in the ledger.
 pub(crate) fn mark(verdict: Verdict) -> Mark {
     match verdict {
         Verdict::Holds | Verdict::Definition => Mark::Good,
@@ -169,7 +169,7 @@ pub(crate) fn mark(verdict: Verdict) -> Mark {
     }
 }
 
-/// What a border collision does, where a fixed point of either side is stable or where none is, and which danger there is.
+/// Effect of a border collision, depending on whether a fixed point of either side is stable and on the danger.
 pub(crate) fn meaning(scenario: Scenario, has_stable: bool, danger: Option<&Danger>) -> &'static str {
     match scenario {
         Scenario::Persistence if danger.is_some_and(|danger| danger.kind == DangerKind::Dangerous) => {
@@ -201,7 +201,7 @@ pub(crate) fn verdict_with(scenario: &str, danger: Option<&Danger>) -> String {
     }
 }
 
-/// What a danger is, in a sentence.
+/// Describes a danger in a sentence.
 pub(crate) fn danger(danger: &Danger) -> Words {
     match &danger.divergence {
         Some(Divergence { share, known, follows }) => {
@@ -238,7 +238,7 @@ fn local_attractor(attractor: &LocalAttractor) -> String {
     attractor.word().map_or_else(|| attractor.end.name().into(), ToString::to_string)
 }
 
-/// Which disturbances of the attractors of a local map return, a line for each.
+/// Disturbances of the attractors of a local map that return, a line for each attractor.
 pub(crate) fn returns(danger: &Danger) -> Vec<Words> {
     let line = |attractor: &LocalAttractor| {
         let Returns { position, velocity, any } = attractor.returns?;
@@ -255,7 +255,7 @@ pub(crate) fn returns(danger: &Danger) -> Vec<Words> {
     danger.attractors.iter().filter_map(line).collect()
 }
 
-/// What must hold of a strip.
+/// Condition on a strip.
 pub(crate) fn relation(relation: Relation) -> &'static str {
     match relation {
         Relation::Apart => "that N is a parallelogram above the cam, and its strips are in it and apart,",
@@ -267,7 +267,7 @@ pub(crate) fn relation(relation: Relation) -> &'static str {
     }
 }
 
-/// Why nothing is proved of a flight.
+/// Reason why nothing is proved about a flight.
 pub(crate) fn unproved(why: Unproved) -> &'static str {
     match why {
         Unproved::NoImpact => "the follower may stay on the cam, or not come back to it for long",
@@ -276,7 +276,7 @@ pub(crate) fn unproved(why: Unproved) -> &'static str {
     }
 }
 
-/// Numbers one after another.
+/// List of numbers.
 pub(crate) fn listed(numbers: &[u64]) -> String {
     let numbers: Vec<String> = numbers.iter().map(u64::to_string).collect();
     match numbers.split_last() {
@@ -293,7 +293,7 @@ pub(crate) fn stability(stability: Stability) -> &'static str {
     }
 }
 
-/// Speeds on one side of that of the corner impact, or that speed.
+/// Speeds below or above that of the corner impact, or that speed itself.
 pub(crate) fn speeds(speeds: Option<Speeds>) -> &'static str {
     match speeds {
         Some(Speeds::Faster) => "faster than omega*",
@@ -302,7 +302,7 @@ pub(crate) fn speeds(speeds: Option<Speeds>) -> &'static str {
     }
 }
 
-/// Where the impact is, on a side of the corner.
+/// Position of the impact on a side of the corner.
 pub(crate) fn side(side: Side) -> &'static str {
     match side {
         Side::Minus => "impact before the corner",
@@ -310,7 +310,7 @@ pub(crate) fn side(side: Side) -> &'static str {
     }
 }
 
-/// What rests on a condition.
+/// Statement that depends on a condition.
 pub(crate) fn decides(decides: Decides) -> &'static str {
     match decides {
         Decides::Classification => "classification",
@@ -320,7 +320,7 @@ pub(crate) fn decides(decides: Decides) -> &'static str {
     }
 }
 
-/// What a prediction of the local map is of.
+/// Quantity that a prediction of the local map is about.
 pub(crate) fn compared(compared: Compared) -> &'static str {
     match compared {
         Compared::OneRevolution => "a turn from x*",
@@ -329,7 +329,7 @@ pub(crate) fn compared(compared: Compared) -> &'static str {
     }
 }
 
-/// What ends the range of a prediction, behind where it ends.
+/// Reason for the end of a prediction's range, to follow the position of the end.
 pub(crate) fn ends(ends: Ends) -> &'static str {
     match ends {
         Ends::Differs => "",
@@ -338,7 +338,7 @@ pub(crate) fn ends(ends: Ends) -> &'static str {
     }
 }
 
-/// Where motions of the local map end.
+/// Ending of the motions of the local map.
 pub(crate) fn end(end: &End) -> Words {
     let growth = |what: &str, value, error| {
         let four = Digits::Fixed(4);
@@ -354,7 +354,7 @@ pub(crate) fn end(end: &End) -> Words {
     }
 }
 
-/// What the follower does in the long run.
+/// Long-term motion of the follower.
 pub(crate) fn kind(kind: Kind) -> &'static str {
     match kind {
         Kind::Stays => "stays on the cam",
@@ -369,7 +369,7 @@ pub(crate) fn many(count: u64, what: &str) -> String {
     format!("{count} {what}{}", if count == 1 { "" } else { "s" })
 }
 
-/// A motion with its period: turns of the cam and impacts.
+/// A motion with its period in revolutions of the cam and in impacts.
 pub(crate) fn motion(kind: Kind, revolutions: Option<u64>, impacts: Option<u64>) -> String {
     let turns = |n: u64| if n == 1 { "a revolution".to_owned() } else { many(n, "revolution") };
     match (kind, revolutions, impacts) {
@@ -382,17 +382,17 @@ pub(crate) fn motion(kind: Kind, revolutions: Option<u64>, impacts: Option<u64>)
     }
 }
 
-/// What starts end on, in a legend.
+/// Ending of starts, for a legend.
 pub(crate) fn ending(ending: &LongRun) -> String {
     let period = ending.period();
     motion(ending.kind(), period.map(|(revolutions, _)| revolutions), period.map(|(_, impacts)| impacts))
 }
 
-/// The name of a long-run motion with its evidence: the revolutions that runs of chaos, or of an undecided motion, were followed for.
+/// Name of a long-run motion with its evidence: the number of revolutions for which chaotic or undecided runs were followed.
 pub(crate) fn followed(ending: &LongRun, revolutions: u64) -> String {
     let words = self::ending(ending);
     match ending {
-        // A run may rest on its way, be it at its start.
+        // A chaotic run may rest on its way, even at its start.
         LongRun::Chaotic(recorded) if recorded.rested => {
             format!("{words} (no orbit and no rest that repeats in {revolutions} revolutions)")
         }
@@ -405,7 +405,7 @@ pub(crate) fn followed(ending: &LongRun, revolutions: u64) -> String {
     }
 }
 
-/// For how many revolutions runs were followed, in the title of a picture.
+/// Number of revolutions for which runs were followed, for the title of a figure.
 pub(crate) fn followed_for(each: impl Iterator<Item = u64>) -> String {
     let range = each.fold(None, |range: Option<[u64; 2]>, one| {
         Some(range.map_or([one; 2], |[low, high]| [low.min(one), high.max(one)]))
@@ -417,7 +417,7 @@ pub(crate) fn followed_for(each: impl Iterator<Item = u64>) -> String {
     }
 }
 
-/// A sentence on transient chaos, where some of the runs that wandered have left it.
+/// Sentence on transient chaos, if some of the wandering runs left it.
 pub(crate) fn transient_chaos(wandering: &Wandering) -> Option<String> {
     let Wandering { revolutions, left, .. } = *wandering;
     (left > 0).then(|| {
@@ -425,12 +425,12 @@ pub(crate) fn transient_chaos(wandering: &Wandering) -> Option<String> {
     })
 }
 
-/// An attractor over a range.
+/// Description of an attractor over a range.
 pub(crate) fn attractor(row: &AttractorRow) -> String {
     motion(row.kind, row.revolutions, row.impacts)
 }
 
-/// What an attractor begins or ends with.
+/// Event that begins or ends an attractor.
 pub(crate) fn transition(transition: &Transition) -> String {
     match transition.cause {
         Cause::Fold => "fold".into(),
@@ -443,7 +443,7 @@ pub(crate) fn transition(transition: &Transition) -> String {
     }
 }
 
-/// A letter with what is below and above it, for a browser, and as a terminal writes it.
+/// A letter with an index below and a sign above, for a browser, and its form on a terminal.
 pub(crate) fn symbol(plain: &str, letter: &'static str, below: &str, above: &'static str) -> Symbol {
     Symbol { plain: plain.into(), letter, below: below.into(), above }
 }
@@ -454,7 +454,7 @@ pub(crate) fn entry(name: &str, side: Side) -> Symbol {
     symbol(name, letter, name.get(1..).unwrap_or_default(), sign(side))
 }
 
-/// From where to where, or one number where that is all that is shown of it.
+/// Text of a range, or of one number if both ends look alike.
 pub(crate) fn range(ends: [f64; 2], digits: Digits) -> String {
     match ends.map(|end| digits.text(end)) {
         [from, to] if from == to => from,
@@ -462,7 +462,7 @@ pub(crate) fn range(ends: [f64; 2], digits: Digits) -> String {
     }
 }
 
-/// That the noise of the rows of a table is unknown, and why.
+/// States that the noise of the rows of a table is unknown, and why.
 pub(crate) fn noise_unknown(why: &str) -> String {
     format!(
         "How far the rows are from a smooth motion is unknown, since none could be fitted to them (it {why}). The cam is the spline through \
@@ -470,7 +470,7 @@ pub(crate) fn noise_unknown(why: &str) -> String {
     )
 }
 
-/// What a table of lifts is not exact for.
+/// Accuracy of a table of lifts: its rounding, or the spread of its lifts.
 pub(crate) fn accuracy(measured: &Measured) -> String {
     let reading = &measured.reading;
     match reading.step.filter(|_| measured.is_rounded()) {
@@ -479,12 +479,13 @@ pub(crate) fn accuracy(measured: &Measured) -> String {
     }
 }
 
-/// The same of one that is not rounded, by how its lifts spread, m: as they are measured, or as rows are too far apart for how the cam moves.
+/// Accuracy of a table that is not rounded, from the spread of its lifts, m. The cause is measurement, or rows too far apart for the cam's
+/// motion.
 pub(crate) fn known_to(reading: &Reading, noise: f64) -> String {
     format!("lift known to {} {}", Digits::Aligned(2).text(reading.in_model.told(noise)), reading.unit)
 }
 
-/// How the rows of a table were understood.
+/// Summary of how the rows of a table were interpreted.
 pub(crate) fn reading(reading: &Reading) -> String {
     let mut words = format!("{} rows, angles in {} and lifts in {}", reading.rows, reading.angle_unit, reading.unit);
     if let Some(layout) = &reading.layout {
@@ -516,7 +517,7 @@ pub(crate) fn reading(reading: &Reading) -> String {
     words
 }
 
-/// The hypotheses of what a page proves, in one sentence; none where it proves nothing.
+/// Hypotheses of the proofs on a page, in one sentence; `None` if there are none.
 pub fn hypotheses(all: &[impl Borrow<str>]) -> Option<String> {
     (!all.is_empty()).then(|| format!("Taken for granted: {}.", all.join("; ")))
 }

@@ -1,7 +1,7 @@
-//! A settled motion's next impact: one turn later, at the same place but for the last digits.
+//! Finds the next impact of a settled motion: one turn later, at the same place but for the last digits.
 //!
-//! A flight of one turn is the same linear map each time, and the cam is back where it was, so that position and velocity
-//! one turn later cost a few products. The next impact is found by checking that guess, without the general search.
+//! A flight of one turn is the same linear map each time, and the cam is back in its place. So position and velocity one turn later cost a
+//! few products. The next impact is found by checking that guess, without the general search.
 
 use std::f64::consts::{PI, TAU};
 
@@ -11,12 +11,12 @@ use super::{Machine, Motion};
 use crate::flight::{Flight, Response, State};
 use crate::tolerance;
 
-/// The flight over one turn of the cam.
+/// Flight over one turn of the cam.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Turn {
     time: f64,
     response: Response,
-    /// Whether a flight that starts upwards has only one turning point, its highest, in that time.
+    /// Whether a flight that starts upwards has only one turning point in that time, its highest point.
     rises_once: bool,
 }
 
@@ -30,8 +30,8 @@ impl Turn {
 }
 
 impl Machine {
-    /// The next impact of a motion that has just left the cam and is certain to rise above its top, if that impact is one
-    /// turn on to within the last Taylor step, and certainly the first.
+    /// Returns the next impact of a motion that has just left the cam and is certain to rise above its top. Returns none unless the impact
+    /// is one turn on, to within the last Taylor step, and certainly the first.
     #[inline(always)]
     pub(super) fn again(&self, motion: &mut Motion, jerk: f64) -> Option<Again> {
         let Turn { time, response, rises_once } = self.turn;
@@ -60,7 +60,7 @@ impl Machine {
         {
             return None;
         }
-        // It comes from above the top: so long before, it was there,
+        // It comes from above the top: this long before, it was there,
         let segment = &self.cam().segments()[motion.segment];
         let before = 1.25 * (self.terrain.top - end.position) / -end.velocity;
         let steepest = acceleration.abs() + jerk * before;
@@ -72,7 +72,7 @@ impl Machine {
         if !(from_top && shrinks && inside) {
             return None;
         }
-        // Near a place where the lift is known, its Taylor sum is as good as it is.
+        // Near a place of known lift, its Taylor sum is as accurate as an evaluation.
         let is_near = (cam_angle - motion.known.angle).abs() <= tolerance::LAST_TURN.value;
         if !(is_near && motion.known.segment == motion.segment) {
             motion.known = Known { segment: motion.segment, angle: cam_angle, lift: segment.law.lift(cam_angle) };

@@ -1,29 +1,29 @@
-//! The next event of a flight, known before the run comes to it.
+//! The next event of a flight, known before the run reaches it.
 
 use crate::cam::Lift;
 use crate::flight::State;
 
-/// What a flight comes to next.
+/// The next event of a flight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Ahead {
-    /// The impact before once more, one turn on.
+    /// The previous impact repeats, one turn on.
     Again(Again),
-    /// It comes down to the top of the cam.
+    /// The flight comes down to the top of the cam.
     Top {
-        /// After so long, s.
+        /// Time until then, s.
         time: f64,
-        /// There.
+        /// State of the follower then.
         state: State,
     },
-    /// It clears some segments.
+    /// The flight clears some segments.
     Leap(Leap),
-    /// It goes over the rest of its segment.
+    /// The flight goes over the rest of its segment.
     Over {
-        /// Which takes so long, s.
+        /// Time that this takes, s.
         end: f64,
         passage: Passage,
     },
-    /// It never comes down to the top.
+    /// The flight never comes down to the top.
     Never,
 }
 
@@ -39,15 +39,15 @@ pub(super) struct Again {
 /// The end of a leap.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Leap {
-    /// The last segment that the flight goes over.
+    /// Last segment that the flight goes over.
     pub segment: usize,
-    /// When it comes to that segment's end, s.
+    /// Time when it reaches that segment's end, s.
     pub time: f64,
-    /// Whether it meets the cam on the next one.
+    /// Whether it meets the cam on the next segment.
     pub lands: bool,
 }
 
-/// What became of a flight over a window.
+/// Outcome of a flight over a window.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Passage {
     /// No contact up to the end.
@@ -55,7 +55,7 @@ pub(super) enum Passage {
         state: State,
         gap: Option<f64>,
     },
-    /// The first contact, s after the start, with the velocity that it is met with.
+    /// The first contact, s after the start, with the velocity at that moment.
     Contact {
         time: f64,
         velocity: f64,
@@ -69,6 +69,6 @@ pub(super) enum Passage {
     NoProgress {
         time: f64,
     },
-    /// Something is not a number.
+    /// A number is NaN or infinite.
     NotFinite,
 }

@@ -1,42 +1,42 @@
-//! The first root of the gap on one segment of the cam, certified: no impact is passed over.
+//! First root of the gap on one segment of the cam, certified: no impact is missed.
 //!
-//! With `|g'''| <= M` ahead of an instant, `g + g' h + g'' h^2/2 - M h^3/6` lies below the gap. Marching to the first root
-//! of that minorant, again and again, comes to the first contact from the left and never crosses it, however short the
-//! dip; close to a crossing each step triples the digits.
+//! With `|g'''| <= M` ahead of an instant, `g + g' h + g'' h^2/2 - M h^3/6` lies below the gap. Repeated steps to the first root of that
+//! minorant converge to the first contact from the left and never cross it, however short the dip. Close to a crossing each step triples
+//! the digits.
 
-/// The gap between follower and cam at an instant, and what is known of it from there on.
+/// Gap between follower and cam at an instant, with bounds from then on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Gap {
     /// g, m.
     pub value: f64,
-    /// How far rounding may have moved `value`, m.
+    /// Rounding error of `value`, m.
     pub rounding: f64,
     /// g', m/s.
     pub rate: f64,
-    /// How far rounding may have moved `rate`, m/s.
+    /// Rounding error of `rate`, m/s.
     pub rate_rounding: f64,
     /// g'', m/s^2.
     pub curvature: f64,
-    /// A guess at `|g'''|` from here on, m/s^3: it sets which step is tried first, never which is certain.
+    /// Estimate of `|g'''|` from here on, m/s^3: it sets which step is tried first, never which step is certain.
     pub third: f64,
 }
 
-/// What the search found.
+/// Result of the search.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Outcome {
     /// No contact up to the end.
     None,
     /// The first contact, s after the start.
     Contact(f64),
-    /// Inside the cam, and on the way out of it.
+    /// The follower is inside the cam and on the way out of it.
     Below { depth: f64, time: f64 },
-    /// More steps than a window may take, or one that takes no time; s after the start.
+    /// More steps than a window may take, or a step that takes no time; s after the start.
     NoProgress(f64),
-    /// The gap is not a number; s after the start.
+    /// The gap is NaN or infinite; s after the start.
     NotFinite(f64),
 }
 
-/// The first contact within `[0, end]`, s, of the gap `gap_at(time)`; `third_bound(time, reach)` bounds `|g'''|` over
+/// Finds the first contact within `[0, end]`, s, of the gap `gap_at(time)`; `third_bound(time, reach)` bounds `|g'''|` over
 /// `[time, time + reach]`.
 pub(super) fn first_contact(gap_at: impl Fn(f64) -> Gap, third_bound: impl Fn(f64, f64) -> f64, end: f64) -> Outcome {
     let mut time = 0.0;
@@ -56,7 +56,7 @@ pub(super) fn first_contact(gap_at: impl Fn(f64) -> Gap, third_bound: impl Fn(f6
             return Outcome::None;
         }
         if time + step == time {
-            // Contact to the last digit, where the follower approaches it.
+            // Contact to the last digit if the follower approaches it.
             return if gap.rate < 0.0 { Outcome::Contact(time) } else { Outcome::NoProgress(time) };
         }
         time += step;
@@ -64,16 +64,16 @@ pub(super) fn first_contact(gap_at: impl Fn(f64) -> Gap, third_bound: impl Fn(f6
     Outcome::NoProgress(time)
 }
 
-/// One Newton step from a contact known to rounding; not past the bottom of a graze, where the follower moves away already.
+/// Takes one Newton step from a contact known to rounding, but not past the bottom of a graze, where the follower moves away already.
 fn polish(gap_at: impl Fn(f64) -> Gap, time: f64, gap: &Gap, end: f64) -> f64 {
     let better = (time - gap.value / gap.rate).clamp(0.0, end);
     let there = gap_at(better);
     if there.rate < 0.0 && there.value.abs() <= gap.value.abs() { better } else { time }
 }
 
-/// A time ahead, at most `end`, before which the gap is certainly open.
+/// Returns a time, at most `end`, before which the gap is certainly open.
 fn free_time(gap: &Gap, third_bound: impl Fn(f64) -> f64, end: f64) -> f64 {
-    /// So many times a reach its root is, where the reach is too short.
+    /// Ratio of root to reach above which the reach is too short.
     const FAR: f64 = 16.0;
     // Down to a depth of its rounding the gap is open: a flight that leaves a tangency gets a first step out of it.
     let value = (gap.value + gap.rounding).max(0.0);
@@ -107,7 +107,7 @@ fn free_time(gap: &Gap, third_bound: impl Fn(f64) -> f64, end: f64) -> f64 {
     best
 }
 
-/// The first positive root of `g + b h + c h^2/2` for `g >= 0`; 0 where it falls at once, infinite where it never reaches 0.
+/// Returns the first positive root of `g + b h + c h^2/2` for `g >= 0`; 0 if it falls at once, infinite if it never reaches 0.
 fn first_root(g: f64, b: f64, c: f64) -> f64 {
     let discriminant = b * b - 2.0 * c * g;
     if discriminant < 0.0 || (b >= 0.0 && c >= 0.0) {
@@ -127,7 +127,7 @@ mod tests {
     use super::*;
     use crate::elementary;
 
-    /// Damping stops a follower within 1e-12 s of an impact, far above the cam by its digits, and the cam comes up to it in the end.
+    /// Damping stops a follower within 1e-12 s of an impact, many digits above the cam, and the cam reaches it in the end.
     #[test]
     fn a_flight_that_is_stopped_at_once_takes_few_steps() {
         let (rate, stops, cam) = (17.0, 1e12, 1e-9);

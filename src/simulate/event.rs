@@ -1,4 +1,4 @@
-//! What happens on the way, who looks on, and why a run could not go on.
+//! Events of a run, observers of a run, and the reasons why a run could not go on.
 
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
@@ -7,20 +7,20 @@ use serde::Serialize;
 
 use crate::flight::{Flight, State};
 
-/// What kind of event.
+/// Kind of event.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum EventKind {
     /// The follower hits the cam.
     Impact,
-    /// From here on the follower stays on the cam: an impact left no relative velocity, or infinitely many have.
+    /// The follower stays on the cam from here on: an impact left no relative velocity, or infinitely many impacts did.
     Stick,
-    /// The cam lets go of the follower.
+    /// The follower leaves the cam after sticking.
     Release,
 }
 
 impl EventKind {
-    /// The name that tables and files use.
+    /// Name in tables and files.
     pub fn name(self) -> &'static str {
         match self {
             Self::Impact => "impact",
@@ -33,9 +33,9 @@ impl EventKind {
 /// An impact, the start of sticking, or its end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Event {
-    /// What happened.
+    /// Kind of event.
     pub kind: EventKind,
-    /// How often the cam has passed angle 0 since the start of the run.
+    /// Number of times that the cam has passed angle 0 since the start of the run.
     pub revolution: u64,
     /// Cam angle, rad, in `[0, 2 pi)`.
     pub cam_angle: f64,
@@ -52,38 +52,38 @@ pub struct Event {
 }
 
 impl Event {
-    /// The angle turned since a start at `cam_angle`, rad, in revolution 0.
+    /// Angle turned since a start at `cam_angle`, rad, in revolution 0.
     pub fn turned_since(&self, cam_angle: f64) -> f64 {
         let within = self.cam_angle - cam_angle;
         if self.revolution == 0 { within } else { self.revolution as f64 * TAU + within }
     }
 }
 
-/// What finding contacts has taken.
+/// Work spent on finding contacts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Work {
     /// Evaluations of the gap between follower and cam.
     pub gaps: u64,
     /// Steps of Newton's or Halley's method.
     pub steps: u64,
-    /// Windows that were marched over, since their gap has no shape that makes a contact certain.
+    /// Windows that were marched over, because their gap has no shape that certifies a contact.
     pub marches: u64,
     /// Impacts of a settled motion, found one turn on without a search.
     pub repeats: u64,
 }
 
-/// Who looks on. A closure that takes each event is one.
+/// An observer of a run. A closure that takes each event is one.
 pub trait Observer {
-    /// Whether `work` is called: a constant, so that a run whose work nobody asks for spends nothing on counting it.
+    /// Whether `work` is called. A constant, so that a run without interest in its work spends nothing on counting it.
     const COUNTS: bool = false;
 
-    /// Sees an event; may end the run right after it.
+    /// Receives an event; may end the run right after it.
     fn event(&mut self, event: &Event) -> ControlFlow<()>;
 
-    /// Sees a stretch of free flight that has just been flown: from which state, for how long, s.
+    /// Receives a stretch of free flight that has just been flown: its start state and its duration, s.
     fn flight(&mut self, _flight: &Flight, _from: State, _time: f64) {}
 
-    /// Is told what one more look for a contact took.
+    /// Receives the work of one more search for a contact.
     fn work(&mut self, _work: Work) {}
 }
 
@@ -93,22 +93,22 @@ impl<F: FnMut(&Event) -> ControlFlow<()>> Observer for F {
     }
 }
 
-/// Impacts on the way of a run.
+/// Impacts that occurred in a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Met {
-    /// How many.
+    /// Number of impacts.
     pub impacts: u64,
-    /// The speed of the fastest, of follower and cam against each other, m/s.
+    /// Relative speed of follower and cam at the fastest impact, m/s.
     pub impact_speed: f64,
 }
 
 impl Met {
-    /// Of both.
+    /// Combines the impacts of both.
     pub fn with(self, other: Self) -> Self {
         Self { impacts: self.impacts + other.impacts, impact_speed: self.impact_speed.max(other.impact_speed) }
     }
 
-    /// Takes note of an event.
+    /// Counts an event if it is an impact.
     pub fn take(&mut self, event: &Event) {
         if event.kind == EventKind::Impact {
             self.impacts += 1;
@@ -117,7 +117,7 @@ impl Met {
     }
 }
 
-/// Nobody looks on.
+/// An observer that ignores everything.
 #[derive(Clone, Copy, Debug)]
 pub struct Unobserved;
 
@@ -137,7 +137,7 @@ pub enum SimulateError {
         cam_angle.to_degrees()
     )]
     BelowCam { depth: f64, revolution: u64, cam_angle: f64 },
-    /// A flight has passed through the cam, which no follower does: a fault of this program.
+    /// A flight has passed through the cam, which is impossible: a fault of this program.
     #[error(
         "simulate: a fault of this program: at {rpm} rpm the follower has passed through the cam, {depth:.3e} m deep at cam angle \
          {:.4} deg of revolution {revolution}, at position {position} m with velocity {velocity} m/s",

@@ -9,12 +9,12 @@ use crate::elementary;
 use crate::estimate::Estimate;
 use crate::flight::{Flight, State};
 
-/// The mean growth of a small deviation per revolution, as a natural logarithm: the largest Lyapunov exponent in the limit
-/// of many `revolutions`.
+/// Mean growth of a small deviation per revolution, as a natural logarithm: the largest Lyapunov exponent in the limit of many
+/// `revolutions`.
 ///
-/// Minus infinity where the follower comes to stick to the cam, be it once in thousands of revolutions: nothing is left of a
-/// deviation then, and what follows repeats what followed the stick before. Until such a stick a chaotic motion has the
-/// number that it would have without. A start on the cam counts from its release on; in no revolution nothing grows.
+/// Minus infinity if the follower sticks to the cam, be it once in thousands of revolutions: nothing remains of a deviation then, and the
+/// motion repeats what followed the stick before. Until such a stick a chaotic motion has the growth that it would have without. A start on
+/// the cam counts from its release on. Zero revolutions have zero growth.
 pub fn growth(machine: &Machine, mut motion: Motion, revolutions: u64) -> Result<f64, SimulateError> {
     let (mut sum, mut direction) = (0.0, ANY);
     let met = &mut Met::default();
@@ -22,28 +22,28 @@ pub fn growth(machine: &Machine, mut motion: Motion, revolutions: u64) -> Result
     Ok(sum / revolutions.max(1) as f64)
 }
 
-/// A deviation to begin with, its angle in rad and its velocity over the angle in m/rad: any has a part along what grows most.
+/// Initial deviation, its angle in rad and its velocity over the angle in m/rad: any one has a part along the fastest growth.
 const ANY: Vector2<f64> = Vector2::new(0.6, 0.8);
 
-/// What is seen of a run that does not repeat, for as long as it is looked at.
+/// Data recorded from a run that does not repeat.
 #[derive(Clone, Debug)]
 pub struct Record {
     means: Means,
-    /// The direction of the deviation, carried from one part of the record to the next.
+    /// Direction of the deviation, carried from one part of the record to the next.
     direction: Vector2<f64>,
-    /// The impacts, of whole revolutions.
+    /// Impacts of whole revolutions.
     pub met: Met,
-    /// How many revolutions.
+    /// Number of revolutions.
     pub revolutions: u64,
 }
 
 impl Record {
-    /// Nothing yet, of which the growth will be taken in blocks of so many revolutions.
+    /// An empty record, whose growth will be taken in blocks of `per_block` revolutions.
     pub fn over(per_block: u64) -> Self {
         Self { means: Means::over(per_block), direction: ANY, met: Met::default(), revolutions: 0 }
     }
 
-    /// Goes on for so many revolutions, or to where the follower comes to stick: from `motion`, which is where it was left.
+    /// Continues the record for `revolutions`, or until the follower sticks, from `motion`, which must be where the record ended.
     pub fn take(&mut self, machine: &Machine, motion: &mut Motion, revolutions: u64) -> Result<(), SimulateError> {
         let begun = motion.revolution;
         let seen = (&mut self.met, &mut self.direction);
@@ -52,12 +52,12 @@ impl Record {
         Ok(())
     }
 
-    /// The mean growth a revolution over the blocks that are over; neither it nor its error is a number for fewer than two.
+    /// Mean growth per revolution over the complete blocks. Its error is NaN for fewer than two blocks.
     pub fn growth(&self) -> Estimate {
         Estimate::of_parts(&self.means.of_blocks)
     }
 
-    /// What a deviation grows by at most from the beginning of any block to the end of any later one: what shrinks in the end may
+    /// Largest growth of a deviation from the beginning of any block to the end of any later one. A deviation that shrinks in the end may
     /// have been as large as the motion on the way.
     pub fn most(&self) -> f64 {
         let grown = |(most, here): (f64, f64), block: &f64| {
@@ -67,7 +67,7 @@ impl Record {
         self.means.of_blocks.iter().fold((0.0, 0.0), grown).0
     }
 
-    /// Growth of a deviation over the first half of the blocks that are over, and over the second; a natural logarithm.
+    /// Growth of a deviation over the first half of the complete blocks, and over the second; a natural logarithm.
     pub fn halves(&self) -> [f64; 2] {
         let blocks = &self.means.of_blocks;
         let grown = |blocks: &[f64]| self.means.per_block as f64 * blocks.iter().sum::<f64>();
@@ -75,13 +75,13 @@ impl Record {
         [grown(first), grown(second)]
     }
 
-    /// Whether it ended where the follower came to stick.
+    /// Whether the record ended with the follower sticking.
     pub fn rests(&self) -> bool {
         self.means.sum == f64::NEG_INFINITY
     }
 }
 
-/// Counts impacts beside the variation.
+/// Counts impacts besides the variation.
 struct Counting<'a, 'machine>(&'a mut Variation<'machine>, &'a mut Met);
 
 impl Observer for Counting<'_, '_> {
@@ -95,12 +95,12 @@ impl Observer for Counting<'_, '_> {
     }
 }
 
-/// The mean growth of each block of revolutions that is over.
+/// Mean growth of each complete block of revolutions.
 #[derive(Clone, Debug)]
 struct Means {
     per_block: u64,
     of_blocks: Vec<f64>,
-    /// Of the block that is not over.
+    /// Growth over the incomplete block.
     sum: f64,
     seen: u64,
 }
@@ -119,7 +119,7 @@ impl Means {
     }
 }
 
-/// The growth of each revolution in turn; minus infinity, once, where the follower sticks.
+/// Passes the growth of each revolution to `keep`; minus infinity, once, if the follower sticks.
 fn stretches(
     machine: &Machine,
     motion: &mut Motion,

@@ -1,52 +1,52 @@
-//! A flight over many short segments at once, as a cam given by a table has them.
+//! Flies over many short segments at once, as in a cam given by a table.
 //!
-//! Looking for a contact on each of 360 segments costs more than all the flights of a revolution. Where a lower bound of the
-//! flight stays above chords of the lift, segment after segment, one flight goes over all of them.
+//! A search for a contact on each of 360 segments costs more than all the flights of a revolution. If a lower bound of the flight stays
+//! above chords of the lift, segment after segment, one flight goes over all of them.
 
 use super::ahead::Leap;
 use super::{Machine, Motion};
 use crate::cam::Segment;
 
-/// A stretch of cam, of one segment or of several, as far as a flight that clears it has to know it.
+/// Bound on the lift over one or several segments, as needed by a flight that clears them.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Chord {
-    /// Where it ends, rad.
+    /// End of the chord, rad.
     end: f64,
-    /// The lift there, m, and the slope of the straight line to it from where the chord begins, m/rad.
+    /// Lift at the end, m, and the slope of the straight line to it from the beginning of the chord, m/rad.
     lift: f64,
     slope: f64,
-    /// The lift is at most so far above that line, m.
+    /// Largest height of the lift above that line, m.
     rise: f64,
-    /// An eighth of the square of its width, rad^2.
+    /// Square of the chord's width over eight, rad^2.
     square: f64,
 }
 
-/// The chords of a cam of so many segments that going over them one by one is slow: from the start of each segment over 1, 4, 16 and
-/// 64 of them.
+/// Chords of a cam with so many segments that going over them one by one is slow: from the start of each segment over 1, 4, 16 and 64
+/// segments.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Chords {
     from: Vec<[Chord; SIZES.len()]>,
 }
 
-/// Segments that chords go over.
+/// Numbers of segments that chords go over.
 const SIZES: [usize; 4] = [1, 4, 16, 64];
 
-/// Segments from one to another that no chord has been laid over yet.
+/// Consecutive segments without a chord so far.
 #[derive(Clone, Copy)]
 struct Stretch {
     start: f64,
     end: f64,
-    /// The lift at either end, m.
+    /// Lift at either end, m.
     lift: [f64; 2],
-    /// No `c''` is less, m/rad^2; minus infinity where the slope falls from one segment to the next, or the lift steps: a slope that
-    /// rises keeps the lift below its chord.
+    /// Lower bound of `c''`, m/rad^2. Minus infinity if the slope falls from one segment to the next, or the lift steps: only a rising
+    /// slope keeps the lift below its chord.
     curvature: f64,
 }
 
 impl Chords {
-    /// None where there are few segments; `kinks` is whether the lift's slope falls, or the lift steps, where each begins.
+    /// Builds the chords, or none for few segments. `kinks` says for each segment whether the slope falls or the lift steps at its start.
     pub fn of_many(segments: &[Segment], kinks: &[bool]) -> Self {
-        /// Of fewer, most flights pass a handful.
+        /// With fewer segments most flights pass only a handful.
         const MANY: usize = 64;
         if segments.len() < MANY {
             return Self::default();
@@ -61,7 +61,7 @@ impl Chords {
         let mut from = vec![[Chord::NONE; SIZES.len()]; segments.len()];
         let mut size = 1;
         for (level, longer) in SIZES.into_iter().enumerate() {
-            // Of as many of the level before as there are, one after the other; the last ones have none after them.
+            // Joins consecutive stretches of the level before; the last ones have no successors.
             let joined = stretches.iter().enumerate().map_while(|(first, stretch)| {
                 let mut others = (first..first + longer).step_by(size).skip(1);
                 others.try_fold(*stretch, |all, next| Some(all.and(stretches.get(next)?, kinks[next])))
@@ -77,7 +77,7 @@ impl Chords {
 }
 
 impl Chord {
-    /// What is never cleared.
+    /// A chord that is never cleared.
     const NONE: Self = Self { end: f64::INFINITY, lift: 0.0, slope: 0.0, rise: f64::INFINITY, square: 0.0 };
 }
 
@@ -98,7 +98,7 @@ impl Stretch {
 }
 
 impl Machine {
-    /// The segments that a flight off the cam certainly clears, from where it is to the end of one of them.
+    /// Returns the segments that a flight off the cam certainly clears, from its present place to the end of one of them.
     #[inline]
     pub(super) fn leap(&self, motion: &Motion) -> Option<Leap> {
         let chords = &self.terrain.chords.from;
@@ -120,9 +120,9 @@ impl Machine {
         let last = self.flight.fourth_bound(state) * (square * square / 24.0);
         let rounding = self.gap_rounding(state.position);
         let (mut segment, mut before, mut turned) = (motion.segment, state.position, 0.0);
-        /// Chords that most leaps begin with.
+        /// Index of the chord size that most leaps begin with.
         const FIRST: usize = 2;
-        // Ever more segments as long as they are cleared, and then ever fewer.
+        // Longer chords as long as they are cleared, then shorter ones.
         let (mut level, mut rises) = (FIRST, true);
         let mut lands = false;
         while let Some(chord) = chords.get(segment).map(|from| &from[level]) {

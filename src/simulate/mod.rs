@@ -1,22 +1,21 @@
-//! The only event loop: fly to the first contact, resolve it, or follow the cam until it lets go.
+//! The only event loop: fly to the first contact, resolve it, or follow the cam until the follower is released.
 //!
-//! A [`Machine`] is a cam, a follower over it and a speed; a [`Motion`] is where the two are. [`Machine::advance`] takes a
-//! motion to a later angle and shows an [`Observer`] what happens on the way: impacts, the start of sticking, release.
-//! Time runs from the last event and the cam angle stays in `[0, 2 pi)`, so neither a short hop nor the hundred-millionth
-//! revolution loses digits.
+//! A [`Machine`] is a cam, a follower over it and a speed; a [`Motion`] is the present state of both. [`Machine::advance`] takes a motion
+//! to a later angle and shows the events on the way to an [`Observer`]: impacts, the start of sticking, release. Time runs from the last
+//! event and the cam angle stays in `[0, 2 pi)`, so neither a short hop nor the hundred-millionth revolution loses digits.
 //!
-//! | module | what it holds |
+//! | module | contents |
 //! |---|---|
-//! | `motion`, `event` | where cam and follower are; what happens on the way, and who looks on |
-//! | `ahead` | what a flight comes to next |
+//! | `motion`, `event` | the state of cam and follower; the events on the way, and their observers |
+//! | `ahead` | the next event of a flight |
 //! | `terrain` | the cam as the loop sees it: seams, corners, bounds |
 //! | `window` | a stretch of flight over one segment: free, or its first contact |
 //! | `contact` | the first root of the gap in it, certified |
 //! | `leap` | a flight over many short segments at once |
 //! | `again` | a settled motion's next impact, one turn on: checked, not searched |
 //! | `sticking` | infinitely many impacts, contact, release |
-//! | `variation` | how a small deviation is carried along |
-//! | `growth` | how fast one grows |
+//! | `variation` | the propagation of a small deviation |
+//! | `growth` | the growth rate of a small deviation |
 
 mod again;
 mod ahead;
@@ -52,8 +51,8 @@ use terrain::Terrain;
 pub use variation::Variation;
 use window::Window;
 
-/// Steps of one search for a contact or a release after which a run is given up: a follower that swings a million times
-/// over one segment, or is pressed against it with a ten-millionth of the forces at work.
+/// Steps of one search for a contact or a release after which a run is given up. Examples: a follower that swings a million times over one
+/// segment, or that is pressed against it with a ten-millionth of the forces at work.
 const MOST_STEPS: u32 = 10_000_000;
 
 /// A cam, a follower over it, and the speed at which the cam turns.
@@ -66,17 +65,17 @@ pub struct Machine {
     turn: Turn,
 }
 
-/// Radians per second of a speed in revolutions per minute.
+/// Converts revolutions per minute to radians per second.
 pub fn angular_velocity(rpm: f64) -> f64 {
     rpm * TAU / 60.0
 }
 
 impl Machine {
-    /// Events in one revolution after which a run is given up: a follower that chatters with restitution 0.99 makes
-    /// thousands, one that makes no progress no end.
+    /// Events in one revolution after which a run is given up: a follower that chatters with restitution 0.99 makes thousands, one that
+    /// makes no progress makes endlessly many.
     const MOST_EVENTS: u32 = 1_000_000;
 
-    /// A machine at `angular_velocity`, rad/s, positive.
+    /// Builds a machine that turns at `angular_velocity`, rad/s, positive.
     pub fn new(cam: Cam, follower: &Follower, angular_velocity: f64) -> Self {
         let flight = Flight::new(follower);
         Self {
@@ -88,12 +87,12 @@ impl Machine {
         }
     }
 
-    /// The same machine at another speed, rad/s, positive; the cam is shared.
+    /// Returns this machine at another speed, rad/s, positive; the cam is shared.
     pub fn at_speed(&self, angular_velocity: f64) -> Self {
         Self { angular_velocity, turn: Turn::new(&self.flight, angular_velocity), ..self.clone() }
     }
 
-    /// The same follower at the same speed over another cam.
+    /// Returns this follower at this speed over another cam.
     pub fn with_cam(&self, cam: Cam) -> Self {
         Self { terrain: Arc::new(Terrain::new(cam)), ..self.clone() }
     }
@@ -103,7 +102,7 @@ impl Machine {
         &self.terrain.cam
     }
 
-    /// The follower away from the cam.
+    /// Free flight of the follower.
     pub fn flight(&self) -> &Flight {
         &self.flight
     }
@@ -118,7 +117,7 @@ impl Machine {
         self.angular_velocity
     }
 
-    /// A motion that starts at `cam_angle`, rad, in `[0, 2 pi)`, with `state`; in contact if it rests against the cam.
+    /// Starts a motion at `cam_angle`, rad, in `[0, 2 pi)`, with `state`; in contact if the follower rests against the cam.
     pub fn start(&self, cam_angle: f64, state: State) -> Result<Motion, SimulateError> {
         if !(0.0..TAU).contains(&cam_angle) {
             return Err(SimulateError::Start { cam_angle });
@@ -161,15 +160,15 @@ impl Machine {
         Ok(motion)
     }
 
-    /// A motion that starts on the cam at `cam_angle`, rad, and leaves it at `relative_velocity`, m/s, zero or more.
+    /// Starts a motion on the cam at `cam_angle`, rad, leaving it at `relative_velocity`, m/s, zero or more.
     pub fn start_on_cam(&self, cam_angle: f64, relative_velocity: f64) -> Result<Motion, SimulateError> {
         let lift = self.cam().lift(cam_angle);
         let velocity = self.angular_velocity * lift.slope + relative_velocity;
         self.start(cam_angle, State { position: lift.value, velocity })
     }
 
-    /// `motion` at the same angle of this machine, which may turn at another speed: a follower that sticks still does, if
-    /// the cam does not let go of it at this speed.
+    /// Continues `motion` at its angle on this machine, which may turn at another speed. A follower that sticks remains sticking, unless
+    /// the cam releases it at this speed.
     pub fn resume(&self, motion: &Motion) -> Result<Motion, SimulateError> {
         match motion.contact {
             true => self.start_on_cam(motion.cam_angle, 0.0),
@@ -177,8 +176,8 @@ impl Machine {
         }
     }
 
-    /// Puts the follower on the cam, where `lift` holds, with a relative velocity, m/s: sticking where it has none and is
-    /// pressed against the cam. Rounding counts as none.
+    /// Puts the follower on the cam, whose lift there is `lift`, with a relative velocity, m/s. The follower sticks if the velocity is
+    /// within rounding of zero and the follower is pressed against the cam.
     #[inline(always)]
     fn leave(&self, motion: &mut Motion, lift: &Lift, relative_velocity: f64) {
         let cam_velocity = self.angular_velocity * lift.slope;
@@ -189,17 +188,17 @@ impl Machine {
         motion.contact = is_none && !self.lets_go(lift);
     }
 
-    /// How far rounding may move the gap of a follower at `position`, m.
+    /// Rounding error of the gap of a follower at `position`, m.
     fn gap_rounding(&self, position: f64) -> f64 {
         tolerance::GAP_ROUNDING.value * (position.abs() + self.terrain.size)
     }
 
-    /// The relative velocity at the cam that may be rounding, m/s.
+    /// Rounding error of the relative velocity at the cam, m/s.
     fn velocity_rounding(&self) -> f64 {
         tolerance::RELATIVE_VELOCITY_ROUNDING.value * self.angular_velocity * self.terrain.steepest
     }
 
-    /// The gap between follower and cam, m.
+    /// Gap between follower and cam, m.
     pub fn gap(&self, motion: &Motion) -> f64 {
         let lift = || self.cam().segments()[motion.segment].law.lift(motion.cam_angle).value;
         motion.gap.unwrap_or_else(|| motion.state.position - lift())
@@ -207,8 +206,8 @@ impl Machine {
 
     /// Advances `motion` until the cam reaches `goal`, or until the observer breaks right after an event.
     ///
-    /// An event in the last instant is left to the run that goes on from there; a stick is shown with the impact that led to
-    /// it. Where a run is stopped changes no bit of what comes after.
+    /// An event in the last instant is left to the run that continues from there; a stick is shown with the impact that led to it. Stopping
+    /// a run anywhere changes no bit of its later course.
     pub fn advance(
         &self,
         motion: &mut Motion,
@@ -255,7 +254,7 @@ impl Machine {
         }
     }
 
-    /// Puts cam and follower where they are at `goal`, `left` rad on in the present stretch of flight or contact.
+    /// Sets cam and follower to their state at `goal`, which is `left` rad on in the present stretch of flight or contact.
     fn show_at(
         &self,
         motion: &mut Motion,
@@ -264,7 +263,7 @@ impl Machine {
         observer: &mut impl Observer,
     ) -> Result<(), SimulateError> {
         if motion.chatter == Chatter::Due {
-            // In the middle of infinitely many impacts: as many of them as there are up to here.
+            // In the middle of infinitely many impacts: runs each of them up to here.
             let mut shown = motion.with_each_impact();
             let _ = self.advance(&mut shown, goal, &mut Unobserved)?;
             let Motion { revolution, cam_angle, state, contact, segment, gap, lift, .. } = shown;
@@ -290,14 +289,14 @@ impl Machine {
         self.above_cam(motion, || self.gap(motion))
     }
 
-    /// Shows an observer what it has not seen yet of a stretch of flight of `time`, s, from where `motion` is.
+    /// Shows an observer the part of a stretch of flight that it has not seen yet; the stretch starts at `motion` and takes `time`, s.
     #[inline(always)]
     fn flown(&self, motion: &mut Motion, time: f64, observer: &mut impl Observer) {
         let (state, seen) = motion.seen.take().unwrap_or((motion.state, 0.0));
         observer.flight(&self.flight, state, time - seen);
     }
 
-    /// An error where a flight has passed through the cam: a fault of this program, which no run goes on from.
+    /// Returns an error if a flight has passed through the cam. This is a fault of this program, and no run continues from it.
     #[inline(always)]
     fn above_cam(&self, motion: &Motion, gap: impl Fn() -> f64) -> Result<(), SimulateError> {
         let State { position, velocity } = motion.state;
@@ -312,7 +311,7 @@ impl Machine {
         Err(SimulateError::PassedThrough { depth: -gap, revolution, cam_angle, position, velocity, rpm })
     }
 
-    /// Counts an event, unless there are more of them in one revolution than a run may have.
+    /// Counts an event; returns an error if one revolution has more events than a run may have.
     #[inline(always)]
     fn counted(&self, motion: &mut Motion) -> Result<(), SimulateError> {
         let Motion { revolution, cam_angle, events: (last, events), .. } = motion;
@@ -324,19 +323,19 @@ impl Machine {
         }
     }
 
-    /// Advances `motion` by `revolutions`, with nobody looking on.
+    /// Advances `motion` by `revolutions` without an observer.
     pub fn revolve(&self, motion: &mut Motion, revolutions: u64) -> Result<(), SimulateError> {
         let goal = motion.after(revolutions);
         self.advance(motion, goal, &mut Unobserved).map(|_| ())
     }
 
-    /// Advances `motion` to the next passage of `cam_angle`, rad, in `[0, 2 pi)`, with nobody looking on.
+    /// Advances `motion` to the next passage of `cam_angle`, rad, in `[0, 2 pi)`, without an observer.
     pub fn turn_to(&self, motion: &mut Motion, cam_angle: f64) -> Result<(), SimulateError> {
         let goal = motion.next(cam_angle);
         self.advance(motion, goal, &mut Unobserved).map(|_| ())
     }
 
-    /// Advances `motion` by `revolutions`; `see` takes every event, and ends nothing.
+    /// Advances `motion` by `revolutions`; `see` receives every event and cannot end the run.
     pub fn watch(
         &self,
         motion: &mut Motion,
@@ -353,7 +352,7 @@ impl Machine {
 
     /// Turns the cam by `turn`, rad, 0 or more, from `cam_angle`, rad, in `[0, 2 pi)`, and returns the state there.
     ///
-    /// `observe` sees every event, and may end the run right after one.
+    /// `observe` receives every event, and may end the run right after one.
     pub fn turn(
         &self,
         cam_angle: f64,
@@ -371,8 +370,8 @@ impl Machine {
         Ok(motion.state)
     }
 
-    /// One stretch of flight: over the top of the cam, or up to a contact or the end of a segment. Where it ends does not depend on how
-    /// much, `left`, rad, is left of the run; what it comes to may be `known` from a run that was stopped in it.
+    /// Flies one stretch: over the top of the cam, or up to a contact or the end of a segment. The end of the stretch does not depend on
+    /// `left`, the rest of the run in rad. Its next event may be `known` from a run that was stopped in it.
     #[inline(always)]
     fn fly<O: Observer>(
         &self,
@@ -419,7 +418,7 @@ impl Machine {
                 self.flown(motion, time, observer);
                 self.turn_over(motion, omega * time);
                 (motion.state, motion.gap, motion.lift) = (state, None, None);
-                // What is exactly at the top would be looked at as above it once more.
+                // A follower exactly at the top would count as above it once more.
                 if state.position <= self.terrain.top { Ok(Step::Moved) } else { Err(self.not_finite(motion)) }
             }
             Ahead::Never => Ok(Step::Reached { until, ahead: None }),
@@ -458,7 +457,7 @@ impl Machine {
         }
     }
 
-    /// The next event of a flight. It depends on how much, `left`, rad, is left of the run only where each impact up to there is asked for.
+    /// Finds the next event of a flight. It depends on `left`, the rest of the run in rad, only if each impact up to the goal is asked for.
     #[inline(always)]
     fn ahead<O: Observer>(&self, motion: &mut Motion, left: f64, observer: &mut O) -> Ahead {
         let omega = self.angular_velocity;
@@ -499,8 +498,8 @@ impl Machine {
         SimulateError::NotFinite { revolution: motion.revolution, cam_angle: motion.cam_angle }
     }
 
-    /// A follower that has just left the cam and is certain to rise above all of it without another contact, with the bound
-    /// of its jerk, m/s^3.
+    /// Returns a bound of the jerk, m/s^3, if the follower has just left the cam and is certain to rise above all of it without another
+    /// contact.
     #[inline(always)]
     fn clears(&self, motion: &Motion, top: f64) -> Option<f64> {
         let (State { position, velocity }, omega) = (motion.state, self.angular_velocity);
@@ -508,7 +507,7 @@ impl Machine {
             return None;
         }
         let relative_velocity = velocity - motion.lift.map_or(f64::INFINITY, |lift| omega * lift.slope);
-        // While it rises q >= q0 + v0 t + (a0 - J t) t^2/2, with |q'''| <= J: so much time is enough to be above the top,
+        // While it rises q >= q0 + v0 t + (a0 - J t) t^2/2, with |q'''| <= J: this time is enough to be above the top,
         let time = 1.25 * (top - position) / velocity;
         let jerk = self.flight.jerk_bound(motion.state);
         let slowest = self.flight.acceleration(motion.state) - jerk * time;
@@ -531,14 +530,14 @@ impl Machine {
             }
         }
         motion.cam_angle = angle;
-        // Most flights come down where the one before did.
+        // Most flights come down on the segment of the flight before.
         let here = &self.cam().segments()[motion.segment];
         if !(here.start <= angle && angle < here.end) {
             motion.segment = self.cam().segment_at(angle);
         }
     }
 
-    /// Goes over to the next segment, at its start; an error where the lift steps up through the follower.
+    /// Moves to the start of the next segment; returns an error if the lift steps up through the follower.
     fn enter_next(&self, motion: &mut Motion) -> Result<(), SimulateError> {
         let segments = self.cam().segments();
         motion.segment += 1;
@@ -559,13 +558,13 @@ impl Machine {
             return Ok(());
         }
         if let Some(lift) = entry.seam {
-            // The gap goes on as it was.
+            // The gap is continuous.
             motion.gap.get_or_insert(motion.state.position - lift);
         }
         self.above_cam(motion, || motion.gap.unwrap_or(motion.state.position - entry.lift))
     }
 
-    /// Brings a motion that an observer has stopped at a whole turn to the start of the next, where no lift steps.
+    /// Moves a motion that an observer has stopped at a whole turn to the start of the next turn, where no lift steps.
     fn wrap(&self, motion: &mut Motion, observer: &mut impl Observer) -> Result<(), SimulateError> {
         if motion.cam_angle < TAU {
             return Ok(());
@@ -573,7 +572,7 @@ impl Machine {
         self.enter_next(motion)?;
         let slope_jump = self.terrain.entries[motion.segment].slope_jump;
         if motion.contact && slope_jump != 0.0 {
-            // A release is shown with what led to it; that the cam strikes is found when the motion goes on.
+            // A release is shown with the event that led to it; a strike by the cam is found when the motion continues.
             motion.contact = false;
             if slope_jump < 0.0 {
                 self.report(motion, EventKind::Release, observer);
@@ -582,7 +581,7 @@ impl Machine {
         Ok(())
     }
 
-    /// An impact at the motion's angle, where `lift` holds, `left` rad before the end of the run.
+    /// Resolves an impact at the motion's angle, where the cam has `lift`, `left` rad before the end of the run.
     #[inline(always)]
     fn strike(
         &self,
@@ -600,8 +599,8 @@ impl Machine {
         motion.last_impact = angle;
         self.leave(motion, lift, relative_rebound(self.restitution, velocity_before, cam_velocity));
         let impact = self.event(motion, EventKind::Impact, velocity_before, cam_velocity);
-        // A stick that the impact leads to is part of it, also for an observer that has seen enough: a run goes on from
-        // there as if it had not been split.
+        // A stick that follows from the impact belongs to it, also for an observer that has seen enough: the run continues from there as if
+        // it had not been split.
         let enough = observer.event(&impact).is_break();
         let step = if motion.contact {
             self.report(motion, EventKind::Stick, observer)
@@ -633,27 +632,27 @@ impl Machine {
     }
 }
 
-/// The state of a follower that goes with the cam.
+/// State of a follower that moves with the cam.
 fn on_cam(lift: &Lift, omega: f64) -> State {
     State { position: lift.value, velocity: omega * lift.slope }
 }
 
-/// The error of a search that took all its steps and is `turn`, rad, further on.
+/// Error of a search that took all its steps and ended `turn`, rad, further on.
 fn no_progress(motion: &Motion, turn: f64) -> SimulateError {
     let (revolution, cam_angle) = (motion.revolution, motion.cam_angle + turn);
     SimulateError::NoProgress { events: MOST_STEPS, revolution, cam_angle }
 }
 
-/// What one step of the loop came to.
+/// Result of one step of the loop.
 enum Step {
     Moved,
     Event,
-    /// The run ends in a stretch of flight or contact that is not over before `until`, rad after it began.
+    /// The run ends in a stretch of flight or contact that lasts until `until`, rad after its beginning.
     Reached {
         until: f64,
         ahead: Option<Ahead>,
     },
-    /// The observer wants no more.
+    /// The observer ended the run.
     Broken,
 }
 
@@ -662,7 +661,7 @@ mod tests {
     use super::*;
     use crate::model::Model;
 
-    /// A fault in the search for a contact would put the follower below the cam. None is known that does, so it is put there.
+    /// A fault in the search for a contact would put the follower below the cam. No such fault is known: the test puts it there.
     #[test]
     fn a_follower_below_the_cam_is_an_error_with_its_state_and_speed() {
         let model = Model::built_in().unwrap();

@@ -1,4 +1,4 @@
-//! Following the cam: where infinitely many impacts end, and where the cam lets go.
+//! Follows the cam: the end of infinitely many impacts, and release.
 
 use std::f64::consts::TAU;
 
@@ -9,17 +9,17 @@ use crate::cam::{Lift, Segment};
 use crate::flight::State;
 use crate::tolerance;
 
-/// Time, s, in which infinitely many impacts end, and what that time is uncertain by, relative to it.
+/// Time, s, in which infinitely many impacts end, and its relative uncertainty.
 ///
-/// After an impact with relative velocity u and restitution r, over a cam that moves away from a follower which goes with it
-/// at `g'' = -A + J t` (damping: `zeta`), the hops are geometric up to the second order. With `y = u/A`,
-/// `k = J/A - zeta`: a hop takes `2y (1 + 2ky/3)` and leaves `y' = r y (1 + 4ky/3)`, so their sum is
+/// After an impact with relative velocity u and restitution r, let the gap of a follower that moves with the cam accelerate at
+/// `g'' = -A + J t` (damping: `zeta`). Then the hops are geometric up to the second order. With `y = u/A`, `k = J/A - zeta`: a hop takes
+/// `2y (1 + 2ky/3)` and leaves `y' = r y (1 + 4ky/3)`, so their sum is
 ///
 /// ```text
 /// S = S1 (1 + k S1/3),  S1 = 2y/(1 - r)
 /// ```
 ///
-/// and what is left out is of the size `(k S1)^2`.
+/// and the error is of the size `(k S1)^2`.
 pub fn accumulation(relative_velocity: f64, restitution: f64, pressing: f64, rate: f64, zeta: f64) -> (f64, f64) {
     let first = 2.0 * relative_velocity / (pressing * (1.0 - restitution));
     let bend = (rate / pressing - zeta) * first;
@@ -27,21 +27,21 @@ pub fn accumulation(relative_velocity: f64, restitution: f64, pressing: f64, rat
 }
 
 impl Machine {
-    /// Acceleration of the gap of a follower that goes with the cam, m/s^2: above 0 the cam lets go of it.
+    /// Acceleration of the gap of a follower that moves with the cam, m/s^2; above 0 the cam releases it.
     pub(crate) fn lifting(&self, lift: &Lift) -> f64 {
         let omega = self.angular_velocity;
         self.flight.acceleration(on_cam(lift, omega)) - omega * omega * lift.curvature
     }
 
-    /// Whether the cam lets go of a follower that goes with it: the acceleration of the gap is above 0 by more than rounding. No force at all
-    /// is enough to stay.
+    /// Whether the cam releases a follower that moves with it: the acceleration of the gap is above 0 by more than rounding. A follower
+    /// without any force stays.
     #[inline]
     pub(super) fn lets_go(&self, lift: &Lift) -> bool {
         let (_, rounding) = self.lifting_rate(lift);
         self.lifting(lift) > rounding
     }
 
-    /// The time derivative of [`Machine::lifting`] along the cam, m/s^3, and how far rounding may move `lifting`, m/s^2.
+    /// Time derivative of [`Machine::lifting`] along the cam, m/s^3, and the rounding error of `lifting`, m/s^2.
     pub(crate) fn lifting_rate(&self, lift: &Lift) -> (f64, f64) {
         let omega = self.angular_velocity;
         let (w, zeta) = (self.flight.omega0_squared(), self.flight.zeta());
@@ -50,18 +50,18 @@ impl Machine {
             + w * lift.value.abs()
             + 2.0 * zeta * omega * lift.slope.abs()
             + omega * omega * lift.curvature.abs()
-            // A spring that carries the weight leaves nothing of it.
+            // A spring that carries the weight cancels it.
             + self.flight.gravity().abs();
         (rate, tolerance::GAP_ROUNDING.value * terms)
     }
 
-    /// After an impact: goes to where infinitely many more end, if that is so near that two terms of their sum are all of it.
+    /// After an impact, moves to the end of infinitely many further ones, if it is so near that two terms of their sum are all of it.
     pub(super) fn end_chatter(&self, motion: &mut Motion, left: f64, observer: &mut impl Observer) -> Step {
         let segment = &self.cam().segments()[motion.segment];
         let lift = motion.lift.unwrap_or_else(|| segment.law.lift(motion.cam_angle));
         let pressing = -self.lifting(&lift);
         let relative_velocity = motion.state.velocity - self.angular_velocity * lift.slope;
-        // Cheaply first: most impacts are far from the last, and where nothing presses or nothing is lost, all are.
+        // The cheap test first: most impacts are far from the last one, and without pressing force or loss all are.
         let first = 2.0 * relative_velocity * self.angular_velocity;
         if first > tolerance::CHATTER_TURN.value * pressing * (1.0 - self.restitution) {
             return Step::Event;
@@ -87,14 +87,14 @@ impl Machine {
         Step::Reached { until: turn, ahead: None }
     }
 
-    /// Puts the follower on the cam, to stay.
+    /// Puts the follower on the cam and starts sticking.
     fn stick(&self, motion: &mut Motion, lift: &Lift, observer: &mut impl Observer) -> Step {
         motion.state = on_cam(lift, self.angular_velocity);
         (motion.contact, motion.gap, motion.lift) = (true, Some(0.0), Some(*lift));
         self.report(motion, EventKind::Stick, observer)
     }
 
-    /// One stretch on the cam: to a release, to the end of the segment, or to the end of the run.
+    /// Follows one stretch on the cam: to a release, to the end of the segment, or to the end of the run.
     pub(super) fn follow(
         &self,
         motion: &mut Motion,
@@ -130,7 +130,7 @@ impl Machine {
         }
         if entry.slope_jump < 0.0 || entry.lift_step < 0.0 {
             let gap = motion.gap;
-            // What the two sides of a seam differ by is not to be a gap.
+            // The difference between the two sides of a seam must not become a gap.
             let position = if entry.lift_step == 0.0 { lift.value } else { before.position };
             let step = self.let_go(motion, &lift, State { position, ..before }, observer);
             motion.gap = gap;
@@ -150,8 +150,8 @@ impl Machine {
         self.report(motion, EventKind::Release, observer)
     }
 
-    /// Where a follower can rest on the cam: stretches of cam angle, rad, from where it begins to be pressed against the cam to
-    /// where that lets go of it or strikes it. One that goes on through angle 0 begins below it; a whole turn is all there is.
+    /// Stretches of cam angle, rad, on which a follower can rest: from where it begins to be pressed against the cam to where the cam
+    /// releases or strikes it. A stretch through angle 0 begins below 0; a whole turn is the only stretch.
     pub fn rests(&self) -> Result<Vec<[f64; 2]>, SimulateError> {
         let mut rests: Vec<[f64; 2]> = Vec::new();
         let mut from = None;
@@ -193,12 +193,12 @@ impl Machine {
         Ok(rests)
     }
 
-    /// The turn, rad, after which [`Machine::lifting`] has the sign of `sign`, 1 or -1, within `span`, rad, from an angle of a segment, or
-    /// `None` if it does not get it: with 1, where the cam lets go. The error is after which turn the search was given up.
+    /// Returns the turn, rad, after which [`Machine::lifting`] has the sign of `sign`, 1 or -1, within `span`, rad, from an angle of a
+    /// segment; `None` if it does not get that sign. With 1, this is the release. The error is the turn at which the search was given up.
     ///
-    /// With `|d lifting/dt| <= L` over a stretch, `lifting` stays below 0 for `-lifting/L`: marching so never passes a
-    /// release, and as the stretches shrink, L becomes the slope itself. The slope's terms may cancel, all round where cam
-    /// and spring swing alike: then L is the slope here and what its own derivative may add to it over the stretch,
+    /// With `|d lifting/dt| <= L` over a stretch, `lifting` stays below 0 for `-lifting/L`, so marching by this time never passes a
+    /// release. As the stretches shrink, L becomes the slope itself. The slope's terms may cancel all round, if cam and spring swing alike.
+    /// Then L is the slope here, plus the largest change by its own derivative over the stretch,
     ///
     /// ```text
     /// |d^2 lifting/dt^2| <= 2 zeta w^3 |c'''| + w0^2 w^2 |c''| + w^4 |c''''|
@@ -207,7 +207,7 @@ impl Machine {
         let omega = self.angular_velocity;
         let (w, zeta) = (self.flight.omega0_squared(), self.flight.zeta());
         let bounds = &segment.bounds;
-        // On a dwell the force is what it is where that begins.
+        // On a dwell the force is the same as at its start.
         if bounds.slope == [0.0; 2] {
             return Ok(None);
         }
@@ -250,7 +250,7 @@ impl Machine {
                 return Ok(Some(omega * time));
             }
             if lifting > -rounding {
-                // Where rounding decides, look ahead, further each time: it may only touch 0, or stay there.
+                // Where rounding decides, look further ahead each time: it may only touch 0, or stay there.
                 hover = if hover > 0.0 { 2.0 * hover } else { 2.0 * rounding / steepest(0.0).0 };
                 time += hover.max(tolerance::ULP.value * end);
                 continue;
@@ -264,10 +264,10 @@ impl Machine {
                 if free >= 0.5 * reach {
                     break;
                 }
-                // Not at once: where the bound itself grows with the reach, far less would be found free than is.
+                // Not at once: if the bound itself grows with the reach, far less would be found free than is.
                 reach = (2.0 * free).max(0.25 * reach);
             }
-            // Tried first the next time: what was free here says what may be there.
+            // Tried first the next time: the free reach here suggests the reach there.
             widest = 4.0 * reach;
             time += safe.max(tolerance::ULP.value * end);
         }

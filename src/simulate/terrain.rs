@@ -1,38 +1,38 @@
-//! The cam as the event loop sees it: what changes from one segment to the next, and what no part of it exceeds.
+//! The cam as the event loop sees it: changes from one segment to the next, and bounds over the whole cam.
 
 use super::leap::Chords;
 use crate::cam::{Cam, Segment};
 use crate::tolerance;
 
-/// A cam and what is asked of it at every step, computed once.
+/// A cam, with quantities used at every step that are computed once.
 #[derive(Clone, Debug)]
 pub(super) struct Terrain {
     pub cam: Cam,
-    /// For each segment, what changes where it starts.
+    /// Changes at the start of each segment.
     pub entries: Vec<Entry>,
-    /// No lift is above it, m.
+    /// Upper bound of the lift, m.
     pub top: f64,
-    /// No lift is further from 0, m: what the rounding of any lift is measured by, also where it passes 0.
+    /// Upper bound of the absolute lift, m: the scale for the rounding of any lift, also where the lift passes 0.
     pub size: f64,
-    /// No `|dc/dtheta|` is larger, m/rad: the same for slopes.
+    /// Upper bound of `|dc/dtheta|`, m/rad: the scale for the rounding of slopes.
     pub steepest: f64,
-    /// No `d^2c/dtheta^2` is above it, m/rad^2; infinite where a velocity jumps upwards.
+    /// Upper bound of `d^2c/dtheta^2`, m/rad^2; infinite if a velocity jumps upwards.
     pub largest_curvature: f64,
-    /// What a flight over many short segments has to clear; nothing where there are few.
+    /// Chords to be cleared by a flight over many short segments; none for a cam with few segments.
     pub chords: Chords,
 }
 
-/// What changes from the end of the segment before to the start of this one; 0 where it is rounding.
+/// Changes from the end of the segment before to the start of this one; 0 within rounding.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Entry {
-    /// m. Only a continued law leaves a step at its far end.
+    /// Step of the lift, m. Only a continued law leaves one, at its far end.
     pub lift_step: f64,
-    /// The lift before it, m, where the two differ by more than rounding and are the same for all that: a cam whose numbers
+    /// Lift before the start, m, if the two lifts differ by more than rounding but count as the same. This happens for a cam whose numbers
     /// were typed to ten digits, or whose lift is 0 there.
     pub seam: Option<f64>,
-    /// The lift where this one starts, m.
+    /// Lift at the start of this segment, m.
     pub lift: f64,
-    /// m/rad.
+    /// Jump of the slope, m/rad.
     pub slope_jump: f64,
 }
 
@@ -54,7 +54,7 @@ impl Terrain {
     }
 }
 
-/// What changes between two segments of a cam: its lift only where a law ends that is continued past its segment.
+/// Changes between two segments of a cam. The lift changes only at the end of a law that is continued past its segment.
 fn entry(before: &Segment, after: &Segment, may_step: bool) -> Entry {
     let (minus, plus) = (before.law.lift(before.end), after.law.lift(after.start));
     let jump = |minus: f64, plus: f64, rounding: f64| {

@@ -1,4 +1,4 @@
-//! The variational flow: how a small deviation of the follower's state is carried along a motion.
+//! The variational flow: propagation of a small deviation of the follower's state along a motion.
 
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
@@ -9,19 +9,19 @@ use super::{Event, EventKind, Machine, Motion, Observer};
 use crate::flight::{Flight, State};
 use crate::impact::ImpactRates;
 
-/// An [`Observer`] that multiplies up propagators of flights and saltation matrices of impacts.
+/// An [`Observer`] that multiplies propagators of flights and saltation matrices of impacts.
 ///
-/// Sticking forgets: once the follower stays on the cam, where it is depends on the cam alone, and the matrix is 0.
+/// Sticking erases the deviation: once the follower stays on the cam, its state depends on the cam alone, and the matrix is 0.
 #[derive(Clone, Copy, Debug)]
 pub struct Variation<'a> {
     machine: &'a Machine,
     matrix: Matrix2<f64>,
-    /// Flown since then, s: a flight over several segments is one.
+    /// Time flown since `matrix` was set, s: a flight over several segments counts as one.
     flown: f64,
 }
 
 impl<'a> Variation<'a> {
-    /// The identity at the start of `motion`; 0 if that sticks to the cam.
+    /// Starts from the identity at the start of `motion`, or from 0 if the follower sticks to the cam.
     pub fn new(machine: &'a Machine, motion: &Motion) -> Self {
         let matrix = if motion.contact { Matrix2::zeros() } else { Matrix2::identity() };
         Self { machine, matrix, flown: 0.0 }
@@ -32,7 +32,7 @@ impl<'a> Variation<'a> {
         if self.flown == 0.0 { self.matrix } else { self.machine.flight().propagator(self.flown) * self.matrix }
     }
 
-    /// Starts again from `matrix`.
+    /// Restarts from `matrix`.
     pub fn reset(&mut self, matrix: Matrix2<f64>) {
         (self.matrix, self.flown) = (matrix, 0.0);
     }

@@ -1,10 +1,9 @@
-//! A stretch of flight over one segment of the cam: does it meet the cam, and where first?
+//! Finds the first contact, if there is one, in a stretch of flight over one segment of the cam.
 //!
-//! Four shapes of the gap g need no search. A gap that only shrinks (`g' < 0`) or is bent downwards (`g'' < 0`) meets the
-//! cam once at most, so that any root is the first. A gap that is bent upwards (`g'' > 0`) meets the cam once at most
-//! while it shrinks, and that root is the first. A gap that grows at first and has a cubic lower bound that stays positive
-//! meets nothing. Which shape a window has follows from the gap at its start and from bounds of the flight's jerk and of
-//! the segment. Windows of any other shape go to [`super::contact`], which marches.
+//! Four shapes of the gap g need no search. A gap that only shrinks (`g' < 0`) or is bent downwards (`g'' < 0`) meets the cam at most once,
+//! so that any root is the first. A gap that is bent upwards (`g'' > 0`) meets the cam at most once while it shrinks, and that root is the
+//! first. A gap that grows at first and has a positive cubic lower bound has no contact. The shape of a window follows from the gap at its
+//! start and from bounds of the flight's jerk and of the segment. Windows of any other shape go to [`super::contact`], which marches.
 
 use std::cell::Cell;
 
@@ -15,7 +14,7 @@ use crate::cam::{Lift, Segment};
 use crate::flight::{Flight, State};
 use crate::tolerance;
 
-/// Who counts the work of a window: a cell, or nobody.
+/// Counter of a window's work: a cell, or none.
 pub(super) trait Tally: Copy {
     fn add(self, gaps: u64, steps: u64, marches: u64);
 }
@@ -33,7 +32,7 @@ impl Tally for &Cell<Work> {
     }
 }
 
-/// A flight over a segment, from the angle where it is now.
+/// A flight over a segment, from its present angle on.
 pub(super) struct Window<'a, T> {
     tally: T,
     machine: &'a Machine,
@@ -42,9 +41,9 @@ pub(super) struct Window<'a, T> {
     omega: f64,
     start: State,
     angle: f64,
-    /// The gap at the start, m, where it is better known than as a difference of two positions.
+    /// Gap at the start, m, if it is known better than as a difference of two positions.
     gap: Option<f64>,
-    /// The lift at the start, where it is known.
+    /// Lift at the start, if it is known.
     lift: Option<Lift>,
 }
 
@@ -72,7 +71,7 @@ impl<'a, T: Tally> Window<'a, T> {
         }
     }
 
-    /// Flies up to `end`, s, or to the first contact; `expected` is where one is likely, s.
+    /// Flies up to `end`, s, or to the first contact; `expected` is the likely time of a contact, s.
     pub fn pass(mut self, end: f64, expected: Option<f64>) -> Passage {
         if !(end > 0.0) {
             return Passage::Free { state: self.start, gap: self.gap };
@@ -111,13 +110,14 @@ impl<'a, T: Tally> Window<'a, T> {
                 return self.only_contact(low.min(reach), reach, self.bent(&now, back), end);
             }
         }
-        // g'' is nowhere less.
+        // Lower bound of g''.
         let least = acceleration - jerk * end - self.omega * self.omega * bounds.curvature[1];
         if least > 0.0 && now.value > 0.0 { self.hollow(now, end, least) } else { self.march(end) }
     }
 
-    /// A gap that is bent upwards, by `least`, m/s^2, or more, and open at the start: where it shrinks, it has shrunk since, so
-    /// that what is open there has been open; and its one contact is where it still shrinks. Whatever touches is marched.
+    /// Passes a window whose gap is open at the start and bent upwards by at least `least`, m/s^2. While such a gap shrinks it has shrunk
+    /// from the start, so a point with an open gap has no contact before it. Its first contact is where it still shrinks. A gap that only
+    /// touches is marched.
     fn hollow(&self, mut now: Seen, end: f64, least: f64) -> Passage {
         let mut time = 0.0;
         // Steps triple the digits.
@@ -157,15 +157,15 @@ impl<'a, T: Tally> Window<'a, T> {
         self.march(end)
     }
 
-    /// Where the gap changes so fast that the last bit of a position is less than that of an angle, the difference of two
-    /// positions is as good, and cheaper.
+    /// Drops the separate gap if the gap changes so fast that the last bit of a position matters less than that of an angle. The difference
+    /// of two positions is then as accurate, and cheaper.
     fn forget_gap(&mut self, rate: f64) {
         if rate > self.omega * self.start.position.abs() {
             self.gap = None;
         }
     }
 
-    /// The guess of a parabola with its cubic term: from the cam, `t = 2u/A (1 + 2 J u/(3 A^2))`.
+    /// Guess from a parabola with a cubic correction: from the cam, `t = 2u/A (1 + 2 J u/(3 A^2))`.
     fn bent(&self, now: &Seen, back: f64) -> f64 {
         if now.value > 0.0 {
             return back;
@@ -174,8 +174,8 @@ impl<'a, T: Tally> Window<'a, T> {
         back * (1.0 + third * back / (-3.0 * now.curvature))
     }
 
-    /// The contact of a gap that has at most one in `(low, reach]`, by Halley's method inside a bracket. `end` is the
-    /// window's.
+    /// Finds the contact of a gap that has at most one in `(low, reach]`, by Halley's method inside a bracket. `end` is the end of the
+    /// window.
     fn only_contact(&self, low: f64, reach: f64, first: f64, end: f64) -> Passage {
         let (mut low, mut high, mut high_is_closed) = (low, reach, false);
         let mut time = if low < first && first < reach { first } else { low };
@@ -190,7 +190,7 @@ impl<'a, T: Tally> Window<'a, T> {
             self.tally.add(0, 1, 0);
             let newton = -now.value / now.rate;
             let bend = 0.5 * newton * now.curvature / now.rate;
-            // Where the gap hardly changes, Halley's step is short however far the contact is.
+            // If the gap hardly changes, Halley's step is short however far the contact is.
             let step = if bend.abs() <= 0.5 { newton / (1.0 + bend) } else { newton };
             // At the start no time has passed to compare with; even Newton's step errs only by this bend of it.
             let is_at_once =
@@ -225,7 +225,7 @@ impl<'a, T: Tally> Window<'a, T> {
         if high_is_closed { self.met(high, 0.0, &self.at(high)) } else { self.march(end) }
     }
 
-    /// Whether the last step is so small that the follower and the cam go through it by their Taylor sums.
+    /// Whether the last step is so small that Taylor sums carry follower and cam through it.
     fn is_small(&self, step: f64, time: f64, lift: &Lift) -> bool {
         let turn = self.omega * step;
         step.abs() <= tolerance::LAST_STEP.value * time
@@ -278,7 +278,7 @@ impl<'a, T: Tally> Window<'a, T> {
         }
     }
 
-    /// Any shape of gap.
+    /// Passes a window with any shape of gap, by marching.
     #[cold]
     fn march(&self, end: f64) -> Passage {
         self.tally.add(0, 0, 1);
@@ -286,7 +286,7 @@ impl<'a, T: Tally> Window<'a, T> {
         let gap_at = |time: f64| {
             let now = if time == 0.0 { self.at_start() } else { self.at(time) };
             let third = 2.0 * (self.flight.jerk(now.state) - omega.powi(3) * now.lift.third).abs();
-            // Of the two positions, however well their difference is known: no dip below that is an impact.
+            // Rounding of the two positions, however well their difference is known: no dip below that is an impact.
             let rounding = self.machine.gap_rounding(now.state.position);
             let rate_rounding = self.machine.velocity_rounding();
             Gap { value: now.value, rounding, rate: now.rate, rate_rounding, curvature: now.curvature, third }

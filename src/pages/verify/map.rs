@@ -1,4 +1,4 @@
-//! The part of the page on the map: by every route, side by side, how well estimates know it, and whether the routes agree.
+//! The page section on the map: the results of every route side by side, errors of estimates, and agreement of the routes.
 
 use crate::agreement::{Agreement, Quantity, by_quantity, shared_decimals, worse};
 use crate::cam::Side;
@@ -9,7 +9,7 @@ use crate::show::digits::Digits;
 use crate::show::words;
 use crate::study::verify::{LeftOpen, Verification};
 
-/// The map by every route, side by side, and how well estimates know it.
+/// The map by every route, side by side, and the errors of estimates.
 pub(crate) fn map(found: &Verification) -> Vec<Block> {
     let mut blocks = vec![
         Block::Heading("Its local map:  dx' = A dx + B dT".into()),
@@ -46,7 +46,7 @@ pub(crate) fn map(found: &Verification) -> Vec<Block> {
     blocks
 }
 
-/// A and B of one side by every route, how far these differ where there is room for it, and as the paper prints them.
+/// A and B of one side by every route, their differences if there is room, and the paper's printed values.
 fn entries(found: &Verification, side: Side, has_room: bool) -> Table {
     let rows = found.entries(side);
     let printed = usize::from(rows.iter().any(|row| row.printed.is_some()));
@@ -79,7 +79,7 @@ fn entries(found: &Verification, side: Side, has_room: bool) -> Table {
     table
 }
 
-/// Ten digits of the largest of some entries, which are read against one another, in a column of a terminal.
+/// Digits for entries in one column of a terminal: ten digits of the largest, or six and a power of ten.
 fn digits(entries: impl Iterator<Item = f64>) -> Digits {
     let largest = entries.fold(0.0_f64, |largest, entry| largest.max(entry.abs()));
     match largest {
@@ -89,14 +89,14 @@ fn digits(entries: impl Iterator<Item = f64>) -> Digits {
     }
 }
 
-/// The entries with what a measured cam leaves open.
+/// The entries' uncertainty due to a measured cam.
 fn measured(open: &LeftOpen) -> Vec<Block> {
     let Some((_, map)) = &open.error else { return Vec::new() };
     let text = format!("What the measured cam leaves open of each entry, {}:", words::accuracy(&open.cam));
     vec![Block::paragraph(text), Block::Table(errors(map)).about("measured_error"), Block::Gap]
 }
 
-/// How well a route says that it knows the entries.
+/// A route's own estimate of its error.
 fn known_to(route: &Route) -> Option<[Block; 2]> {
     let size = |value| words![(value, Digits::Size)];
     let name = words::route(route.name);
@@ -146,7 +146,7 @@ fn largest(error: &CornerMap) -> (f64, f64) {
     (a, both.iter().flat_map(|side| side.b.iter()).copied().fold(0.0, worse))
 }
 
-/// Of each quantity the pair of routes that is nearest to its bound, and every pair that disagrees.
+/// For each quantity, the pair of routes nearest to its bound, and every pair that disagrees.
 pub(crate) fn agreement(found: &Verification) -> Vec<Block> {
     let columns = [
         Column::left("quantity", 2, 19),

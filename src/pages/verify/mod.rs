@@ -1,4 +1,4 @@
-//! The page of `verify`, section by section: where the corner impact is, its map by every route, what happens there.
+//! The page of `verify`, section by section: the corner impact, its map by every route, and its scenario.
 
 mod map;
 
@@ -33,7 +33,7 @@ impl Paged for Verification {
     }
 }
 
-/// Where the corner impact is.
+/// Position of the corner impact.
 pub(crate) fn orbit(found: &Verification) -> Vec<Block> {
     let at = &found.at;
     let (state, acceleration) = (at.x_star(), at.cam_acceleration());
@@ -106,7 +106,7 @@ pub(crate) fn orbit(found: &Verification) -> Vec<Block> {
     page
 }
 
-/// Eigenvalues, normal form and verdict, and what that rests on.
+/// Eigenvalues, normal form and verdict, and the conditions of the verdict.
 pub(crate) fn bifurcation(found: &Verification) -> Vec<Block> {
     let eigenvalues = |side| {
         let [one, two] =
@@ -136,7 +136,7 @@ pub(crate) fn bifurcation(found: &Verification) -> Vec<Block> {
     vec![Block::Heading("What happens there".into()), Block::Entries(20, entries), Block::Full(full)]
 }
 
-/// Whether a measured cam leaves the verdict open: what cams say that are as likely.
+/// Verdict on equally likely cams, if the cam is measured; shows whether the verdict is certain.
 fn left_open(found: &Verification, open: &LeftOpen) -> Option<(Words, Words)> {
     let own = found.classification.as_ref().ok().map(|kind| kind.scenario);
     let all: usize = open.verdicts.iter().map(|told| told.cams).sum();
@@ -210,7 +210,7 @@ fn classification(kind: &Classification, danger: Option<&Danger>) -> Vec<(Words,
     entries
 }
 
-/// The fixed point of each side, and the rule that counts them.
+/// The fixed point of each side, and the rule that counts the fixed points.
 fn fixed_points(kind: &Classification) -> [Block; 2] {
     let head = words!["fixed point for dT = 1 s, in ", Span::Unit("m"), " and ", Span::Unit("m/s")];
     let columns = ["".into(), "det(I - A)".into(), head].map(Column::words);
@@ -229,8 +229,8 @@ fn none(refusal: &Refusal) -> Words {
     words!["none", Span::Break, refusal.to_string()]
 }
 
-/// The paper's printed numbers, each in a line, or digit by digit where there is room, and what is wrong with those that do
-/// not hold.
+/// The paper's printed numbers, each in a line, or digit by digit if there is room, and the errors in those that are
+/// wrong.
 pub(crate) fn published(found: &Verification) -> Vec<Block> {
     if found.published.is_empty() {
         return Vec::new();
@@ -279,7 +279,7 @@ pub(crate) fn published(found: &Verification) -> Vec<Block> {
     [Block::Heading(label.into())].into_iter().chain(tables).chain(notes).collect()
 }
 
-/// What did not run, and whether everything agrees.
+/// Routes that did not run, and whether all results agree.
 pub(crate) fn verdict(found: &Verification) -> Vec<Block> {
     let mut blocks = Vec::new();
     let (failed, left_out): (Vec<&Skipped>, Vec<_>) = found.skipped.iter().partition(|skipped| skipped.failed);
@@ -299,7 +299,7 @@ pub(crate) fn verdict(found: &Verification) -> Vec<Block> {
         [] => (Mark::Bad, "DISAGREES", ": a comparison above".to_owned()),
         [most @ .., last] => {
             let names = if most.is_empty() { (*last).to_owned() } else { format!("{} and {last}", most.join(", ")) };
-            // What ran may agree: then nothing disagrees, and not everything was checked.
+            // If the routes that ran agree, nothing disagrees, but not everything was checked.
             let word = if all_agree { "INCOMPLETE" } else { "DISAGREES" };
             (Mark::Bad, word, format!(": {names} did not run"))
         }
@@ -308,7 +308,7 @@ pub(crate) fn verdict(found: &Verification) -> Vec<Block> {
     blocks
 }
 
-/// How many comparisons agree and how many printed numbers hold.
+/// Number of comparisons that agree, and number of printed numbers that are right.
 pub(crate) fn tally(found: &Verification) -> Vec<Words> {
     let tally = found.tally();
     let Tally { comparisons, agreeing, following, following_agreeing, shared_decimals, .. } = tally;

@@ -1,15 +1,16 @@
-//! The force between cam and follower as long as they touch, and the speed at which it first comes to nothing.
+//! Contact force between cam and follower while they touch, and the speed at which it first reaches zero.
 //!
-//! On the cam q = c(w t), so that what the cam presses with is
+//! On the cam q = c(w t), so the contact force is
 //!
 //! ```text
 //! N(theta, w) = m w^2 c'' + b w c' + k (c - rest_position) + m g
 //! ```
 //!
-//! The follower separates where N would have to be negative: the cam cannot pull. A force of 0 separates nothing, as on a dwell that a slack
-//! spring does not press on. Rounding of N counts as 0.
+//! The follower separates where N would have to be negative, since the cam cannot pull. Zero force does not separate it, as on a dwell on
+//! which a slack spring does not press. Values of N within rounding count as 0.
 //!
-//! No run is made. `speeds` takes the speed from here; its runs look whether the follower stays, and tests compare the two.
+//! This module makes no runs. `speeds` takes the separation speed from here; its runs check whether the follower stays, and tests compare
+//! both.
 
 use std::f64::consts::TAU;
 
@@ -25,31 +26,31 @@ pub struct Contact<'a> {
     pub cam: &'a Cam,
     /// The follower.
     pub follower: Follower,
-    /// Where the velocity of the cam jumps, rad.
+    /// Cam angle at which the cam's velocity jumps, rad.
     kink: Option<f64>,
 }
 
 /// Where the follower first leaves the cam as the speed rises from 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Separation {
-    /// At a speed, rpm, with what rounding may put it off by, at a cam angle, rad.
+    /// At a speed, rpm, with its rounding error, and a cam angle, rad.
     At {
         /// Speed, rpm.
         rpm: f64,
-        /// What rounding may be, rpm.
+        /// Rounding error, rpm.
         error: f64,
         /// Cam angle, rad.
         cam_angle: f64,
-        /// What a measured cam leaves open of that, rad; none of another.
+        /// Uncertainty of the cam angle for a measured cam, rad; none for an exact cam.
         angle_error: Option<f64>,
     },
-    /// However slow: the spring does not press it on the cam here, or a damper holds back a follower that nothing presses on. Faster, its
-    /// inertia may press it on for some speeds.
+    /// At any speed, however slow. The spring does not press the follower on the cam here, or a damper holds back a follower without load.
+    /// In some range of higher speeds, inertia may press it on.
     NotPressed {
         /// Cam angle, rad.
         cam_angle: f64,
     },
-    /// However slow: the cam's velocity jumps here.
+    /// At any speed, however slow: the cam's velocity jumps here.
     Kink {
         /// Cam angle, rad.
         cam_angle: f64,
@@ -59,7 +60,7 @@ pub enum Separation {
 }
 
 impl Separation {
-    /// Its name in documents.
+    /// Name in documents.
     pub fn name(&self) -> &'static str {
         match self {
             Self::At { .. } => "at-a-speed",
@@ -68,7 +69,7 @@ impl Separation {
         }
     }
 
-    /// The speed up to which the follower stays on the cam, rpm.
+    /// Speed up to which the follower stays on the cam, rpm.
     pub fn speed(&self) -> f64 {
         match self {
             Self::At { rpm, .. } => *rpm,
@@ -79,31 +80,31 @@ impl Separation {
 }
 
 impl<'a> Contact<'a> {
-    /// A follower on a cam.
+    /// Places a follower on a cam.
     pub fn new(cam: &'a Cam, follower: Follower) -> Self {
         let kink = cam.corners().iter().copied().find(|corner| corner.jump_order == 1).map(|corner| corner.angle);
         Self { cam, follower, kink }
     }
 
-    /// What the spring and the weight press with where the lift is 0.
+    /// Force of spring and weight at lift 0.
     fn constant(&self) -> f64 {
         let Follower { mass, stiffness, gravity, rest_position, .. } = self.follower;
         mass * gravity - stiffness * rest_position
     }
 
-    /// N, kg times the model's length over s^2, where the cam's lift is this, at an angular velocity, rad/s.
+    /// Contact force N for this lift at an angular velocity, rad/s; in kg times the model's length over s^2.
     pub fn force(&self, lift: &Lift, omega: f64) -> f64 {
         let [of_lift, of_slope, of_curvature, _] = self.weights(omega);
         of_curvature * lift.curvature + of_slope * lift.slope + of_lift * lift.value + self.constant()
     }
 
-    /// Of c, c' and c'' in N.
+    /// Coefficients of c, c' and c'' in N.
     fn weights(&self, omega: f64) -> [f64; 4] {
         let Follower { mass, damping, stiffness, .. } = self.follower;
         [stiffness, damping * omega, mass * omega * omega, 0.0]
     }
 
-    /// The least N at a speed, rpm, and where it is; 0 where it is rounding.
+    /// Least N at a speed, rpm, and its place. A value within rounding is returned as 0.
     pub fn least(&self, rpm: f64) -> Least {
         let omega = angular_velocity(rpm);
         let least = self.cam.least(self.weights(omega));
@@ -118,7 +119,7 @@ impl<'a> Contact<'a> {
         self.kink.is_some() || self.least(rpm).value < 0.0
     }
 
-    /// The rounding of c, c' and c'' on a segment, in their units: as their ranges are widened.
+    /// Rounding errors of c, c' and c'' on a segment, in their units; their ranges are widened by the same rule.
     fn of_lift(&self, segment: usize) -> [f64; 3] {
         let Bounds { lift, slope, curvature, third } = self.cam.segments()[segment].bounds;
         let [lift, slope, curvature] = [lift, slope, curvature].map(|[low, high]| low.abs().max(high.abs()));
@@ -127,7 +128,7 @@ impl<'a> Contact<'a> {
         terms.map(|term| tolerance::RANGE_ROUNDING.value * term)
     }
 
-    /// The rounding of N on a segment: of what does not depend on w, and of what w and w^2 are multiplied by.
+    /// Rounding errors of N on a segment: of the constant term and of the coefficients of w and w^2.
     fn roundings(&self, segment: usize) -> [f64; 3] {
         let Follower { mass, damping, stiffness, gravity, rest_position, .. } = self.follower;
         let [lift, slope, curvature] = self.of_lift(segment);
@@ -135,13 +136,13 @@ impl<'a> Contact<'a> {
         [stiffness * lift + tolerance::RANGE_ROUNDING.value * kept, damping * slope, mass * curvature]
     }
 
-    /// The largest N at a speed, rpm.
+    /// Largest N at a speed, rpm.
     pub fn largest(&self, rpm: f64) -> f64 {
         self.constant() - self.cam.least(self.weights(angular_velocity(rpm)).map(|weight| -weight)).value
     }
 
-    /// The least angular velocity above `from` from which on N is negative where the cam's lift is this, on a segment; infinite where rounding
-    /// leaves none.
+    /// Least angular velocity above `from` beyond which N is negative for this lift on a segment. Returns infinity if rounding leaves no
+    /// root.
     ///
     /// ```text
     /// N(from + d) = N(from) + (b c' + 2 m c'' from) d + m c'' d^2
@@ -152,13 +153,13 @@ impl<'a> Contact<'a> {
         let [still, linear, square] = about([self.force(lift, from), damping * lift.slope, mass * lift.curvature]);
         let [of_still, of_linear, of_square] = about(self.roundings(segment));
         let of_still = of_still + from * (of_linear - from * of_square);
-        // What rounding may have made is no root.
+        // A root that rounding may have made does not count.
         let beyond = first_root([still + of_still, linear + of_linear, square + of_square]);
         from + if beyond.is_finite() { first_root([still.max(0.0), linear, square]).min(beyond) } else { beyond }
     }
 
-    /// The lowest lift where the follower falls to it: the segment, the angle, rad, and the order n of `c - c_min = a x^n + ...` at a
-    /// distance x before it.
+    /// Places of the lowest lift that the follower reaches falling: the segment, the angle, rad, and the order n of
+    /// `c - c_min = a x^n + ...` at a distance x before it.
     fn bottoms(&self) -> impl Iterator<Item = (usize, f64, usize)> {
         let lowest = self.cam.lowest();
         let is_lowest = move |(index, segment): &(usize, &Segment)| {
@@ -170,9 +171,10 @@ impl<'a> Contact<'a> {
         places.filter_map(|(index, angle)| Some((index, angle, self.cam.segments()[index].order_at(angle)?)))
     }
 
-    /// Where the follower is held back however slow the cam turns, rad, if it is, of a follower that nothing presses on at the lowest lift.
+    /// Cam angle, rad, at which a follower without load at the lowest lift is held back at any speed, however slow; none if it is not.
     ///
-    /// Without a spring nothing presses it on anywhere; with one it is a damper that may hold it back on the way down to the lowest lift:
+    /// Without a spring, nothing presses the follower on the cam. With a spring, a damper may hold it back on the way down to the lowest
+    /// lift:
     ///
     /// ```text
     /// k = 0    N = w (b c' + m w c'')
@@ -191,12 +193,12 @@ impl<'a> Contact<'a> {
         self.bottoms().find(|(.., order)| holds(*order)).map(|(_, angle, _)| angle)
     }
 
-    /// The least angular velocity from which on N is negative on the way down to a lowest lift, and the place. With a damper and little that
-    /// presses, the place may be nearer to the lowest lift than any angle that is looked at all round.
+    /// Least angular velocity beyond which N is negative on the way down to a lowest lift, and its place. With a damper and a small load,
+    /// the place may be nearer to the lowest lift than any sampled angle.
     fn first_before(&self, segment: usize, bottom: f64, from: f64) -> (f64, Least) {
-        /// Halvings of the way: down to the rounding of an angle.
+        /// Halvings of the way, down to the rounding of an angle.
         const HALVINGS: i32 = 48;
-        /// Thirds that are left out of the way between three of them.
+        /// Thirds that are dropped from the bracket of the best halving.
         const THIRDS: usize = 60;
         let way = bottom - self.cam.segments()[segment].start;
         let at = |before: f64| self.place(segment, bottom - before);
@@ -232,24 +234,24 @@ impl<'a> Contact<'a> {
         Least { segment, angle, value: f64::NAN, lift: self.cam.segments()[segment].law.lift(angle) }
     }
 
-    /// Where the follower first leaves the cam.
+    /// Returns where the follower first leaves the cam.
     pub fn separation(&self) -> Separation {
         self.separation_from(0.0)
     }
 
-    /// Where the follower first leaves the cam above a speed, rpm. A follower that leaves it at a lower speed may be on it again: the inertia
-    /// presses on a follower at the lowest lift, and more so the faster the cam turns.
+    /// Returns where the follower first leaves the cam above a speed, rpm. A follower that leaves at a lower speed may be on the cam again,
+    /// since inertia presses it on at the lowest lift, and more so at higher speeds.
     pub fn separation_above(&self, rpm: f64) -> Separation {
         let first = self.separation();
         if first.speed() > rpm { first } else { self.separation_from(angular_velocity(rpm)) }
     }
 
-    /// Where the follower first leaves the cam above an angular velocity, rad/s.
+    /// Returns where the follower first leaves the cam above an angular velocity, rad/s.
     ///
-    /// From the least root among angles close by each other: N at that speed is least somewhere, and 0 there at a lower speed yet,
-    /// and so on; each step squares what is left (Dinkelbach 1967).
+    /// Starts from the least root over closely spaced angles. At that speed N is least at some angle, whose own root is a lower speed,
+    /// and so on; the error is squared in each step (Dinkelbach 1967).
     fn separation_from(&self, from: f64) -> Separation {
-        /// Angles that are looked at first.
+        /// Angles sampled for the first guess.
         const LOOKED: usize = 1440;
         const STEPS: usize = 50;
         if let Some(cam_angle) = self.kink {
@@ -274,7 +276,7 @@ impl<'a> Contact<'a> {
             self.place(self.cam.segment_at(angle), angle)
         });
         let looked = ends.chain(between).map(|place| (self.root(place.segment, &place.lift, from), place));
-        // Without a damper nothing but the mass is held back, and that not on the way to rest.
+        // Without a damper only inertia can hold the follower back, and not on the way to rest.
         let damped = (self.follower.damping > 0.0).then(|| self.bottoms()).into_iter().flatten();
         let before = damped.map(|(segment, bottom, _)| self.first_before(segment, bottom, from));
         let first = looked.chain(before).min_by(|one, other| one.0.total_cmp(&other.0));
@@ -302,10 +304,10 @@ impl<'a> Contact<'a> {
     }
 }
 
-/// The first positive root of `still + linear w + square w^2`, infinite where there is none.
+/// Returns the first positive root of `still + linear w + square w^2`, or infinity if there is none.
 fn first_root([still, linear, square]: [f64; 3]) -> f64 {
     let root = (linear * linear - 4.0 * square * still).sqrt();
-    // Without a difference of two numbers of one size; no number where the discriminant is negative.
+    // Avoids the difference of two numbers of similar size; NaN where the discriminant is negative.
     let omega = 2.0 * still / (root - linear);
     if omega > 0.0 { omega } else { f64::INFINITY }
 }

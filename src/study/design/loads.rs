@@ -1,4 +1,4 @@
-//! What the follower and the cam bear at a speed at which they part: impacts, gaps, time off the cam and energy, of what attracts.
+//! Loads on follower and cam at speeds above separation: impacts, gaps, time off the cam and energy, taken from the attractors.
 
 use std::f64::consts::TAU;
 
@@ -12,32 +12,32 @@ use crate::section::trace;
 use crate::simulate::{EventKind, Machine, Motion, SimulateError};
 use crate::study::survey::{Attractor, Place, Placed, Start, attractors_of};
 
-/// What a load is of.
+/// A kind of load.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Load {
-    /// The largest speed of follower and cam against each other at an impact.
+    /// Largest relative speed of follower and cam at an impact.
     ImpactSpeed,
-    /// The largest gap.
+    /// Largest gap.
     Gap,
-    /// The energy that impacts take in a revolution.
+    /// Energy lost in impacts per revolution.
     Energy,
-    /// The largest force between follower and cam while they touch, but for impacts.
+    /// Largest force between follower and cam in contact, without impacts.
     Force,
 }
 
 named!(Load);
 
 impl Load {
-    /// All of them.
+    /// All loads.
     pub const ALL: [Self; 4] = [Self::ImpactSpeed, Self::Gap, Self::Energy, Self::Force];
 
-    /// A value in the unit that it is told in as it is inside.
+    /// Converts a value from the displayed unit to the internal unit.
     pub fn inside(self, units: &Units, value: f64) -> f64 {
         if self == Self::Force { units.force.inside(value) } else { value }
     }
 
-    /// A value of the SI in the unit that it is told in; of a force as it is.
+    /// Converts a value from SI to the displayed unit; energy and force are unchanged.
     pub fn of_si(self, units: &Units, value: f64) -> f64 {
         match self {
             Self::ImpactSpeed | Self::Gap => units.length.told(value),
@@ -45,7 +45,7 @@ impl Load {
         }
     }
 
-    /// The unit that it is told in.
+    /// Unit in which the load is displayed.
     pub fn unit(self, units: &Units) -> String {
         match self {
             Self::ImpactSpeed => units.spelled("m/s"),
@@ -56,22 +56,22 @@ impl Load {
     }
 }
 
-/// The loads of what one machine's runs come to: the largest among several starts.
+/// Loads of the motions that one machine's runs converge to: the largest over several starts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Loads {
-    /// Of which machine.
+    /// The machine's place on the axis.
     pub place: Place,
-    /// Of follower and cam against each other at the fastest impact, m/s; 0 without any.
+    /// Relative speed of follower and cam at the fastest impact, m/s; 0 without impacts.
     pub impact_speed: f64,
-    /// The largest gap, m.
+    /// Largest gap, m.
     pub gap: f64,
-    /// The part of the time that the follower is off the cam.
+    /// Share of the time that the follower is off the cam.
     pub off_cam: f64,
-    /// What impacts take in a revolution, J: `sum m (1 - r^2) u^2/2`.
+    /// Energy lost in impacts per revolution, J: `sum m (1 - r^2) u^2/2`.
     pub energy: f64,
-    /// The largest force while they touch, but for impacts, kg m/s^2 with the model's length.
+    /// Largest contact force without impacts, kg m/s^2 with the model's length.
     pub force: f64,
-    /// How far a measured cam may have moved these, in their order; none where nothing is open, or not known.
+    /// Uncertainties of these numbers for a measured cam, in their order; none if there is no uncertainty or it is unknown.
     pub errors: Option<[f64; 5]>,
 }
 
@@ -91,18 +91,18 @@ document!(Loads as it {
 });
 
 impl Loads {
-    /// Revolutions after a rest before anything is recorded: what follows a rest has forgotten the start, but may rest elsewhere for some time.
+    /// Revolutions run after a rest before recording. The start is forgotten then, but the follower may rest elsewhere for some time.
     const AFTER_A_REST: u64 = 20;
-    /// Revolutions that are recorded.
+    /// Revolutions recorded.
     pub const RECORD: u64 = 8;
-    /// Starts at each speed: on the cam at as many angles, let go as fast as the cam moves there, and at rest at 0.
+    /// Starts at each speed: on the cam at evenly spaced angles, released as fast as the cam moves there; at angle 0 at rest.
     pub const STARTS: u32 = 4;
-    /// Moments of a revolution at which gap and force are looked at.
+    /// Moments per revolution at which gap and force are sampled.
     const MOMENTS: u32 = 360;
-    /// Moments where one run stands for all that come to its motion: each of them would look at other moments.
+    /// Moments per revolution where one run represents all that converge to its motion; each of those would sample other moments.
     const FINE: u32 = 4 * Self::MOMENTS;
 
-    /// That load.
+    /// Value of a load.
     pub fn of(&self, load: Load) -> f64 {
         match load {
             Load::ImpactSpeed => self.impact_speed,
@@ -112,7 +112,8 @@ impl Loads {
         }
     }
 
-    /// The largest loads of the motions that several starts come to, the usual starts if none are given; and these motions.
+    /// Returns the largest loads of the motions that several starts converge to, and these motions. Uses the usual starts if none are
+    /// given.
     pub fn among(
         model: &Model,
         machine: &Machine,
@@ -134,7 +135,7 @@ impl Loads {
             if let LongRun::Sticking(_) = attractor.ending {
                 machine.revolve(&mut motion, Self::AFTER_A_REST)?;
             }
-            // As many as one period has, and of what never repeats as many as each of its runs would have.
+            // Records the length of one period; a motion that never repeats gets the record of each of its runs.
             let repeats =
                 attractor.ending.period().map_or(Self::RECORD * attractor.starts.len() as u64, |(turns, _)| turns);
             let revolutions = repeats.clamp(Self::RECORD, budget.longest.max(Self::RECORD));
@@ -145,7 +146,7 @@ impl Loads {
         Ok((Self { place: place(machine), ..worst }, found.attractors))
     }
 
-    /// The largest loads of the motions that the usual starts come to, which are not judged.
+    /// Returns the largest loads of the motions that the usual starts converge to, without judging these motions.
     pub fn at(model: &Model, machine: &Machine) -> Result<Self, SimulateError> {
         Ok(Self::among(model, machine, None, Budget { record: 0, ..Budget::DESIGN })?.0)
     }
@@ -160,7 +161,7 @@ impl Loads {
         errors: None,
     };
 
-    /// The numbers, in their order.
+    /// The five loads, in the order of the fields.
     pub fn numbers(&self) -> [f64; 5] {
         [self.impact_speed, self.gap, self.off_cam, self.energy, self.force]
     }
@@ -177,7 +178,7 @@ impl Loads {
         }
     }
 
-    /// Of each of so many revolutions of a motion.
+    /// Loads of each of `revolutions` revolutions of a motion.
     pub fn recorded(
         model: &Model,
         machine: &Machine,
@@ -187,7 +188,7 @@ impl Loads {
         Self::seen(model, machine, motion, (revolutions, Self::MOMENTS))
     }
 
-    /// The loads of each of so many revolutions of a motion, looked at so many moments of each.
+    /// Loads of each of `revolutions` revolutions of a motion, sampled at `moments` moments per revolution.
     fn seen(
         model: &Model,
         machine: &Machine,
@@ -214,13 +215,13 @@ impl Loads {
             loads.impact_speed = loads.impact_speed.max(speed);
             loads.energy += joule * 0.5 * follower.mass * (1.0 - follower.restitution.powi(2)) * speed * speed;
         }
-        // The first revolution's samples may begin a rounding before it.
+        // The first revolution's samples may begin before it by a rounding error.
         found.iter_mut().for_each(|loads| loads.off_cam = loads.off_cam.min(1.0));
         Ok(found)
     }
 }
 
-/// The speed of a machine, as its angular velocity has it.
+/// Place of a machine on the speed axis, computed from its angular velocity.
 fn place(machine: &Machine) -> Place {
     Place::of_speed(machine.angular_velocity() / TAU * 60.0)
 }

@@ -1,5 +1,5 @@
-//! What does an engineer ask of a cam and its follower? Up to which speed they touch and how hard, what happens beyond, and what must
-//! be changed.
+//! Answers an engineer's questions about a cam and its follower: up to which speed they stay in contact, how hard they press, what happens
+//! beyond, and what must be changed.
 
 pub mod contact;
 pub mod loads;
@@ -28,48 +28,48 @@ use needs::{Answer, Changed, Lever, Need};
 /// The document of `design --json`.
 #[derive(Clone, Debug)]
 pub struct Design {
-    /// Which model.
+    /// The model's label.
     pub model: ModelLabel,
-    /// What its numbers are told in.
+    /// Units of the displayed numbers.
     pub units: Units,
-    /// Where the follower first leaves the cam; its error has what a measured cam leaves open.
+    /// Where the follower first leaves the cam; the error includes the uncertainty of a measured cam.
     pub separation: Separation,
-    /// How well the cam is known, if it is measured.
+    /// Quality of the measured cam; none for an exact cam.
     pub measured: Option<Measured>,
-    /// The number that the table goes over; none where that is the speed.
+    /// Name of the number that varies in the table; none if it is the speed.
     pub over: Option<String>,
-    /// How its values lie.
+    /// Spacing of its values.
     pub spacing: Spacing,
-    /// The least force at each value, in the unit inside.
+    /// Least force at each value, in the internal unit.
     pub forces: Vec<ForceAt>,
-    /// The force round the cam at the one speed that is asked for.
+    /// Force round the cam, if a single speed is asked for.
     pub round: Vec<[f64; 2]>,
-    /// What attracts where the follower leaves the cam.
+    /// Loads of the attractors at values where the follower leaves the cam.
     pub loads: Vec<Loads>,
-    /// The motions that these are of.
+    /// The attractors that these loads belong to.
     pub attractors: Vec<AttractorsAt>,
-    /// For how long runs were followed.
+    /// Budget of the runs.
     pub budget: Budget,
-    /// Where a limit is first passed.
+    /// Where each limit is first exceeded.
     pub limits: Vec<Passed>,
-    /// What must be changed.
+    /// Values that meet each need.
     pub needs: Vec<Answer>,
-    /// What rounding the jumps of the acceleration gives.
+    /// Effect of rounding the jumps of the acceleration.
     pub rounded: Vec<Rounded>,
-    /// What must be changed, against another number.
+    /// Values that meet each need, against another number.
     pub trades: Vec<Trade>,
 }
 
-/// The least force on one machine.
+/// Least contact force of one machine.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ForceAt {
-    /// Which.
+    /// The machine's place on the axis.
     pub place: Place,
-    /// Where it is, and how large.
+    /// Least force and its place.
     pub least: Least,
-    /// How far a measured cam may have moved that; none where nothing is open.
+    /// Uncertainty of the least force for a measured cam; none if there is none.
     pub error: Option<f64>,
-    /// The largest force round the cam.
+    /// Largest force round the cam.
     pub largest: f64,
 }
 
@@ -82,12 +82,12 @@ document!(ForceAt as it {
     largest_n: it.largest,
 });
 
-/// What the starts of one machine come to.
+/// The motions that the starts of one machine converge to.
 #[derive(Clone, Debug)]
 pub struct AttractorsAt {
-    /// Of which.
+    /// The machine's place on the axis.
     pub place: Place,
-    /// The motions, in the order of the first start of each.
+    /// The motions, in the order of their first starts.
     pub found: Vec<Attractor>,
 }
 
@@ -109,17 +109,17 @@ document!(Ended<'_> as it {
     starts: it.0.starts.len(),
 });
 
-/// A limit that the user sets, and where it is passed first, as far as the values of the table tell.
+/// A limit set by the user, and where it is first exceeded among the values of the table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Passed {
-    /// Of which load.
+    /// The limited load.
     pub limit: Load,
-    /// In the unit that is told.
+    /// Limit, in the displayed unit.
     pub value: f64,
-    /// The unit.
+    /// Unit of the limit.
     pub unit: String,
-    /// Where it is passed: to a thousandth below the first value of the table at which it is, at the lowest of them that value
-    /// itself; none where it is passed at none.
+    /// Where the limit is first exceeded, located to a thousandth below the first table value that exceeds it. If that is the first value
+    /// of the table, it is returned itself. None if no value exceeds the limit.
     pub at: Option<Place>,
 }
 
@@ -131,43 +131,43 @@ document!(Passed as it {
     at if_any: it.at.and_then(|at| at.value),
 });
 
-/// What one number has to be at one value of another.
+/// The value of one number that meets a need, at one value of another number.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Pair {
-    /// The value that is given.
+    /// Value of the given number.
     pub given: f64,
-    /// What is found.
+    /// Value of the number that is found.
     pub found: Option<f64>,
-    /// How far it may be off where the cam is measured.
+    /// Uncertainty of `found` for a measured cam.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error: Option<f64>,
-    /// Where it does no more on the other side, if it does.
+    /// Limit on the other side, if there is one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub other: Option<f64>,
-    /// How far that may be off.
+    /// Uncertainty of `other`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub other_error: Option<f64>,
-    /// A value beyond, of those tried, with which it is as it is needed to be again.
+    /// A tried value beyond `other` that meets the need again.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub again: Option<f64>,
 }
 
-/// What one number has to be for each value of another.
+/// The values of one number that meet a need, for each value of another number.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Trade {
-    /// What is needed.
+    /// The need, in the user's words.
     pub need: String,
-    /// The number that is found, and its unit.
+    /// The number that is found.
     pub parameter: Lever,
-    /// Its unit.
+    /// Unit of the found number.
     pub unit: String,
     /// The number that is given.
     pub against: Lever,
-    /// Its unit.
+    /// Unit of the given number.
     pub against_unit: String,
-    /// Pairs of what is given and what is found; nothing where no value does it.
+    /// Pairs of a given and a found value; the found value is none if no value meets the need.
     pub pairs: Vec<Pair>,
-    /// As of the need alone.
+    /// How the values are known, as for the need alone.
     pub known: Known,
 }
 
@@ -190,20 +190,21 @@ document!(Design as it {
     trades: it.trades,
 });
 
-/// The same machine with the corners of its cam rounded.
+/// Separation and jerk of the machine with the corners of its cam rounded.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Rounded {
-    /// Over this angle.
+    /// Angle of the rounding, degrees.
     pub corner_rounding_deg: f64,
-    /// Where the follower first leaves the cam then, rpm; none where it does at every speed or at none.
+    /// Speed at which the follower first leaves the rounded cam, rpm; none if it leaves at every speed or at none.
     pub separation_rpm: Option<f64>,
-    /// The largest size of the jerk, m/rad^3.
+    /// Largest absolute value of the jerk, m/rad^3.
     pub jerk: f64,
 }
 
-/// Over some angles, as far as the cam allows; nothing where there is no jump of the acceleration, or it is rounded already.
+/// Rounds the corners over several angles, as far as the cam allows. Returns nothing if the acceleration has no
+/// jump, or if the corners are already rounded.
 fn rounded(model: &Model, cam: &Cam) -> Vec<Rounded> {
-    /// Degrees.
+    /// Angles of the rounding, degrees.
     const ANGLES: [f64; 4] = [1.0, 2.0, 5.0, 10.0];
     let jumps = cam.corners().iter().any(|corner| corner.jump_order == 2);
     let at = |angle: f64| {
@@ -217,24 +218,24 @@ fn rounded(model: &Model, cam: &Cam) -> Vec<Rounded> {
     if jumps { ANGLES.into_iter().filter_map(at).collect() } else { Vec::new() }
 }
 
-/// What is asked.
+/// The questions to be answered by [`design`].
 #[derive(Clone, Debug, Default)]
 pub struct Asked {
-    /// Lowest and highest speed, rpm; of one speed the force is told round the cam. None: around the separation.
+    /// Lowest and highest speed, rpm; if they are equal, the force round the cam is reported. None: a range around the separation.
     pub rpm: Option<[f64; 2]>,
-    /// What the table goes over, in place of the speed, at one speed then.
+    /// Number that varies in the table instead of the speed, at one fixed speed.
     pub over: Option<Axis>,
-    /// Speeds of a range.
+    /// Number of speeds in the range.
     pub speeds: u32,
-    /// Each as it was said.
+    /// The needs, each with the user's words.
     pub needs: Vec<(String, Need)>,
-    /// In the units of the model.
+    /// Limits of loads, in the units of the model.
     pub limits: Vec<(Load, f64)>,
-    /// A number, its lowest and highest value and how many, in its unit.
+    /// A number with its lowest and highest value in its unit, and how many values.
     pub against: Option<(Lever, [f64; 2], u32)>,
-    /// Where the runs of the table begin; none for the usual starts.
+    /// Starts of the table's runs; none for the usual starts.
     pub starts: Option<Vec<Start>>,
-    /// For how long they are followed; none for as long as is usual.
+    /// Budget of the runs; none for the usual one.
     pub budget: Option<Budget>,
 }
 
@@ -262,7 +263,7 @@ impl Design {
         }
     }
 
-    /// The one speed of a table that goes over another number, rpm.
+    /// The fixed speed of a table that varies another number, rpm.
     pub fn rpm(&self) -> f64 {
         let places = self.forces.iter().map(|at| at.place).chain(self.loads.iter().map(|loads| loads.place));
         places.map(|place| place.rpm).next().unwrap_or(f64::NAN)
@@ -272,7 +273,7 @@ impl Design {
         self.round.iter().map(|[angle, force]| RoundEntry { cam_angle_rad: *angle, force_n: *force }).collect()
     }
 
-    /// A force as it is told.
+    /// Converts a force to the displayed unit.
     pub fn force(&self, force: f64) -> f64 {
         self.units.force.told(force)
     }
@@ -284,11 +285,11 @@ struct RoundEntry {
     force_n: f64,
 }
 
-/// A separation with what a measured cam leaves open of its speed and angle; not a number where that is not known.
+/// Adds the uncertainty of a measured cam to a separation's speed and angle; NaN if that uncertainty is unknown.
 pub fn known(separation: Separation, likely: Option<&Likely>) -> Separation {
     let Some(likely) = likely.filter(|likely| likely.best.is_some()) else { return separation };
     let Separation::At { rpm, error, cam_angle, .. } = separation else { return separation };
-    // Past angle 0 it is as near as on this side of it.
+    // An angle on the other side of angle 0 counts as near.
     let near = |angle: f64| cam_angle + (angle - cam_angle + PI).rem_euclid(TAU) - PI;
     let of = |model: &Model, cam: &Cam| match Contact::new(cam, model.follower).separation() {
         Separation::At { rpm, cam_angle, .. } => Some([rpm, near(cam_angle)]),
@@ -298,17 +299,17 @@ pub fn known(separation: Separation, likely: Option<&Likely>) -> Separation {
     Separation::At { rpm, error: error + open, cam_angle, angle_error: Some(angle_error) }
 }
 
-/// Answers what is asked of a model; `watch` is told how far the runs are.
+/// Answers the questions about a model; `watch` receives the progress of the runs.
 pub fn design(model: &Model, asked: &Asked, watch: &dyn Watch) -> Result<Design, StudyError> {
-    /// Moments of the force round the cam, beside the ends of segments.
+    /// Moments of the force round the cam, besides the ends of segments.
     const MOMENTS: usize = 720;
-    /// Of the separation, where nothing says which speeds.
+    /// Default speed range, as multiples of the separation speed.
     const USUAL: [f64; 2] = [0.5, 1.5];
     let cam = Cam::new(model)?;
     let contact = Contact::new(&cam, model.follower);
     let likely = Likely::of(model)?;
     let separation = known(contact.separation(), likely.as_ref());
-    // A need that is to be met for certain is one at a speed that is higher by as much as the separation is uncertain.
+    // To meet a need for certain, its speed is raised by the relative uncertainty of the separation.
     let uncertain = match separation {
         Separation::At { rpm, error, .. } if likely.as_ref().is_some_and(|likely| likely.best.is_some()) => error / rpm,
         _ => 0.0,
@@ -326,7 +327,7 @@ pub fn design(model: &Model, asked: &Asked, watch: &dyn Watch) -> Result<Design,
             (Over::speed(model)?, speeds.all().collect())
         }
     };
-    // By another number the loads move along with the cam: how far is not known.
+    // If another number varies, the cam changes with it, and the uncertainty of the loads is not known.
     let noisy = likely.as_ref().filter(|likely| likely.best.is_some() && over.is_speed());
     let parts_at = |contact: &Contact<'_>| if over.is_speed() { separation } else { contact.separation() };
     let force_at = |value: &f64| -> Result<Option<(ForceAt, bool)>, StudyError> {
@@ -340,13 +341,13 @@ pub fn design(model: &Model, asked: &Asked, watch: &dyn Watch) -> Result<Design,
         let least = contact.least(place.rpm);
         let of = |model: &Model, cam: &Cam| Some([Contact::new(cam, model.follower).least(place.rpm).value]);
         let (error, largest) = (noisy.and_then(|likely| likely.error([least.value], of)), contact.largest(place.rpm));
-        // On a dwell nothing is open but the rounding.
+        // On a dwell rounding is the only uncertainty.
         let rounding = tolerance::JET_ROUNDING.value * largest.abs();
         let error = error.map(|[error]| error).filter(|error| *error > rounding);
         Ok(Some((ForceAt { place, least, error, largest }, is_parted)))
     };
     let at_each = values.iter().map(force_at).collect::<Result<Vec<_>, _>>()?;
-    // Where the cam's velocity jumps, it has no force, and the follower leaves it at any speed.
+    // Where the cam's velocity jumps there is no contact force, and the follower leaves the cam at any speed.
     let parted = values.iter().zip(&at_each).filter(|(_, at)| at.is_none_or(|(_, is_parted)| is_parted));
     let parted: Vec<f64> = parted.map(|(value, _)| *value).collect();
     let round = match (values.as_slice(), at_each.as_slice()) {
@@ -360,7 +361,7 @@ pub fn design(model: &Model, asked: &Asked, watch: &dyn Watch) -> Result<Design,
     let loads_at = |value: f64, budget: Budget| -> Result<(Loads, Vec<Attractor>), StudyError> {
         let (model, machine) = (over.family.model(&[value])?, over.machine(value)?);
         let (loads, found) = Loads::among(&model, &machine, asked.starts.as_deref(), budget)?;
-        // As it was asked for, and not as the angular velocity has it.
+        // As asked for, not as recomputed from the angular velocity.
         Ok((Loads { place: over.place(value), ..loads }, found))
     };
     let with_errors = |value: &f64| -> Result<(Loads, AttractorsAt), StudyError> {
@@ -378,7 +379,7 @@ pub fn design(model: &Model, asked: &Asked, watch: &dyn Watch) -> Result<Design,
     let forces: Vec<ForceAt> = at_each.iter().flatten().map(|(at, _)| *at).collect();
     let passed = |(limit, value): &(Load, f64)| -> Result<Passed, StudyError> {
         let most = limit.inside(&model.units, *value);
-        // Up to the separation the follower bears what the cam presses with.
+        // Up to the separation, the load is the contact force of the cam.
         let is_passed = |value: f64| -> Result<bool, StudyError> {
             let (of_value, cam) = over.model(value)?;
             let (contact, rpm) = (Contact::new(&cam, of_value.follower), over.place(value).rpm);
@@ -425,7 +426,7 @@ pub fn design(model: &Model, asked: &Asked, watch: &dyn Watch) -> Result<Design,
                     let found = needs::answer(&changed, (need, text), parameter, uncertain)?;
                     let given = value(index);
                     let Answer { value, error, other, other_error, again, .. } = found;
-                    // Of what is not to be too much as little as will do comes first, and none at all does where nothing else is said.
+                    // For a number with an upper bound, the least value that will do comes first; it is 0 if no lower limit was found.
                     Ok(match found.is_upper_bound && !parameter.is_upper_bound() {
                         true => Pair {
                             given,
@@ -465,7 +466,7 @@ pub fn design(model: &Model, asked: &Asked, watch: &dyn Watch) -> Result<Design,
     })
 }
 
-/// Cam angle, rad, and force, at moments evenly spaced and at both sides of every corner.
+/// Cam angle, rad, and force, at evenly spaced moments and at both sides of every corner.
 fn round(contact: &Contact<'_>, rpm: f64, moments: usize) -> Vec<[f64; 2]> {
     let omega = angular_velocity(rpm);
     let mut points = Vec::new();

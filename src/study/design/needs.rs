@@ -1,4 +1,4 @@
-//! What must be changed so that a machine does as it is needed to: one number at a time, the others kept.
+//! Finds the change of one number that makes a machine meet a need, with the other numbers kept.
 
 use std::cell::Cell;
 use std::str::FromStr;
@@ -15,32 +15,32 @@ use crate::model::{Follower, Model};
 use crate::simulate::{Machine, SimulateError, angular_velocity};
 use crate::tolerance;
 
-/// What is needed up to a speed, rpm.
+/// A requirement that a machine must meet up to a speed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Need {
-    /// What.
+    /// The requirement.
     pub what: What,
-    /// Up to which speed, rpm.
+    /// Highest speed at which it must be met, rpm.
     pub rpm: f64,
 }
 
-/// What is needed of a machine.
+/// A requirement on a machine.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum What {
     /// The follower stays on the cam.
     NoSeparation,
-    /// A load stays below a value, in the SI's unit.
+    /// A load stays below a value, in SI units.
     Below(Load, f64),
 }
 
 impl Need {
-    /// How it is known what it needs: loads by runs.
+    /// How the answer to this need is known: separation is computed, loads are sampled by runs.
     pub(super) fn known(&self) -> Known {
         if self.what == What::NoSeparation { Known::Computed } else { Known::Sampled }
     }
 }
 
-/// Units that loads are told in, each with what it is of the SI's.
+/// Units in which a load may be written, each with its size in SI units.
 const UNITS: [(Load, &str, f64); 11] = [
     (Load::ImpactSpeed, "m/s", 1.0),
     (Load::ImpactSpeed, "mm/s", 1e-3),
@@ -55,7 +55,7 @@ const UNITS: [(Load, &str, f64); 11] = [
     (Load::Energy, "mJ", 1e-3),
 ];
 
-/// `no separation to 4500 rpm`, `impact speed below 0.5 m/s to 6000 rpm`.
+/// Parses `no separation to 4500 rpm`, `impact speed below 0.5 m/s to 6000 rpm`.
 impl FromStr for Need {
     type Err = String;
 
@@ -81,7 +81,7 @@ impl FromStr for Need {
     }
 }
 
-/// What a unit of a load is of the SI's.
+/// Size of a load's unit in SI units.
 pub fn in_si(load: Load, unit: &str) -> Result<f64, String> {
     let of_load = || UNITS.iter().filter(|(of, ..)| *of == load);
     let found = of_load().find(|(_, name, _)| *name == unit).map(|(_, _, one)| *one);
@@ -95,7 +95,7 @@ pub fn in_si(load: Load, unit: &str) -> Result<f64, String> {
     })
 }
 
-/// A number that an engineer can change.
+/// A number of the machine that an engineer can change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Lever {
@@ -112,21 +112,21 @@ pub enum Lever {
 named!(Lever);
 
 impl Lever {
-    /// All of them.
+    /// All levers.
     pub const ALL: [Self; 4] = [Self::Preload, Self::Stiffness, Self::Damping, Self::Mass];
 
-    /// Whether less of it does the most good.
+    /// Whether a smaller value helps most.
     pub fn is_upper_bound(self) -> bool {
         self == Self::Mass
     }
 }
 
-/// A machine whose numbers are changed one by one.
+/// A machine with one number changed at a time.
 #[derive(Clone, Debug)]
 pub(super) struct Changed<'a> {
     model: &'a Model,
     contact: Contact<'a>,
-    /// The lowest lift, and the force there where the model keeps that.
+    /// Lowest lift; `preload` is the spring force there, if the model fixes it.
     lowest: f64,
     preload: Option<f64>,
 }
@@ -137,7 +137,7 @@ impl<'a> Changed<'a> {
         Self { model, contact: contact.clone(), lowest, preload: model.preload }
     }
 
-    /// The number as it is.
+    /// Present value of the lever.
     pub fn value(&self, lever: Lever) -> f64 {
         let Follower { mass, damping, stiffness, rest_position, .. } = self.contact.follower;
         match lever {
@@ -148,7 +148,7 @@ impl<'a> Changed<'a> {
         }
     }
 
-    /// With another value of one number: `k (c_min - rest) = preload` stays where the model says the preload.
+    /// Returns a copy with another value of one number. If the model fixes the preload, `k (c_min - rest) = preload` is kept.
     pub fn with(&self, lever: Lever, value: f64) -> Self {
         let mut changed = self.clone();
         let follower = &mut changed.contact.follower;
@@ -169,13 +169,13 @@ impl<'a> Changed<'a> {
         Machine::new(self.contact.cam.clone(), &self.contact.follower, angular_velocity(rpm))
     }
 
-    /// A value of a lever as it is told, and its unit.
+    /// Converts a value of a lever to the user's unit; returns it with the unit's name.
     pub fn told(&self, lever: Lever, value: f64) -> (f64, String) {
         let unit = self.model.units.of_follower(&lever.to_string());
         unit.map_or((value, String::new()), |unit| (unit.told(value), unit.name().into()))
     }
 
-    /// Whether the machine does as it is needed to.
+    /// Whether the machine meets the need.
     fn does(&self, need: &Need) -> Result<bool, SimulateError> {
         let stays = self.contact.separation().speed();
         if stays > need.rpm {
@@ -186,7 +186,7 @@ impl<'a> Changed<'a> {
         let mut model = self.model.clone();
         model.follower = self.contact.follower;
         let speed = |index: u32| stays + (need.rpm - stays) * f64::from(index) / f64::from(SPEEDS);
-        // The highest speed first: one that does not do is enough.
+        // The highest speed comes first: one failing speed is enough.
         let passes = |index: u32| match Loads::at(&model, &self.machine(speed(SPEEDS - index))) {
             Ok(loads) if loads.of(load) < limit => None,
             other => Some(other.map(|_| false)),
@@ -195,35 +195,35 @@ impl<'a> Changed<'a> {
     }
 }
 
-/// Speeds between separation and the highest that a load is looked at.
+/// Number of speeds, above separation up to the highest, at which a load is checked.
 const SPEEDS: u32 = 24;
 
-/// What one number has to be.
+/// The value of one number that meets a need.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Answer {
-    /// What is needed, as it was said.
+    /// The need, in the user's words.
     pub need: String,
-    /// Which number.
+    /// The number to change.
     pub lever: Lever,
-    /// What it is, in the unit that is told.
+    /// Present value, in the displayed unit.
     pub now: f64,
-    /// The least that will do, or the most; none where no value does it.
+    /// Least value that meets the need, or the largest (see `is_upper_bound`); none if no value meets it.
     pub value: Option<f64>,
-    /// How far it may be off: where the cam is measured, and of what is told by runs.
+    /// Uncertainty of `value` for a measured cam, at least the resolution of the runs for a load.
     pub error: Option<f64>,
-    /// Whether that is the most that will do.
+    /// Whether `value` is the largest that meets the need.
     pub is_upper_bound: bool,
-    /// Where it does no more on the other side: a damper that keeps the follower on the cam's rise throws it off on the return.
+    /// Limit on the other side, if there is one: a damper that keeps the follower on the cam's rise may throw it off on the return.
     pub other: Option<f64>,
-    /// How far that may be off.
+    /// Uncertainty of `other`.
     pub other_error: Option<f64>,
-    /// A value beyond, of those tried, with which a load is as it is needed to be again.
+    /// A tried value beyond `other` that meets the load requirement again.
     pub again: Option<f64>,
-    /// The unit.
+    /// Unit of the values.
     pub unit: String,
-    /// Why there is no value, or what else there is to say.
+    /// Why there is no value, or a further remark.
     pub note: String,
-    /// Exact where it is a detachment, sampled where loads are looked at.
+    /// Computed for a separation; sampled for a load.
     pub known: Known,
 }
 
@@ -242,7 +242,7 @@ document!(Answer as it {
     known: it.known,
 });
 
-/// What a number has to be, the others kept, of a machine whose separation is uncertain by this part of its speed.
+/// Finds the value of one number that meets a need, the others kept. `uncertain` is the relative uncertainty of the separation speed.
 pub(super) fn answer(
     of: &Changed<'_>,
     (need, text): (&Need, &str),
@@ -252,7 +252,7 @@ pub(super) fn answer(
     let known = need.known();
     let found = find(of, need, lever)?;
     let told = |value: f64| of.told(lever, value).0;
-    // Of what is as little as there can be nothing is open.
+    // Where the least possible value will do, nothing is uncertain.
     let certain = match found.value {
         Some(_) if uncertain > 0.0 && found.note.is_empty() => {
             Some(find(of, &Need { rpm: need.rpm * (1.0 + uncertain), ..*need }, lever)?)
@@ -261,7 +261,7 @@ pub(super) fn answer(
     };
     let error = |of: fn(&Found) -> Option<f64>| {
         let apart = (of(certain.as_ref()?)? - of(&found)?).abs();
-        // As narrow as runs tell it.
+        // At least as wide as the resolution of the runs.
         let width = if known == Known::Sampled { tolerance::NEEDED_BY_RUNS.value * of(&found)?.abs() } else { 0.0 };
         Some(told(apart.max(width)))
     };
@@ -287,25 +287,25 @@ pub(super) fn answer(
     })
 }
 
-/// Where a number begins to do, and where it ceases to on the other side; in the unit inside, with a sentence where there is none.
+/// Range of values that meet the need, in the internal unit; a note says why there is none.
 #[derive(Default)]
 pub(super) struct Found {
     pub value: Option<f64>,
     pub other: Option<f64>,
     pub is_upper_bound: bool,
     pub note: String,
-    /// A value that does beyond where it ceases to.
+    /// A value beyond `other` that meets the need again.
     pub again: Option<f64>,
-    /// A value with which a run makes no progress.
+    /// A value at which a run makes no progress.
     pub stuck: Option<f64>,
 }
 
-/// The range of values that do, if there are any.
+/// Returns the range of values that meet the need, if there are any.
 ///
-/// The contact force is linear in each of the numbers: what keeps the follower on the cam everywhere and at each speed is one range. Of
-/// loads that is not certain.
+/// The contact force is linear in each number, so the values that keep the follower on the cam at every angle and speed form one range. For
+/// loads this is not guaranteed.
 pub(super) fn find(of: &Changed<'_>, need: &Need, lever: Lever) -> Result<Found, SimulateError> {
-    /// Doublings and halvings of the number's own size that are tried.
+    /// Doublings and halvings of the number's own scale that are tried.
     const DOUBLINGS: i32 = 20;
     const DOUBLINGS_OF_RUNS: i32 = 6;
     let is_upper_bound = lever.is_upper_bound();
@@ -327,7 +327,7 @@ pub(super) fn find(of: &Changed<'_>, need: &Need, lever: Lever) -> Result<Found,
         What::NoSeparation => (DOUBLINGS, tolerance::ROOT_WIDTH.value),
         What::Below(..) => (DOUBLINGS_OF_RUNS, tolerance::NEEDED_BY_RUNS.value),
     };
-    // A value with which a run does not get on is none that is known to do.
+    // A value at which a run makes no progress is not known to meet the need.
     let stuck = Cell::new(None);
     let does = |value: f64| match of.with(lever, value).does(need) {
         Err(SimulateError::NoProgress { .. }) => {
@@ -369,10 +369,10 @@ pub(super) fn find(of: &Changed<'_>, need: &Need, lever: Lever) -> Result<Found,
         let tried = if need.what == What::NoSeparation { "" } else { ", of those tried," };
         return Ok(told_stuck(none(format!("no {lever} {side} {last:.1e} {unit}{tried} does it, the others kept"))));
     };
-    // A preload moves the spring's rest from the lowest lift, which hides what rounds away beside that.
+    // A preload moves the spring's rest position away from the lowest lift; changes below the rounding of that position are hidden.
     let hidden = if lever == Lever::Preload { stiffness * of.lowest.abs() } else { 0.0 };
     let before = match first.checked_sub(1) {
-        // Where nothing of it fails for want of any, no least value is to be found.
+        // If a tiny value already meets the need, there is no least value to find.
         Some(before) if values[before] == 0.0 && does(width * values[first].max(hidden))? => None,
         Some(before) => Some(edge(values[before], values[first])?),
         None => None,
@@ -385,7 +385,7 @@ pub(super) fn find(of: &Changed<'_>, need: &Need, lever: Lever) -> Result<Found,
                 again = Some(pair[1]);
                 break;
             }
-            // What keeps the follower on the cam is one range.
+            // The values that keep the follower on the cam form one range.
             (Some(_), false) if need.what == What::NoSeparation => break,
             _ => {}
         }
@@ -408,9 +408,9 @@ pub(super) fn find(of: &Changed<'_>, need: &Need, lever: Lever) -> Result<Found,
     }))
 }
 
-/// Between its neighbours the value for which `speed` is largest, where all values for which it is above any bound are one range.
+/// Finds the value with the largest `speed`, returned between its neighbours. The values with a speed above any bound must form one range.
 fn best_of(values: &[f64], speed: impl Fn(f64) -> f64) -> Option<[f64; 3]> {
-    /// Thirds of the range that are left out, one after the other: to the square root of a rounding, which a flat top hides.
+    /// Thirds of the range dropped one by one, down to the square root of the rounding: a flat maximum hides anything finer.
     const THIRDS: usize = 45;
     let speeds: Vec<f64> = values.iter().map(|value| speed(*value)).collect();
     let best = (0..values.len()).max_by(|one, two| speeds[*one].total_cmp(&speeds[*two]))?;

@@ -6,17 +6,17 @@ use std::sync::Arc;
 use crate::elementary;
 use crate::orbit::Parameter;
 
-/// How values lie between the lowest and the highest.
+/// Spacing of values between the lowest and the highest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Spacing {
     /// Evenly.
     Linear,
-    /// Evenly in their logarithm: each is the same multiple of the one before.
+    /// Evenly in the logarithm: each value is the same multiple of the one before.
     Logarithmic,
 }
 
 impl Spacing {
-    /// Where a value lies, so that what is as far apart there is as far apart on the axis: itself, or its decimal logarithm.
+    /// Position of a value on an axis with even spacing: the value itself, or its decimal logarithm.
     pub fn place(self, value: f64) -> f64 {
         match self {
             Self::Linear => value,
@@ -24,7 +24,7 @@ impl Spacing {
         }
     }
 
-    /// The value that lies there.
+    /// Value at a position on the axis.
     pub fn value(self, place: f64) -> f64 {
         match self {
             Self::Linear => place,
@@ -33,36 +33,36 @@ impl Spacing {
     }
 }
 
-/// Values between two ends, both of which are among them.
+/// Values between two ends, including both ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Values {
-    /// The lowest.
+    /// Lowest value.
     pub low: f64,
-    /// The highest.
+    /// Highest value.
     pub high: f64,
-    /// How many, 1 or more.
+    /// Number of values, 1 or more.
     pub count: usize,
-    /// How they lie between the two; of logarithmic ones `low` is above 0.
+    /// Spacing of the values; if it is logarithmic, `low` is above 0.
     pub spacing: Spacing,
 }
 
 impl Values {
-    /// The fastest speed that is turned, rpm: an angle keeps its digits only over times that a double resolves.
+    /// Highest speed of a run, rpm: an angle keeps its digits only over times that a double resolves.
     pub const FASTEST: f64 = 1e9;
-    /// The most values of one axis.
+    /// Largest number of values of one axis.
     pub const MOST: usize = 10_000_000;
 
-    /// Evenly spaced.
+    /// Evenly spaced values.
     pub fn linear(low: f64, high: f64, count: usize) -> Self {
         Self { low, high, count, spacing: Spacing::Linear }
     }
 
-    /// All of them, from the lowest up.
+    /// Iterates over all values, from the lowest up.
     pub fn all(self) -> impl Iterator<Item = f64> {
         (0..self.count).map(move |index| self.value(index))
     }
 
-    /// The one of an index below `count`; the last is `high` exactly.
+    /// Returns the value of an index below `count`; the last is `high` exactly.
     pub fn value(&self, index: usize) -> f64 {
         if index + 1 >= self.count && self.count > 1 {
             return self.high;
@@ -76,57 +76,57 @@ impl Values {
     }
 }
 
-/// Values of a number.
+/// Values of one number of the model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
-    /// What varies.
+    /// The number that varies.
     pub parameter: Parameter,
-    /// Its values, one or more.
+    /// The values, one or more.
     pub values: Arc<[f64]>,
-    /// How they lie, for pictures.
+    /// Spacing of the values, for pictures.
     pub spacing: Spacing,
 }
 
 impl Axis {
-    /// Values of a parameter.
+    /// Builds an axis from a parameter and its values.
     pub fn new(parameter: Parameter, values: &Values) -> Self {
         Self { parameter, values: values.all().collect(), spacing: values.spacing }
     }
 
-    /// These values.
+    /// Builds an axis from a parameter and a list of values.
     pub fn of(parameter: Parameter, values: Arc<[f64]>) -> Self {
         Self { parameter, values, spacing: Spacing::Linear }
     }
 
-    /// The first and the last value.
+    /// Returns the first and the last value.
     pub fn ends(&self) -> [f64; 2] {
         [self.values.first(), self.values.last()].map(|end| end.copied().unwrap_or(f64::NAN))
     }
 }
 
-/// Where on an axis something is.
+/// A place on an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Place {
     /// The speed, rpm.
     pub rpm: f64,
-    /// The value of the number that varies; none where that is the speed.
+    /// Value of the number that varies; none if that is the speed.
     pub value: Option<f64>,
 }
 
 impl Place {
-    /// At a speed, rpm, which is what varies.
+    /// Place at a speed, rpm, if the speed varies.
     pub fn of_speed(rpm: f64) -> Self {
         Self { rpm, value: None }
     }
 
-    /// The value of what varies.
+    /// Value of the number that varies.
     pub fn across(&self) -> f64 {
         self.value.unwrap_or(self.rpm)
     }
 }
 
 impl Parameter {
-    /// Where it has a value, of machines that turn at `rpm` where it is not the speed.
+    /// Place of a value. If the parameter is not the speed, the machines turn at `rpm`.
     pub fn place(&self, value: f64, rpm: f64) -> Place {
         match self {
             Self::Speed => Place::of_speed(value),
@@ -134,7 +134,7 @@ impl Parameter {
         }
     }
 
-    /// A value of it in words: `700 rpm`, `follower.restitution = 0.8`.
+    /// Value of the parameter in words: `700 rpm`, `follower.restitution = 0.8`.
     pub fn words(&self, value: f64) -> String {
         match self {
             Self::Speed => format!("{value} rpm"),
@@ -143,16 +143,16 @@ impl Parameter {
     }
 }
 
-/// What varies, and where the rest stands.
+/// The number that varies, and the fixed speed if it is another number.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Varied {
-    /// The number's name: `rpm`, or its dotted path.
+    /// Name of the number: `rpm`, or its dotted path.
     pub name: String,
-    /// What it is told in; empty of a pure number.
+    /// Unit of its values; empty for a pure number.
     pub unit: String,
-    /// The speed, rpm, where another number varies.
+    /// The speed, rpm, if another number varies.
     pub rpm: Option<f64>,
-    /// How the values lie.
+    /// Spacing of the values.
     pub spacing: Spacing,
 }
 
@@ -162,7 +162,7 @@ impl Varied {
         self.rpm.is_none()
     }
 
-    /// What one of its values is called.
+    /// Word for one of its values.
     pub fn value(&self) -> &'static str {
         if self.is_speed() { "speed" } else { "value" }
     }

@@ -1,4 +1,4 @@
-//! What several starts of one machine come to, and how many to each.
+//! Finds the motions on which several starts of one machine settle, and how many starts settle on each.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -10,19 +10,19 @@ use crate::orbit::runs::{AfterRelease, LongRuns, RunOutcome};
 use crate::progress::{Unwatched, Watch};
 use crate::simulate::{Machine, Motion, SimulateError};
 
-/// What the runs that neither rest nor come to an orbit soon did after that, all together.
+/// Totals over the runs that neither rest nor settle on an orbit soon, from then on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Wandering {
-    /// Revolutions.
+    /// Revolutions run.
     pub revolutions: u64,
-    /// How many have come to what is not left again: an orbit, the cam for good, or rests that recur.
+    /// Runs that ended in a motion they do not leave again: an orbit, permanent contact, or recurring rests.
     pub left: u64,
-    /// How many have rested on the cam.
+    /// Runs that rested on the cam.
     pub rested: u64,
 }
 
 impl Wandering {
-    /// Of both.
+    /// Sums the totals of both.
     pub fn with(self, other: Self) -> Self {
         Self {
             revolutions: self.revolutions + other.revolutions,
@@ -32,55 +32,55 @@ impl Wandering {
     }
 }
 
-/// A motion that starts end on.
+/// A motion on which starts settle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Attractor {
     /// The motion.
     pub ending: LongRun,
-    /// The starts that end on it, in order; none where only the motion of another speed came to it.
+    /// The starts that settle on it, in order; none if only the motion of another speed reached it.
     pub starts: Vec<usize>,
-    /// Revolutions that the run from each of these was followed for until that was told, or that of another speed.
+    /// Revolutions that the run from each start, or that of another speed, was followed for until it was judged.
     pub followed: Vec<u64>,
-    /// Where the first of these was when that was told.
+    /// State of the first of these runs when it was judged.
     pub motion: Motion,
 }
 
 impl Attractor {
-    /// Revolutions that the runs which end on it were followed for, all together.
+    /// Total revolutions of the runs that settle on it.
     pub fn followed(&self) -> u64 {
         self.followed.iter().sum()
     }
 }
 
-/// What starts end on.
+/// The motions on which the starts of a machine settle.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Ensemble {
-    /// The motions, in the order of the first start of each.
+    /// The motions, in the order of their first starts.
     pub attractors: Vec<Attractor>,
-    /// The starts whose runs leave the cam for good.
+    /// Starts whose runs leave the cam for good.
     pub off_for_good: Vec<usize>,
-    /// The runs that were waited for longest.
+    /// Totals of the runs that wandered longest.
     pub wandering: Wandering,
-    /// The starts whose runs could not go on, and why.
+    /// Starts whose runs could not go on, and why.
     pub failed: Vec<Failed>,
 }
 
-/// Wandering runs whose growth is taken over as many records as that needs; further ones share as many between them.
+/// Wandering runs whose growth is measured over the full number of records. All further runs together get as many records as these.
 const MEASURED: u64 = 4;
 
-/// The start that could not be run, and why.
+/// A start that could not be run, and why.
 pub type Failed = (usize, SimulateError);
 
-/// What follows each release that a run has come to.
+/// The consequence of each release that a run has reached.
 type Releases = Vec<Release>;
 
 #[derive(Clone, Debug)]
 struct Release {
-    /// Where, rad.
+    /// Cam angle of the release, rad.
     cam_angle: f64,
     after: AfterRelease,
     ending: LongRun,
-    /// Revolutions that the run was followed for from there.
+    /// Revolutions that the run was followed for from the release.
     followed: u64,
 }
 
@@ -89,43 +89,43 @@ struct Release {
 struct End {
     run: RunOutcome,
     motion: Motion,
-    /// Where it began, revolutions.
+    /// Revolution at which the run began.
     begun: u64,
-    /// Whether it had wandered before, for long enough to have forgotten its start.
+    /// Whether the run had already wandered long enough to forget its start.
     wandered: bool,
-    /// Why it could not go on.
+    /// Why the run could not go on.
     failed: Option<SimulateError>,
 }
 
-/// A start, judged.
+/// A judged start.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Judged {
-    /// The motion that it ends on.
+    /// The motion on which it settles.
     pub ending: LongRun,
-    /// Revolutions that its run was followed for until that was told.
+    /// Revolutions that its run was followed for until it was judged.
     pub followed: u64,
-    /// Which start.
+    /// Index of the start.
     start: usize,
-    /// Where the run was then; of one that wanders from a release, where the cam let go of it.
+    /// State of the run when it was judged; for a run that wanders from a release, its state at that release.
     motion: Motion,
-    /// Whether it has to forget that release.
+    /// Whether the run has yet to forget that release.
     released: bool,
 }
 
-/// The long-run motion of one start, judged within a budget, without a look at any other run.
+/// Finds the long-run motion of one start within a budget, without regard to any other run.
 pub fn long_run(machine: &Machine, motion: Motion, budget: Budget) -> Result<Judged, SimulateError> {
     let found = judged(&LongRuns::unaided(machine, budget), 1, |_| Ok(Some(motion)), &Unwatched);
     let (mut judged, ..) = found.map_err(|(_, error)| error)?;
-    // One start ends on one motion.
+    // One start settles on one motion.
     Ok(judged.swap_remove(0))
 }
 
-/// The long-run motions of `count` starts: the one way to judge several. They run side by side, told to `watch` one by one; `start` gives
-/// none where one is impossible.
+/// Finds the long-run motions of `count` starts. Runs go side by side, and `watch` is notified of each. `start` returns none for an
+/// impossible start.
 ///
-/// What a rest leads to is found once for each release. Runs that neither rest nor come to an orbit share the patience of the budget: if one
-/// of them comes to an orbit in the end, none of them is on an attractor yet. A run that cannot go on costs its own start; it is an error
-/// where no other start is left.
+/// The motion after a rest is found once for each release. Runs that neither rest nor settle on an orbit share the patience of the budget:
+/// if one of them settles on an orbit in the end, none of them is on an attractor yet. A run that cannot go on costs only its own start; it
+/// is an error if no other start is left.
 pub fn attractors_of(
     runs: &LongRuns<'_>,
     count: usize,
@@ -140,7 +140,7 @@ pub fn attractors_of(
     Ok(ensemble)
 }
 
-/// Each start judged, with an ensemble that has no attractors yet, and whether chaos outlasts the rests.
+/// Judges each start. Returns also an ensemble without attractors, and whether the chaotic motion outlasts the rests.
 fn judged(
     runs: &LongRuns<'_>,
     count: usize,
@@ -182,7 +182,7 @@ fn judged(
     let exits = exits(&ends, &releases);
     let wandering = Wandering { left: exits.len() as u64, ..wandering };
     let wanders = if exits.is_empty() { told_wandering(runs, &ends, &releases, outlast, watch)? } else { exits };
-    // What is left sooner or later is left from each of its rests as well.
+    // A motion that is left sooner or later is also left from each of its rests.
     let wanders_on = |ending: &LongRun| wandering.left > 0 && ending.wanders();
     let mut ensemble = Ensemble { wandering, failed, ..Ensemble::default() };
     let mut wanderers = wanders.iter().cycle();
@@ -220,15 +220,15 @@ fn judged(
 }
 
 impl Ensemble {
-    /// Counts a start by what it ends on; the first that does gives the motion.
+    /// Counts a start under the motion on which it settles; the first start of a motion provides its state.
     fn add(&mut self, runs: &LongRuns<'_>, one: Judged, outlast: bool) -> Result<(), SimulateError> {
         let Judged { ending, followed, start, motion, released } = one;
-        // Chaos is not what rests where it outlasts that.
+        // A chaotic motion that outlasts the rests is not the motion that rests.
         let is_same =
             |part: &&mut Attractor| part.ending.is_same(&ending) && (part.ending.kind() == ending.kind() || !outlast);
         match self.attractors.iter_mut().find(is_same) {
             Some(part) => {
-                // That it rests is the later news.
+                // A rest is the later finding and replaces chaos.
                 if matches!((&part.ending, &ending), (LongRun::Chaotic(_), LongRun::Sticking(_))) {
                     part.ending = ending;
                 }
@@ -244,17 +244,17 @@ impl Ensemble {
     }
 }
 
-/// Runs those that wander on, until all of them together have run for as long as the budget's patience; what leaves at first was only slow
-/// to settle, and does not count. With whether these are runs of another motion than those that had rested by then.
+/// Runs the wandering runs on until their total reaches the patience of the budget. Runs that leave at first were only slow to settle and
+/// do not count. Returns also whether the wandering runs are on another motion than those that had rested by then.
 fn wait(runs: &LongRuns<'_>, ends: &mut [Option<End>], releases: &Releases, watch: &dyn Watch) -> (bool, Wandering) {
-    /// The least revolutions that are worth a look for an orbit.
+    /// Least revolutions that are worth a look for an orbit.
     const LEAST: u64 = 32;
     let Budget { transient, patience, .. } = runs.budget;
     if patience == 0 {
         return (false, Wandering::default());
     }
     let (mut all, mut round, mut soon) = (None::<Wandering>, transient.max(1), Wandering::default());
-    // Those that a release was followed by count as well.
+    // The runs after a release that wander count as well.
     let followed = releases.iter().filter(|it| matches!(it.after, AfterRelease::Wanders { .. })).count() as u64;
     let released = Wandering {
         revolutions: followed.saturating_mul(runs.budget.rest()).min(patience / 2),
@@ -292,9 +292,9 @@ fn wait(runs: &LongRuns<'_>, ends: &mut [Option<End>], releases: &Releases, watc
     }
 }
 
-/// For how long a run has wandered that may have come to rest, but for the time that it takes to forget its start.
+/// Revolutions that a run has wandered, and whether it rested, without the revolutions needed to forget its start.
 fn soon_rested(end: &End) -> Wandering {
-    /// Revolutions.
+    /// Revolutions after which the start is forgotten.
     const FORGOTTEN: u64 = 50;
     let rested = u64::from(matches!(end.run, RunOutcome::Released(_)));
     match (end.motion.revolution - end.begun).checked_sub(FORGOTTEN) {
@@ -303,18 +303,18 @@ fn soon_rested(end: &End) -> Wandering {
     }
 }
 
-/// Whether runs that wandered for long have rested so much less often than they did `soon` that they are another motion than those
-/// that rested then.
+/// Whether the long wandering runs rest so much less often than they did `soon` that they are on another motion than the runs that rested
+/// then.
 fn outlasts(long: Wandering, soon: Wandering) -> bool {
-    /// Of 10 rests that are to be expected there is none once in 20,000 times.
+    /// If 10 rests are expected, none occurs once in 20,000 times.
     const FEWER: f64 = 10.0;
     let rested = soon.rested as f64;
-    // With 95 % it is more often than that.
+    // The true rate is above this with 95 % confidence.
     let rate = (rested - 2.0 * rested.sqrt()).max(0.0) / soon.revolutions.max(1) as f64;
     rate * long.revolutions as f64 > FEWER * (long.rested + 1) as f64
 }
 
-/// Finds what follows each release that a run has come to and that is not known yet, in the order of the runs.
+/// Finds what follows each release that a run has reached and that is not known yet, in the order of the runs.
 fn follow(runs: &LongRuns<'_>, ends: &[Option<End>], releases: &mut Releases) -> Result<(), Failed> {
     for (index, end) in ends.iter().enumerate() {
         if let Some(End { run: RunOutcome::Released(cam_angle), .. }) = end
@@ -330,8 +330,8 @@ fn follow(runs: &LongRuns<'_>, ends: &[Option<End>], releases: &mut Releases) ->
     Ok(())
 }
 
-/// What the runs have come to that left after they had wandered, each once. Chance alone decides when a run leaves, and to where:
-/// those that wander still are on their way there, in these parts.
+/// Returns the motions that runs reached after they had wandered, one for each run. Chance alone decides when a run leaves and to which
+/// motion, so the runs that still wander will end on these motions in the same proportions.
 fn exits(ends: &[Option<End>], releases: &Releases) -> Vec<LongRun> {
     let wandered = ends.iter().flatten().filter(|end| end.wandered);
     let left = wandered.filter_map(|end| match &end.run {
@@ -343,9 +343,9 @@ fn exits(ends: &[Option<End>], releases: &Releases) -> Vec<LongRun> {
     left.filter(|ending| !ending.wanders()).collect()
 }
 
-/// What the runs that wander, and that none has left, are told to be, in turn.
+/// Returns the motions assigned in turn to the runs that still wander, if no run has left.
 ///
-/// They are on the motion that rests now and then, if there is one, unless they outlast those that rest.
+/// If some motion rests now and then, they are on it, unless they outlast the runs that rest.
 fn told_wandering(
     runs: &LongRuns<'_>,
     ends: &[Option<End>],
@@ -373,7 +373,7 @@ fn told_wandering(
     Ok(match (&together, long) {
         (LongRun::Chaotic(_), Some(resting)) => vec![resting.clone()],
         (LongRun::Chaotic(_), None) => vec![together],
-        // Where they are not chaotic all together, each is told by itself.
+        // If they are not chaotic together, each is judged by itself.
         _ => {
             let rest = wanderers.get(told.len()..).unwrap_or_default();
             let further = each(watch, "growth of deviations from runs that end on nothing", rest.len());
@@ -388,18 +388,18 @@ fn told_wandering(
     })
 }
 
-/// Tells `watch` of one more piece of so many with each call.
+/// Returns a function that reports one more piece of `total` to `watch` with each call.
 fn each<'a>(watch: &'a dyn Watch, what: &'a str, total: usize) -> impl Fn() + Sync + 'a {
     let done = AtomicU64::new(0);
     move || watch.at(what, done.fetch_add(1, Ordering::Relaxed), total as u64)
 }
 
-/// What follows a release at an angle, rad.
+/// Looks up the release at a cam angle, rad.
 fn find(releases: &Releases, cam_angle: f64) -> Option<&Release> {
     releases.iter().find(|known| is_same_release(known.cam_angle, cam_angle))
 }
 
-/// What is known to follow a release at an angle, rad.
+/// Looks up what is known to follow a release at a cam angle, rad.
 fn known(releases: &Releases, cam_angle: f64) -> Option<AfterRelease> {
     find(releases, cam_angle).map(|release| release.after.clone())
 }

@@ -1,6 +1,6 @@
-//! The machines of a model over one or two of its numbers, each point on its own.
+//! Runs the machines of a model over one or two of its numbers, each point independently.
 //!
-//! What is found at a point is the same to the last bit in whatever order, parts or threads the points are run.
+//! The result at a point is the same to the last bit for any order, partition or number of threads.
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -20,25 +20,25 @@ use crate::simulate::{Machine, SimulateError, angular_velocity};
 #[derive(Clone, Debug)]
 pub struct Survey {
     family: Family,
-    /// The speed of the family, rpm.
+    /// Speed of the family, rpm.
     rpm: f64,
     across: Axis,
     up: Option<Axis>,
 }
 
-/// Why there is no survey.
+/// Why a survey cannot be built.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SurveyError {
-    /// The speed is named twice, or never, or the machine cannot be.
+    /// The speed is given twice or never, or the machine is impossible.
     #[error(transparent)]
     Over(#[from] OverError),
-    /// Both axes are one number.
+    /// Both axes are the same number.
     #[error("--x and --y are both {0}: a chart is over two numbers")]
     OneNumber(String),
-    /// No points, or more than a survey may have.
+    /// No points, or more than [`Survey::MOST`].
     #[error("{points} points: there must be 1 to {}", Survey::MOST)]
     Points {
-        /// How many were asked for.
+        /// Number of points asked for.
         points: usize,
     },
     /// The threads could not be started.
@@ -49,7 +49,7 @@ pub enum SurveyError {
 /// Why a point has no motion.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum RunError {
-    /// The machine cannot be.
+    /// The machine is impossible.
     #[error(transparent)]
     Family(#[from] FamilyError),
     /// A run could not go on.
@@ -57,14 +57,14 @@ pub enum RunError {
     Simulate(#[from] SimulateError),
 }
 
-/// What is found at points, row by row, the first axis fastest; the reason where there is no machine.
+/// Results at the points, row by row, the first axis fastest; the reason where there is no machine.
 pub type Found<T> = Vec<Result<T, String>>;
 
 impl Survey {
-    /// The most points.
+    /// Largest number of points.
     pub const MOST: usize = 100_000_000;
 
-    /// The machines of `model` over one axis or two; at `rpm` where none is the speed.
+    /// Builds the survey of `model` over one or two axes; `rpm` is the speed if neither axis is the speed.
     pub fn new(model: &Model, rpm: Option<f64>, across: Axis, up: Option<Axis>) -> Result<Self, SurveyError> {
         if let Some(up) = up.as_ref().filter(|up| up.parameter == across.parameter) {
             return Err(SurveyError::OneNumber(up.parameter.name().into()));
@@ -75,53 +75,53 @@ impl Survey {
         }
         let free: Vec<Parameter> = std::iter::once(&across).chain(&up).map(|axis| axis.parameter.clone()).collect();
         let rpm = over::speed(&free, rpm)?;
-        // What is wrong with the model itself is told at once, and not at every point; of a speed that cannot be turned at, at its point.
+        // Errors of the model itself are reported at once, not at every point; an impossible speed is reported at its point.
         let family = Family::new(model, rpm, free).map_err(OverError::from)?;
         Ok(Self { family, rpm, across, up })
     }
 
-    /// What varies; of two numbers the one that runs fastest.
+    /// The axis that varies; with two axes, the one that runs fastest.
     pub fn axis(&self) -> &Axis {
         &self.across
     }
 
-    /// The one speed, rpm; none where it varies.
+    /// The fixed speed, rpm; none if the speed varies.
     pub fn speed(&self) -> Option<f64> {
         let varies = std::iter::once(&self.across).chain(&self.up).any(|axis| axis.parameter == Parameter::Speed);
         (!varies).then_some(self.rpm)
     }
 
-    /// How many values the first axis has.
+    /// Number of values of the first axis.
     pub fn count(&self) -> usize {
         self.across.values.len()
     }
 
-    /// The value of an index.
+    /// Value at an index.
     pub fn value(&self, index: usize) -> f64 {
         self.across.values[index]
     }
 
-    /// Where the value of an index is.
+    /// Place of the value at an index.
     pub fn place(&self, index: usize) -> Place {
         self.across.parameter.place(self.value(index), self.rpm)
     }
 
-    /// That value in words.
+    /// Value at an index in words.
     pub fn words(&self, index: usize) -> String {
         self.across.parameter.words(self.value(index))
     }
 
-    /// The machine with the value of an index, of a survey over one number.
+    /// Machine with the value at an index, for a survey over one number.
     pub fn machine(&self, index: usize) -> Result<Machine, FamilyError> {
         Ok(self.family.machine(&[self.value(index)])?.0)
     }
 
-    /// The model with the value of an index, of a survey over one number.
+    /// Model with the value at an index, for a survey over one number.
     pub fn model(&self, index: usize) -> Result<Model, FamilyError> {
         self.family.model(&[self.value(index)])
     }
 
-    /// What `one` finds on the machine of each value, of a survey over one number, on `threads` threads (all there are for `None`).
+    /// Applies `one` to the machine of each value, for a survey over one number, on `threads` threads (all there are for `None`).
     pub fn run<T: Send>(
         &self,
         threads: Option<usize>,
@@ -131,8 +131,8 @@ impl Survey {
         Ok(self.part([0..self.count(), 0..1], threads, watch, |[index, _], machine| one(index, machine))?.0)
     }
 
-    /// What `one` finds on the machines of some columns and rows, told to `watch` row by row, or value by value; and the seconds of the
-    /// threads that ran them, and from the beginning to the end.
+    /// Applies `one` to the machines of some columns and rows, reporting to `watch` row by row, or value by value. Returns the results with
+    /// the processor seconds of the threads, and the seconds from the beginning to the end.
     pub fn part<T: Send>(
         &self,
         [columns, rows]: [Range<usize>; 2],
@@ -142,7 +142,7 @@ impl Survey {
     ) -> Result<(Found<T>, [f64; 2]), SweepError> {
         let clock = Instant::now();
         let pool = super::threads::threads(threads)?;
-        // Rows, or what there is of the only one.
+        // Rows, or the columns of the only row.
         let (lines, what) = if self.up.is_some() { (rows.clone(), "rows") } else { (columns.clone(), "") };
         let height = (lines.len() / (8 * pool.current_num_threads())).clamp(1, STRIP);
         let (done, last, total) = (AtomicU64::new(0), lines.end, lines.len() as u64);
@@ -161,7 +161,7 @@ impl Survey {
         Ok((found, [processor.as_secs_f64(), clock.elapsed().as_secs_f64()]))
     }
 
-    /// Some columns and rows, row by row.
+    /// Applies `one` to some columns and rows, row by row.
     fn block<T>(
         &self,
         columns: Range<usize>,
@@ -178,7 +178,7 @@ impl Survey {
             let values: Vec<f64> = std::iter::once(value(&self.across, x)).chain(up).collect();
             self.family.machine(&values).map(|(machine, _)| machine).map_err(|error| error.to_string())
         };
-        // A cam and what is known of it take as long to make as hundreds of revolutions; another speed is free.
+        // A cam and its derived data cost as much as hundreds of revolutions; another speed is free.
         let at = |machine: &Result<Machine, String>, rpm: f64, place: [usize; 2]| match machine {
             Ok(machine) if rpm > 0.0 && rpm.is_finite() => one(place, &machine.at_speed(angular_velocity(rpm))),
             Ok(_) => Err(FamilyError::Speed { rpm }.to_string()),
@@ -199,10 +199,10 @@ impl Survey {
     }
 }
 
-/// Rows that a thread takes at a time, at most.
+/// Largest number of rows that a thread takes at a time.
 const STRIP: usize = 32;
 
-/// The time that a thread has had of a processor, where the system tells, else that of the day.
+/// Processor time of a thread, if the system reports it; else wall-clock time.
 enum Processor {
     Thread(Duration),
     Day(Instant),
@@ -213,7 +213,7 @@ impl Processor {
         Self::of_thread().map_or_else(|| Self::Day(Instant::now()), Self::Thread)
     }
 
-    /// Linux keeps it in nanoseconds, as the first number of a file.
+    /// Linux reports it in nanoseconds, as the first number of a file.
     fn of_thread() -> Option<Duration> {
         let told = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
         told.split_whitespace().next()?.parse().ok().map(Duration::from_nanos)

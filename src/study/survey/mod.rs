@@ -1,20 +1,20 @@
-//! What a machine does in the long run, from one start or from many, at one value of its numbers or over a range of them.
+//! Finds the long-run motion of a machine, from one start or from many, at one value of its numbers or over a range of them.
 //!
 //! ```text
 //! start  ->  long_run, attractors_of  ->  at a value (Point, Attractor)  ->  over values (Survey; Sweep)
 //! ```
 //!
-//! | module | what it holds |
+//! | module | contents |
 //! |---|---|
 //! | `starts` | where runs begin: starts that are given, or a sample that stands for all |
-//! | `ensemble` | what one start comes to, and what several do |
-//! | `point` | what one start comes to, in numbers: a point of a chart, a row of a diagram |
+//! | `ensemble` | the motions on which one start, or several, settle |
+//! | `point` | the motion of one start, in numbers: a point of a chart, a row of a diagram |
 //! | `axis` | the values of a number that a survey goes through |
 //! | `over` | the machines over one number, at any value |
 //! | `grid` | the machines over one number or two, side by side |
-//! | `sweep` | what runs show over one number, recorded and not judged |
+//! | `sweep` | runs over one number, recorded and not judged |
 //! | `pipeline` | the rows of a sweep, in order and in bounded memory |
-//! | `places` | where those rows lie, without all that they hold |
+//! | `places` | the positions of those rows, without the rest of their data |
 //! | `threads` | the threads that all this runs on |
 
 mod axis;

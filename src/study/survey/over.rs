@@ -11,31 +11,31 @@ use crate::simulate::Machine;
 pub struct Over<'a> {
     /// The model.
     pub model: &'a Model,
-    /// What varies.
+    /// The number that varies.
     pub parameter: Parameter,
-    /// For branches that are followed along it.
+    /// The family, for following branches along the parameter.
     pub family: Family,
-    /// The speed, rpm, where it is not what varies.
+    /// The speed, rpm, if it is not the number that varies.
     pub rpm: f64,
 }
 
-/// Why nothing can be gone over.
+/// Why there are no machines over a number.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum OverError {
-    /// No speed is named, and what varies is none.
+    /// No speed is given, and the number that varies is not the speed.
     #[error("{} rpm: --rpm says at which speed", .0.as_ref().map_or("neither axis is".into(), |name| format!("{name} is not")))]
     NoSpeed(Option<String>),
-    /// A speed is named, and what varies is the speed.
+    /// A speed is given, but the speed is the number that varies.
     #[error("--rpm R is for a survey of which no axis is rpm")]
     TwoSpeeds,
-    /// The machine cannot be.
+    /// The machine is impossible.
     #[error(transparent)]
     Family(#[from] FamilyError),
 }
 
-/// The speed, rpm, of a survey over these numbers, of which `rpm` is named: any, where the speed varies.
+/// Speed, rpm, of a survey over the numbers `free`. If the speed varies, `rpm` must not be given, and any speed is returned.
 pub(super) fn speed(free: &[Parameter], rpm: Option<f64>) -> Result<f64, OverError> {
-    /// Where it varies, each machine has another.
+    /// Placeholder: if the speed varies, each machine has its own.
     const ANY: f64 = 1.0;
     match (free.contains(&Parameter::Speed), rpm) {
         (true, None) => Ok(ANY),
@@ -49,7 +49,7 @@ pub(super) fn speed(free: &[Parameter], rpm: Option<f64>) -> Result<f64, OverErr
 }
 
 impl<'a> Over<'a> {
-    /// The machines of `model` over a number, at `rpm`, which is named where that is not the speed.
+    /// Builds the machines of `model` over a number, at `rpm`, which must be given if that number is not the speed.
     pub fn new(model: &'a Model, parameter: Parameter, rpm: Option<f64>) -> Result<Self, OverError> {
         let free = vec![parameter.clone()];
         let rpm = speed(&free, rpm)?;
@@ -57,7 +57,7 @@ impl<'a> Over<'a> {
         Ok(Self { model, parameter, family, rpm })
     }
 
-    /// The machines of `model` over its speed.
+    /// Builds the machines of `model` over its speed.
     pub fn speed(model: &'a Model) -> Result<Self, OverError> {
         Self::new(model, Parameter::Speed, None)
     }
@@ -67,25 +67,25 @@ impl<'a> Over<'a> {
         self.parameter == Parameter::Speed
     }
 
-    /// The machine with a value.
+    /// Machine with a value of the number.
     pub fn machine(&self, value: f64) -> Result<Machine, FamilyError> {
         Ok(self.family.machine(&[value])?.0)
     }
 
-    /// The model with a value, and its cam.
+    /// Model with a value of the number, and its cam.
     pub fn model(&self, value: f64) -> Result<(Model, Cam), FamilyError> {
         let (model, machine) = (self.family.model(&[value])?, self.machine(value)?);
         Ok((model, machine.cam().clone()))
     }
 
-    /// What varies, in words, with values that lie so.
+    /// Describes the number that varies, with values of this spacing.
     pub fn varied(&self, spacing: Spacing) -> Varied {
         let name = self.parameter.name();
         let rpm = (!self.is_speed()).then_some(self.rpm);
         Varied { name: name.into(), unit: self.model.units.of_number(name), rpm, spacing }
     }
 
-    /// Where a value is.
+    /// Place of a value.
     pub fn place(&self, value: f64) -> Place {
         self.parameter.place(value, self.rpm)
     }

@@ -1,9 +1,8 @@
-//! The values of a sweep side by side, their rows in order, in bounded memory.
+//! Runs the values of a sweep side by side and returns their rows in order, in bounded memory.
 //!
-//! Each worker turns rows into blocks and sends the blocks to the calling thread, which takes them value by value. Where
-//! cores are few, a worker stands still whenever the calling thread wakes. So a worker runs a few neighbouring values in a
-//! row and sends short blocks together. Queues are short: a worker that is ahead has to wait, but never the worker of the
-//! lowest value that is not finished.
+//! Each worker turns rows into blocks and sends the blocks to the calling thread, which takes them value by value. With few cores, a worker
+//! stops whenever the calling thread wakes. So a worker runs a few neighbouring values in a row and sends short blocks together. Queues are
+//! short: a worker that is ahead has to wait, but the worker of the lowest unfinished value never does.
 
 use std::ops::{ControlFlow, Range};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
@@ -20,10 +19,10 @@ pub trait Block: Default + Send {
     /// Adds a row.
     fn push(&mut self, row: &Row);
 
-    /// Whether it is time to send it on.
+    /// Whether the block should be sent.
     fn is_full(&self) -> bool;
 
-    /// Takes note that the run at a value could not go on, and says that the sweep goes on all the same; else it ends there.
+    /// Notes that the run at a value could not go on. Returns true to continue the sweep; otherwise the sweep ends there.
     fn fail(&mut self, _value: f64) -> bool {
         false
     }
@@ -41,7 +40,7 @@ impl Block for Counted {
     }
 }
 
-/// What a sweep came to.
+/// Totals of a sweep.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Tally {
     /// Rows recorded.
@@ -65,17 +64,17 @@ enum Message<B> {
     Done(Result<Tally, SweepError>),
 }
 
-/// Lots of messages of one task that may wait to be taken.
+/// Batches of messages of one task that may wait to be taken.
 const QUEUE: usize = 4;
-/// Tasks that may be open, for each thread.
+/// Tasks in progress per thread.
 const OPEN_PER_THREAD: usize = 4;
-/// Most values of a task, and the revolutions after which a task takes no further value.
+/// Largest number of values of a task, and the revolutions after which a task takes no further value.
 const VALUES_PER_TASK: usize = 16;
 const REVOLUTIONS_PER_TASK: u64 = 10_000;
 
 impl Sweep {
-    /// Runs on `threads` threads (all there are for `None`); `take` gets every block in order, and after each value its
-    /// index with an empty block.
+    /// Runs the sweep on `threads` threads (all there are for `None`). `take` gets every block in order, and after each value its index
+    /// with an empty block.
     pub fn run<B: Block, E: From<SweepError>>(
         &self,
         threads: Option<usize>,
@@ -83,7 +82,7 @@ impl Sweep {
     ) -> Result<Tally, E> {
         let mut tally = Tally::default();
         if self.following != Following::Nothing {
-            // Each value waits for its neighbour: one after the other, here.
+            // Each value needs the end of its neighbour, so the values run one after the other, here.
             let mut from = None;
             for step in 0..self.over.count() {
                 let index = if self.following == Following::Up { step } else { self.over.count() - 1 - step };
@@ -131,14 +130,14 @@ impl Sweep {
         })
     }
 
-    /// How many neighbouring values make a task, where `open` tasks may be open: few enough for all threads to end together.
+    /// Number of neighbouring values per task if `open` tasks may be in progress: few enough for all threads to end together.
     fn values_per_task(&self, open: usize) -> usize {
         let revolutions = self.transient.saturating_add(self.record).max(1);
         let by_length = usize::try_from(REVOLUTIONS_PER_TASK / revolutions).unwrap_or(VALUES_PER_TASK);
         by_length.min(VALUES_PER_TASK).min(self.over.count() / (4 * open)).max(1)
     }
 
-    /// The runs of a few values on a worker; a receiver that is gone ends them.
+    /// Runs a few values on a worker; stops when the receiver is gone.
     fn work<B: Block>(&self, values: Range<usize>, sender: &SyncSender<Vec<Message<B>>>) {
         let mut lot = Vec::new();
         for index in values {
@@ -199,7 +198,7 @@ impl Sweep {
             return Err(SweepError::Run { place: self.over.words(index), error: error.to_string() });
         }
         tally.revolutions = runs as u64 * (self.transient + self.record);
-        // The caller that wants no more sees to it itself.
+        // A caller that wants no more blocks stops by itself.
         let _ = send(block);
         Ok((end, tally))
     }

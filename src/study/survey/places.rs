@@ -1,19 +1,19 @@
-//! Where a sweep's points lie: impacts on the cam, or the follower at the section, without all that a row holds.
+//! Positions of a sweep's points: impacts on the cam, or the follower at the section, without the rest of each row.
 
 use super::pipeline::Block;
 use super::sweep::{Row, Seen};
 use crate::simulate::EventKind;
 
-/// Points of a diagram, as a worker makes them.
+/// Points of a diagram, as produced by a worker.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Places {
-    /// The value, and the cam angle of an impact, rad, or the position at the section, m.
+    /// The value with the cam angle of an impact, rad, or with the position at the section, m.
     pub places: Vec<[f64; 2]>,
-    /// The value, and the Lyapunov exponent per revolution, if asked for.
+    /// The value with the Lyapunov exponent per revolution, if asked for.
     pub exponent: Option<[f64; 2]>,
 }
 
-/// Points after which a block is sent on.
+/// Number of points after which a block is sent.
 const FULL: usize = 1024;
 
 impl Block for Places {

@@ -1,4 +1,4 @@
-//! What one run comes to, in numbers: a point of a chart, and a row of a diagram.
+//! The long-run motion of one run, in numbers: a point of a chart, and a row of a diagram.
 
 use crate::estimate::Estimate;
 use crate::orbit::long_run::{Budget, Kind, LongRun};
@@ -7,38 +7,38 @@ use crate::simulate::{Machine, Met, Motion, SimulateError};
 use super::ensemble::{Judged, long_run};
 use super::starts::Start;
 
-/// What a run comes to.
+/// The long-run motion of one run, in numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
-    /// The kind of motion.
+    /// Kind of motion.
     pub kind: Kind,
-    /// Turns of the cam of one period; 0 where it does not repeat, or where doubles cannot tell after how long.
+    /// Turns of the cam in one period; 0 if the motion does not repeat, or if doubles cannot resolve its period.
     pub revolutions: u64,
-    /// Impacts of one period; 0 where there is none.
+    /// Impacts in one period; 0 if there is no period.
     pub impacts: u64,
-    /// Impacts a revolution: of the period, or of what was recorded.
+    /// Impacts per revolution: over the period, or over the record.
     pub impact_rate: f64,
-    /// The growth of a small deviation a revolution, a natural logarithm: of an orbit by its multipliers, without error; minus
-    /// infinity where the follower rests; else the mean over the record.
+    /// Growth of a small deviation per revolution, a natural logarithm. For an orbit it follows from its multipliers, without error; if the
+    /// follower rests, it is minus infinity; otherwise it is the mean over the record.
     pub growth: Estimate,
-    /// The speed of the fastest impact, of follower and cam against each other, m/s.
+    /// Relative speed of follower and cam at the fastest impact, m/s.
     pub impact_speed: f64,
     /// Revolutions that the run was followed for.
     pub followed: u64,
 }
 
 impl Point {
-    /// What a run from `start` comes to within a budget, or why there is none.
+    /// Judges a run from `start` within a budget, or returns the reason for its failure.
     pub fn from(machine: &Machine, start: Start, budget: Budget) -> Result<Self, String> {
         let run = start.motion(machine).and_then(|motion| Self::of(machine, motion, budget));
         run.map_err(|error| error.to_string())
     }
 
-    /// What `motion` comes to within a budget.
+    /// Judges the long-run motion of `motion` within a budget.
     pub fn of(machine: &Machine, motion: Motion, budget: Budget) -> Result<Self, SimulateError> {
         let Judged { ending, followed, .. } = long_run(machine, motion, budget)?;
         let (revolutions, impacts) = ending.period().unwrap_or_default();
-        // Of so many revolutions.
+        // Number of revolutions that the impacts are counted over.
         let (met, of) = match &ending {
             LongRun::PermanentContact => (Met::default(), 1),
             LongRun::Orbit(orbit) => {
@@ -63,7 +63,7 @@ impl Point {
     }
 }
 
-/// The growth of a small deviation of `motion` a revolution, and its error: that of what it comes to within a budget.
+/// Growth of a small deviation per revolution, with its error, of the motion on which `motion` settles within a budget.
 pub fn growth(machine: &Machine, motion: Motion, budget: Budget) -> Result<Estimate, SimulateError> {
     Ok(long_run(machine, motion, budget)?.ending.growth())
 }

@@ -10,21 +10,21 @@ use crate::simulate::{Machine, Motion, SimulateError};
 pub struct Start {
     /// Cam angle, rad, in `[0, 2 pi)`.
     pub cam_angle: f64,
-    /// The follower there.
+    /// The follower at the start.
     pub follower: Placed,
 }
 
-/// A follower at the start.
+/// State of the follower at the start.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Placed {
-    /// With this state.
+    /// In this state.
     At(State),
     /// On the cam, leaving it at this velocity, m/s, zero or more.
     OnCam(f64),
 }
 
 impl Start {
-    /// A motion of `machine` from here.
+    /// Starts a motion of `machine` here.
     pub fn motion(&self, machine: &Machine) -> Result<Motion, SimulateError> {
         match self.follower {
             Placed::At(state) => machine.start(self.cam_angle, state),
@@ -33,17 +33,17 @@ impl Start {
     }
 }
 
-/// Where the runs of a survey begin, at each value of what varies.
+/// Starts of the runs of a survey, at each value of the number that varies.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Sample {
-    /// So many starts that stand for all motions of a machine.
+    /// Number of starts that represent all motions of a machine.
     Spread(usize),
-    /// These, and no other.
+    /// These starts only.
     Given(Vec<Start>),
 }
 
 impl Sample {
-    /// How many.
+    /// Number of starts.
     pub fn count(&self) -> usize {
         match self {
             Self::Spread(count) => *count,
@@ -55,23 +55,23 @@ impl Sample {
 /// Starts on the cam: every motion that meets the cam leaves it with some relative velocity at some angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Starts {
-    /// The highest relative velocity, m/s; the lowest is 0, and the angles go all around.
+    /// Highest relative velocity, m/s; the lowest is 0, and the angles go all around.
     pub fastest: f64,
 }
 
 impl Starts {
-    /// The starts of a machine, up to the relative velocity that impacts keep up.
+    /// Starts of a machine, up to the highest relative velocity that impacts can sustain.
     ///
-    /// A flight from the cam back to it returns with no more than the energy that it left with and that of the way down the
-    /// lift, so that with the cam's largest velocity V, and w the velocity of that way,
+    /// A flight from the cam back to it returns with no more than the energy that it left with and that of the way down the lift. With the
+    /// cam's largest velocity V, and w the velocity of that way,
     ///
     /// ```text
     /// u' <= r (u + 2 V + w),   in the long run u <= r (2 V + w)/(1 - r)
     /// ```
     ///
-    /// What bounces hardly at all is given as much as the cam gives it, and what loses nothing ten times that.
+    /// For a very small restitution the limit is the velocity that the cam gives; without loss it is ten times that.
     pub fn of(machine: &Machine) -> Self {
-        /// The restitution at which impacts keep up ten times what one gives.
+        /// Largest sustained velocity, in units of the velocity that the cam gives.
         const MOST_KEPT: f64 = 10.0;
         let (flight, segments) = (machine.flight(), machine.cam().segments());
         let steepest =
@@ -85,10 +85,9 @@ impl Starts {
         Self { fastest: given * kept.max(1.0) }
     }
 
-    /// The start of an index: cam angle, rad, and relative velocity, m/s. Any number of them from 0 on fills the rectangle
-    /// evenly.
+    /// Start of an index: cam angle, rad, and relative velocity, m/s. Any number of starts from index 0 on fills the rectangle evenly.
     ///
-    /// Steps of the plastic number's powers, which is to two dimensions what the golden section is to one.
+    /// Uses steps of the plastic number's powers, the counterpart in two dimensions of the golden section.
     pub fn at(&self, index: usize) -> [f64; 2] {
         /// The root of x^3 = x + 1.
         const PLASTIC: f64 = 1.324_717_957_244_746;
@@ -96,7 +95,7 @@ impl Starts {
         [TAU * place(1.0 / PLASTIC), self.fastest * place(1.0 / (PLASTIC * PLASTIC))]
     }
 
-    /// The motion of `machine` from the start of an index.
+    /// Starts the motion of `machine` from the start of an index.
     pub fn motion(&self, machine: &Machine, index: usize) -> Result<Motion, SimulateError> {
         let [cam_angle, relative_velocity] = self.at(index);
         machine.start_on_cam(cam_angle, relative_velocity)

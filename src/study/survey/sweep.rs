@@ -1,8 +1,8 @@
-//! Brute-force bifurcation diagrams: what a machine settles on, value by value of one of its numbers.
+//! Brute-force bifurcation diagrams: the motion on which a machine settles, value by value of one of its numbers.
 //!
-//! Each value runs through a transient and is then recorded. From a fixed start the values are independent and run side by
-//! side; followed up or down, each starts where the one before ended. What is recorded leaves in the order of the values
-//! whatever the number of threads, in blocks, so that memory does not grow with the length of a record.
+//! Each value runs through a transient and is then recorded. From a fixed start, the values are independent and run side by side; followed
+//! up or down, each starts where the one before ended. Records are returned in the order of the values for any number of threads. They are
+//! returned in blocks, so that memory does not grow with the length of a record.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -15,7 +15,7 @@ use crate::flight::State;
 use crate::simulate::{Event, EventKind, Machine, Motion, SimulateError, Unobserved};
 use crate::tolerance;
 
-/// What is recorded.
+/// The data that is recorded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Section {
     /// Every event at the cam.
@@ -24,7 +24,7 @@ pub enum Section {
     Strobe(f64),
 }
 
-/// Where each value starts.
+/// Start of each value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Following {
     /// From the same start.
@@ -35,20 +35,20 @@ pub enum Following {
     Down,
 }
 
-/// The motions of a machine that are looked at, each found before.
+/// Finds the motions of a machine that are to be recorded.
 pub type Find = Arc<dyn Fn(&Machine) -> Result<Vec<Motion>, SimulateError> + Send + Sync>;
 
-/// Where the runs of a value begin.
+/// Beginnings of the runs at a value.
 #[derive(Clone)]
 pub enum Beginning {
     /// One run, from one start at every value.
     One(Start),
-    /// A run from each motion that is found for the value.
+    /// One run from each motion that is found for the value.
     Found(Find),
 }
 
 impl Beginning {
-    /// The motions of `machine` to begin with.
+    /// Motions of `machine` to begin with.
     pub(super) fn motions(&self, machine: &Machine) -> Result<Vec<Motion>, SimulateError> {
         match self {
             Self::One(start) => Ok(vec![start.motion(machine)?]),
@@ -57,7 +57,7 @@ impl Beginning {
     }
 }
 
-/// How fast a small deviation of what a motion comes to grows in a revolution, a natural logarithm.
+/// Growth of a small deviation per revolution, a natural logarithm, of the motion on which a motion settles.
 pub type Growth = Arc<dyn Fn(&Machine, Motion) -> Result<Estimate, SimulateError> + Send + Sync>;
 
 /// A sweep over the values of one number.
@@ -65,37 +65,37 @@ pub type Growth = Arc<dyn Fn(&Machine, Motion) -> Result<Estimate, SimulateError
 pub struct Sweep {
     /// The machines.
     pub over: Survey,
-    /// Where each starts.
+    /// Start of each machine's runs.
     pub starts: Beginning,
-    /// Whether each goes on from its neighbour.
+    /// Whether each value continues from its neighbour.
     pub following: Following,
-    /// Revolutions that are not recorded.
+    /// Revolutions before recording.
     pub transient: u64,
-    /// Revolutions that are.
+    /// Revolutions recorded.
     pub record: u64,
-    /// What of them.
+    /// The data that is recorded.
     pub section: Section,
-    /// How the growth of a small deviation a revolution is found, if it is.
+    /// Function for the growth of a small deviation per revolution, if asked for.
     pub growth: Option<Growth>,
 }
 
-/// What a record consists of.
+/// One row of a record.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Row {
-    /// The value: of the speed, rpm.
+    /// Value of the number that varies; for the speed, rpm.
     pub value: f64,
     /// How often the cam has passed angle 0 since the start at this value.
     pub revolution: u64,
-    /// Which of the motions found for this value it belongs to.
+    /// Index of the motion found for this value that the row belongs to.
     pub motion: Option<usize>,
-    /// What was seen.
+    /// The event or state that was recorded.
     pub seen: Seen,
-    /// The growth of a small deviation at this value per revolution, if asked for.
+    /// Growth of a small deviation per revolution at this value, if asked for.
     pub growth: Option<Estimate>,
 }
 
-/// Cam angles, rad, of the impacts that a machine settles on: those of `record` revolutions after `transient` from rest on
-/// the cam at angle 0.
+/// Cam angles, rad, of the impacts on which a machine settles: those of `record` revolutions after `transient` from rest on the cam at
+/// angle 0.
 pub fn settled_impacts(machine: &Machine, transient: u64, record: u64) -> Result<Vec<f64>, SimulateError> {
     let mut motion = machine.start_on_cam(0.0, 0.0)?;
     machine.revolve(&mut motion, transient)?;
@@ -108,8 +108,8 @@ pub fn settled_impacts(machine: &Machine, transient: u64, record: u64) -> Result
     Ok(angles)
 }
 
-/// After how many impacts their places on the cam, rad, recur, as far as a picture can show; `None` where they do not, as often
-/// as there are impacts for.
+/// Number of impacts after which their cam angles, rad, recur to the precision of a picture. `None` if they do not, within half of the
+/// impacts given.
 pub(crate) fn recurrence(angles: &[f64]) -> Option<usize> {
     let near = |(one, other): (&f64, &f64)| apart(*one, *other).to_degrees() <= tolerance::DRAWN_DEGREES.value;
     (1..=angles.len() / 2).find(|period| angles.iter().zip(&angles[*period..]).all(near))
@@ -125,7 +125,7 @@ pub enum Seen {
 }
 
 impl Sweep {
-    /// Records one value from `motion`, row by row, and returns where it ended; stops early where `keep` breaks.
+    /// Records one value from `motion`, row by row, and returns where it ended; stops early if `keep` breaks.
     pub(super) fn record(
         &self,
         machine: &Machine,

@@ -6,7 +6,7 @@ use crate::stop;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[expect(missing_docs, reason = "the message says what each number is")]
 pub enum SweepError {
-    /// A run could not go on, or begin.
+    /// A run could not begin or go on.
     #[error("at {place}: {error}")]
     Run { place: String, error: String },
     /// The threads could not be started.
@@ -14,9 +14,9 @@ pub enum SweepError {
     Threads(String),
 }
 
-/// Threads to run on: so many, or for `None` one for each core.
+/// Builds a pool of `count` threads, or for `None` of one for each core.
 pub fn threads(count: Option<usize>) -> Result<rayon::ThreadPool, SweepError> {
-    // Of 0 the builder makes as many as there are cores.
+    // For 0, the builder makes as many threads as there are cores.
     let builder = rayon::ThreadPoolBuilder::new().num_threads(count.unwrap_or(0));
     let builder = builder
         .spawn_handler(|thread| std::thread::Builder::new().spawn(stop::carried(move || thread.run())).map(drop));

@@ -1,5 +1,5 @@
-//! The answer: one picture and a sentence each on where the follower separates, how hard it hits, where motions coexist, and what
-//! is proved.
+//! The answer: one picture, and a sentence each on separation, impact speed, coexisting motions, and
+//! proofs.
 
 use crate::figures::chaotic_set;
 use crate::measured::Measured;
@@ -94,7 +94,7 @@ fn coexistence(report: &Report) -> Option<Words> {
     Some(headed("Coexistence.", "attractors", sentence))
 }
 
-/// The first few of some ranges, and how many there are.
+/// The first few of some ranges, and the number of all.
 fn several(ranges: Vec<Words>) -> Words {
     const SHOWN: usize = 3;
     let more = ranges.len().saturating_sub(SHOWN);

@@ -1,4 +1,4 @@
-//! The paper's statements with their verdicts, to be filtered and searched.
+//! The paper's statements with their verdicts, with a filter and a search.
 
 use std::collections::BTreeMap;
 
@@ -14,7 +14,7 @@ use crate::show::formula::sentence;
 use crate::show::html::words;
 use crate::show::words::{slips, verdict, verdict_word};
 
-/// The fragment that leads to a claim: letters and digits of its id.
+/// URL fragments of claims: letters and digits of their ids.
 fn anchors<'a>(ids: impl Iterator<Item = &'a str>) -> Vec<String> {
     let mut seen: BTreeMap<String, usize> = BTreeMap::new();
     let anchor = |id: &str| {

@@ -1,8 +1,8 @@
-//! The report as one HTML page that needs nothing beside it: no network, no font, no other file.
+//! The report as one self-contained HTML page: no network, no font, no other file.
 //!
-//! It opens with the answer; then sections stand in a referee's order of reading, as far as the machine has what they are about. Whatever is shown comes from the [`Report`]; chosen here are words,
-//! order and digits. A number that was computed stands in a `data` element whose value has all the digits that the document has;
-//! numbers in captions and sentences are the document's words.
+//! The page begins with the answer. Then its sections follow in a referee's order of reading, where the machine has their subject. All
+//! contents come from the [`Report`]; only words, order and digits are chosen here. A computed number is in a `data` element whose value
+//! has all the digits of the document. Numbers in captions and sentences are part of the document's words.
 
 mod answer;
 mod ledger;
@@ -41,16 +41,16 @@ const SCRIPTS: [&str; 5] = [
     include_str!("explain.js"),
 ];
 
-/// Why there is no page.
+/// Reason why there is no page.
 #[derive(Debug, thiserror::Error)]
 pub enum HtmlError {
     /// A figure could not be written.
     #[error("figure: {0}")]
     Figure(#[from] SvgError),
-    /// A figure's data could not be packed.
+    /// A figure's data could not be compressed.
     #[error("data of a figure: {0}")]
     Packed(#[from] std::io::Error),
-    /// A number stands for what the table of links does not know, or it does not read.
+    /// A number's name is not in the table of links, or the table is not valid.
     #[error(transparent)]
     Explanation(#[from] ExplainError),
     /// The slider's data could not be written.
@@ -58,10 +58,10 @@ pub enum HtmlError {
     Data(#[from] serde_json::Error),
 }
 
-/// The page.
+/// Renders the page.
 pub fn render(report: &Report) -> Result<String, HtmlError> {
     let found = report.verification.as_ref().ok();
-    // Of blocks that begin with a heading, which the page has in other words.
+    // Drops the heading of the blocks: the page has its own.
     let titled = |id, title: &str, of: fn(&Verification) -> Vec<Block>| {
         let blocks = found.map(of).filter(|blocks| !blocks.is_empty())?;
         Some(Section { id, title: title.into(), blocks: blocks.into_iter().skip(1).collect() })
@@ -125,7 +125,7 @@ pub fn render(report: &Report) -> Result<String, HtmlError> {
     Ok(foreign::visible(&page.into_string()).into_owned())
 }
 
-/// Text packed as a browser unpacks it.
+/// Compresses text in the form that a browser unpacks.
 fn packed(text: &str) -> Result<String, std::io::Error> {
     let mut packer = ZlibEncoder::new(Vec::new(), Compression::best());
     packer.write_all(text.as_bytes())?;

@@ -1,4 +1,4 @@
-//! What the model is.
+//! The model.
 
 use maud::{Markup, html};
 
@@ -9,7 +9,7 @@ use crate::show::block::{Block, Column, Section, Span, Table, Words, about, word
 use crate::show::digits::Digits;
 use crate::show::words::symbol;
 
-/// Rows of a table that is not folded away.
+/// Most rows of a table that is not folded.
 const LONG: usize = 24;
 
 pub(crate) fn section(report: &Report) -> Result<Section, HtmlError> {

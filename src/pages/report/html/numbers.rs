@@ -1,4 +1,4 @@
-//! What each number of the page stands for: what `explain` says, folded away here and shown where a number is clicked.
+//! Meaning of each number of the page: the text of `explain`, folded here and shown when a number is clicked.
 
 use maud::html;
 
@@ -9,7 +9,7 @@ use crate::report::Report;
 use crate::show::block::{Block, Section, Span, Words, in_units, words};
 use crate::show::html::blocks;
 
-/// Of every name that the blocks of these sections stand for.
+/// Section with an explanation for every name in these sections.
 pub(crate) fn section(report: &Report, sections: &[Section]) -> Result<Section, HtmlError> {
     let mut names: Vec<&str> = Vec::new();
     sections.iter().for_each(|section| of_blocks(&section.blocks, &mut names));
@@ -31,7 +31,7 @@ pub(crate) fn section(report: &Report, sections: &[Section]) -> Result<Section, 
     Ok(Section { id: "numbers", title: words!["Where each number comes from"], blocks: parts })
 }
 
-/// In the order in which the page has them.
+/// Adds a name that is not in the list yet, which keeps the order of the page.
 fn named<'a>(name: &'a str, names: &mut Vec<&'a str>) {
     if !names.contains(&name) {
         names.push(name);

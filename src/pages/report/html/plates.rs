@@ -9,10 +9,10 @@ use crate::report::Report;
 use crate::show::block::{Block, Section};
 use crate::show::csv;
 
-/// The figure that stands with the model.
+/// Name of the figure beside the model.
 pub(crate) const CAM: &str = "cam";
 
-/// Those that there are; nothing where there are none but the one that stands with the model.
+/// Section of the available figures; `None` if the only one is beside the model.
 pub(crate) fn section(report: &Report) -> Result<Option<Section>, HtmlError> {
     let there: Vec<&Plate> = report.plates.iter().filter(|plate| plate.drawn.is_ok()).collect();
     if there.iter().all(|plate| plate.id == CAM) {
@@ -30,19 +30,19 @@ fn elsewhere(plate: &Plate, report: &Report) -> Markup {
     html! { p.note { (place(plate, report)) a href={ "#plate-" (plate.id) } { (plate.title) } " stands with the model." } }
 }
 
-/// A figure on a telephone: as wide as that, and its letters as high as those around it.
+/// Look of a figure on a telephone: narrow, with letters as large as the surrounding text.
 fn narrow() -> Look {
-    /// Points, of those that a page is wide.
+    /// Width of a telephone's screen, points, on the scale on which a page has its width.
     const PHONE: f64 = 250.0;
     Look { width: Some(PHONE), untitled: true, ..Look::default() }
 }
 
-/// The paper's figure, for the paper's model: those of another one are none of the paper's.
+/// Number of the paper's figure, shown only for the paper's model.
 fn place(plate: &Plate, report: &Report) -> Markup {
     html! { @if report.is_paper && !plate.place.is_empty() { span.place { (plate.place) ". " } } }
 }
 
-/// A figure with its caption, the paper's figure that it redraws, and the command that makes it.
+/// A figure with its caption, the number of the paper's figure, and the command that draws it.
 pub(crate) fn plate(plate: &Plate, report: &Report) -> Result<Block, HtmlError> {
     let (drawing, caption) = match &plate.drawn {
         Ok(Drawn { figure, caption }) => {

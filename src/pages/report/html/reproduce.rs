@@ -1,4 +1,4 @@
-//! How to do it again.
+//! Commands that reproduce the report.
 
 use crate::report::{Report, VERSION};
 use crate::show::block::{Block, Section, Span, Words, words};

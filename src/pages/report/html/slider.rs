@@ -1,4 +1,4 @@
-//! The slider over speed: its frame, its data, and the same as a table.
+//! The slider over speed: its frame, its data, and the data as a table.
 
 use maud::{Markup, html};
 
@@ -10,7 +10,7 @@ use crate::show::digits::Digits;
 use crate::show::html::wide;
 use crate::show::words;
 
-/// Nothing where there is no motion to lead through a corner impact.
+/// Section of the slider; `None` if there is no motion through a corner impact.
 pub(crate) fn section(report: &Report) -> Result<Option<Section>, HtmlError> {
     let Ok(through) = &report.through else { return Ok(None) };
     let blocks = vec![
@@ -21,7 +21,7 @@ pub(crate) fn section(report: &Report) -> Result<Option<Section>, HtmlError> {
     Ok(Some(Section { id: "through", title: "Through the corner impact".into(), blocks }))
 }
 
-/// What the script reads.
+/// Data for the script.
 fn data(through: &ThroughCorner) -> Result<Markup, HtmlError> {
     let data = serde_json::to_string(through)?;
     Ok(html! { script type="text/plain" id="through-data" { (packed(&data)?) } })

@@ -1,4 +1,4 @@
-//! What the follower does at other speeds.
+//! Motions of the follower at other speeds.
 
 use crate::pages::report::html::HtmlError;
 use crate::pages::report::html::plates::plate;

@@ -1,4 +1,4 @@
-//! The headline: what agrees, to how many digits, and what does not.
+//! The headline: agreement, its number of digits, and disagreements.
 
 use maud::html;
 
@@ -10,7 +10,7 @@ use crate::show::digits::Digits;
 use crate::show::words::{self, quantity, route, slips, spoken};
 use crate::study::verify::Verification;
 
-/// Nothing where there was nothing to verify.
+/// The headline; `None` if there was nothing to verify.
 pub(crate) fn section(report: &Report) -> Option<Section> {
     let found = report.verification.as_ref().ok()?;
     let (class, verdict) = match report.agrees {
@@ -26,7 +26,7 @@ pub(crate) fn section(report: &Report) -> Option<Section> {
     Some(Section { id: "findings", title: "Findings".into(), blocks })
 }
 
-/// Words that stand out in a sentence.
+/// Emphasized words in a sentence.
 fn strong(text: &str) -> Words {
     (Mark::Strong, text).into()
 }
