@@ -51,7 +51,8 @@ impl Stability {
     }
 
     /// By the range of |tr M|, that of 1 + det M, and whether det M is below 1; none where a multiplier may be inside or outside.
-    fn of_trace([least, most]: [f64; 2], [low, high]: [f64; 2], loses: bool) -> Option<Self> {
+    #[doc(hidden)]
+    pub fn of_trace([least, most]: [f64; 2], [low, high]: [f64; 2], loses: bool) -> Option<Self> {
         if least > high {
             Some(Self::Unstable)
         } else if most < low {
@@ -75,7 +76,8 @@ pub struct Judgement {
 }
 
 /// A 2x2 matrix by rows, whose entries are known to lie in intervals.
-type Rows = [[Interval; 2]; 2];
+#[doc(hidden)]
+pub type Rows = [[Interval; 2]; 2];
 
 /// The angle, rad, and the velocity before, m/s, of an impact.
 pub(super) type Place = [Interval; 2];
@@ -128,7 +130,8 @@ fn middle(rows: &Rows) -> Matrix2<f64> {
 /// ```text
 /// tr(|P R| |dF|)        2 u tr(|R| |F| |P|)        at most
 /// ```
-fn trace(factors: &[Rows]) -> (f64, f64) {
+#[doc(hidden)]
+pub fn trace(factors: &[Rows]) -> (f64, f64) {
     let mut after = vec![Matrix2::<f64>::identity()];
     for factor in factors.iter().skip(1).rev() {
         let last = after[after.len() - 1];
@@ -149,7 +152,8 @@ fn trace(factors: &[Rows]) -> (f64, f64) {
 ///
 /// A computed multiplier mu misses the true characteristic polynomial by p, and the true multipliers by d1 and d2 with d1 d2 = p: the
 /// nearer one by the root of p at most, and by 2 p/g where they are as far apart as g.
-fn multipliers_error(matrix: &Matrix2<f64>, (trace, error): (f64, f64), determinant: f64) -> f64 {
+#[doc(hidden)]
+pub fn multipliers_error(matrix: &Matrix2<f64>, (trace, error): (f64, f64), determinant: f64) -> f64 {
     let pair = eigenvalues(matrix);
     let terms = (matrix[(0, 0)] * matrix[(1, 1)]).abs() + (matrix[(0, 1)] * matrix[(1, 0)]).abs();
     let off = (matrix.determinant() - determinant).abs() + 2.0 * tolerance::ULP.value * terms;
@@ -230,68 +234,4 @@ impl Judgement {
 /// Whether impacts or flights lose anything, so that det M is below 1.
 fn loses(machine: &Machine) -> bool {
     machine.restitution() < 1.0 || machine.flight().zeta() > 0.0
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    const PART: f64 = 1e-6;
-
-    fn exactly(entries: [[f64; 2]; 2]) -> Rows {
-        entries.map(|row| row.map(Interval::from))
-    }
-
-    fn close(told: f64, expected: f64) {
-        assert!((told - expected).abs() <= 1e-3 * expected.abs(), "{told:e} {expected:e}");
-    }
-
-    /// Each entry of each factor in turn is moved, and the trace of the product taken anew.
-    #[test]
-    fn the_error_of_a_trace_is_what_its_entries_move_it_by() {
-        let plain = [[[2.0, 1.0], [0.5, -3.0]], [[1.0, -0.2], [4.0, 1.0]], [[0.3, 7.0], [-1.0, 2.0]]];
-        let product = |of: &[[[f64; 2]; 2]; 3]| {
-            let [first, second, third] = of.map(|rows| Matrix2::from_fn(|row, column| rows[row][column]));
-            (third * second * first).trace()
-        };
-        let mut expected = 0.0;
-        for (factor, row, column) in (0..12).map(|index| (index / 4, index / 2 % 2, index % 2)) {
-            let mut moved = plain;
-            moved[factor][row][column] += PART;
-            expected += (product(&moved) - product(&plain)).abs();
-        }
-        let around = |middle: f64| Interval::new(middle - PART, middle + PART);
-        let (middle, error) = trace(&plain.map(|rows| rows.map(|row| row.map(around))));
-        close(middle, product(&plain));
-        close(error, expected);
-        // Of one factor alone what rounding makes of its diagonal.
-        close(trace(&[exactly([[3.0, 9.0], [9.0, -5.0]])]).1, 16.0 * tolerance::ULP.value);
-    }
-
-    #[test]
-    fn a_multiplier_is_off_by_its_polynomial_over_the_gap_or_by_the_root_of_it() {
-        let [apart, double] = [Matrix2::new(3.0, 0.0, 0.0, 1.0), Matrix2::identity()];
-        close(multipliers_error(&apart, (4.0 + PART, PART), 3.0), 6.0 * PART);
-        close(multipliers_error(&apart, (4.0, 0.0), 3.0 + PART), PART);
-        close(multipliers_error(&double, (2.0, 1e-8), 1.0), 1e-4);
-        for matrix in [Matrix2::new(1e3, 0.0, 0.0, -1e3), Matrix2::new(0.0, 1e3, 1e3, 0.0)] {
-            close(multipliers_error(&matrix, (0.0, 0.0), -1e6), 2e3 * tolerance::ULP.value);
-        }
-        let turning = Matrix2::new(0.0, 1.0, -1.0, 0.0);
-        close(multipliers_error(&turning, (0.0, PART), 1.0), PART);
-        assert!(multipliers_error(&Matrix2::from_element(f64::NAN), (0.0, 0.0), 1.0).is_nan());
-    }
-
-    #[test]
-    fn a_modulus_decides_beyond_its_error_and_a_trace_between_its_bounds() {
-        let of = |modulus| Stability::of_modulus(modulus, 0.1);
-        assert_eq!(
-            [0.8, 0.95, 1.05, 1.2].map(of),
-            [Stability::Stable, Stability::Neutral, Stability::Neutral, Stability::Unstable]
-        );
-        let of = |size, loses| Stability::of_trace(size, [1.4, 1.6], loses);
-        assert_eq!([of([0.0, 1.3], true), of([0.0, 1.3], false)], [Some(Stability::Stable), Some(Stability::Neutral)]);
-        assert_eq!([of([1.7, 9.0], true), of([1.7, 9.0], false)], [Some(Stability::Unstable); 2]);
-        assert_eq!([[0.0, 1.5], [1.5, 1.5], [1.5, 9.0]].map(|size| of(size, true)), [None; 3]);
-    }
 }

@@ -4,14 +4,17 @@ use std::f64::consts::TAU;
 
 use corner_impact::cam::Cam;
 use corner_impact::figures;
+use corner_impact::interval::Interval;
 use corner_impact::known::Known;
 use corner_impact::model::Model;
 use corner_impact::orbit::branch::{Branch, Following};
+use corner_impact::orbit::stability::{Rows, multipliers_error, trace};
 use corner_impact::orbit::{Course, Parameter, PeriodicOrbit, Search, Stability, search};
 use corner_impact::progress::Unwatched;
 use corner_impact::show::Paged;
 use corner_impact::simulate::{Machine, angular_velocity};
 use corner_impact::study::orbit::{Orbits, Wanted, orbits};
+use nalgebra::Matrix2;
 use serde_json::Value;
 
 const GRAVITY: f64 = 9.81;
@@ -197,4 +200,85 @@ fn neighbouring_places_that_are_undecided_are_one() {
             .iter()
             .any(|it| it.cam_angles.len() == 1 && it.cam_angles[0][0] < base[0] && base[1] < it.cam_angles[0][1])
     );
+}
+
+/// How far the entries of a matrix are moved.
+const PART: f64 = 1e-6;
+
+fn exactly(entries: [[f64; 2]; 2]) -> Rows {
+    entries.map(|row| row.map(Interval::from))
+}
+
+fn close(told: f64, expected: f64) {
+    assert!((told - expected).abs() <= 1e-3 * expected.abs(), "{told:e} {expected:e}");
+}
+
+/// Each entry of each factor in turn is moved, and the trace of the product taken anew.
+#[test]
+fn the_error_of_a_trace_is_what_its_entries_move_it_by() {
+    let plain = [[[2.0, 1.0], [0.5, -3.0]], [[1.0, -0.2], [4.0, 1.0]], [[0.3, 7.0], [-1.0, 2.0]]];
+    let product = |of: &[[[f64; 2]; 2]; 3]| {
+        let [first, second, third] = of.map(|rows| Matrix2::from_fn(|row, column| rows[row][column]));
+        (third * second * first).trace()
+    };
+    let mut expected = 0.0;
+    for (factor, row, column) in (0..12).map(|index| (index / 4, index / 2 % 2, index % 2)) {
+        let mut moved = plain;
+        moved[factor][row][column] += PART;
+        expected += (product(&moved) - product(&plain)).abs();
+    }
+    let around = |middle: f64| Interval::new(middle - PART, middle + PART);
+    let (middle, error) = trace(&plain.map(|rows| rows.map(|row| row.map(around))));
+    close(middle, product(&plain));
+    close(error, expected);
+    // Of one factor alone what rounding makes of its diagonal.
+    close(trace(&[exactly([[3.0, 9.0], [9.0, -5.0]])]).1, 16.0 * f64::EPSILON);
+}
+
+#[test]
+fn a_multiplier_is_off_by_its_polynomial_over_the_gap_or_by_the_root_of_it() {
+    let [apart, double] = [Matrix2::new(3.0, 0.0, 0.0, 1.0), Matrix2::identity()];
+    close(multipliers_error(&apart, (4.0 + PART, PART), 3.0), 6.0 * PART);
+    close(multipliers_error(&apart, (4.0, 0.0), 3.0 + PART), PART);
+    close(multipliers_error(&double, (2.0, 1e-8), 1.0), 1e-4);
+    for matrix in [Matrix2::new(1e3, 0.0, 0.0, -1e3), Matrix2::new(0.0, 1e3, 1e3, 0.0)] {
+        close(multipliers_error(&matrix, (0.0, 0.0), -1e6), 2e3 * f64::EPSILON);
+    }
+    let turning = Matrix2::new(0.0, 1.0, -1.0, 0.0);
+    close(multipliers_error(&turning, (0.0, PART), 1.0), PART);
+    assert!(multipliers_error(&Matrix2::from_element(f64::NAN), (0.0, 0.0), 1.0).is_nan());
+}
+
+#[test]
+fn a_modulus_decides_beyond_its_error_and_a_trace_between_its_bounds() {
+    let of = |modulus| Stability::of_modulus(modulus, 0.1);
+    assert_eq!(
+        [0.8, 0.95, 1.05, 1.2].map(of),
+        [Stability::Stable, Stability::Neutral, Stability::Neutral, Stability::Unstable]
+    );
+    let of = |size, loses| Stability::of_trace(size, [1.4, 1.6], loses);
+    assert_eq!([of([0.0, 1.3], true), of([0.0, 1.3], false)], [Some(Stability::Stable), Some(Stability::Neutral)]);
+    assert_eq!([of([1.7, 9.0], true), of([1.7, 9.0], false)], [Some(Stability::Unstable); 2]);
+    assert_eq!([[0.0, 1.5], [1.5, 1.5], [1.5, 9.0]].map(|size| of(size, true)), [None; 3]);
+}
+
+/// A follower that stays above the cam has the multipliers of its free oscillation, `e^{(-zeta +- i nu) T}`: neutral without a damper.
+#[test]
+fn an_orbit_without_impacts_is_neutral_or_damped() {
+    let (omega, period) = (10.0_f64, TAU / angular_velocity(300.0));
+    for damping in [0.0, 1e-9, 0.4] {
+        let text = format!(
+            "[follower]\nmass = 1.0\nrestitution = 0.7\ndamping = {damping:e}\nstiffness = {:?}\ngravity = 0.0\nrest_position = 0.05\n\
+             [cam]\nlaw = \"harmonic\"\noffset = 0.0\namplitudes = [0.01]\nphases_deg = [0.0]\n",
+            omega * omega
+        );
+        let all = found(&Model::parse("wall.toml", &text).unwrap(), 300.0, None).orbits;
+        let orbit = all.iter().find(|orbit| orbit.course == Course::Free).unwrap();
+        let expected = if damping > 0.0 { Stability::Stable } else { Stability::Neutral };
+        assert_eq!(orbit.judgement.stability, expected, "{damping}");
+        assert!(orbit.judgement.error < 1e-13, "{damping}: {:e}", orbit.judgement.error);
+        for multiplier in orbit.multipliers() {
+            close(multiplier.modulus(), (-0.5 * damping * period).exp());
+        }
+    }
 }
