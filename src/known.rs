@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 /// How a result is known; the strongest first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Deserialize, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Known {
+pub enum Evidence {
     /// By algebra, or by enclosures that leave no case out.
     Proved,
     /// By a computation in rounded numbers, held against a tolerance.
@@ -16,9 +16,9 @@ pub enum Known {
     Read,
 }
 
-named!(Known);
+named!(Evidence);
 
-impl Known {
+impl Evidence {
     /// Proved where something is; else no more than what a search says.
     pub fn proved_if(is_proved: bool) -> Self {
         if is_proved { Self::Proved } else { Self::Sampled }
@@ -33,5 +33,5 @@ pub struct Complete {
     /// Impacts in one period.
     pub impacts: usize,
     /// Proved where no place is left undecided.
-    pub known: Known,
+    pub known: Evidence,
 }

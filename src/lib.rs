@@ -45,8 +45,8 @@
 //! Data moves down; no stage uses one below it, and a test holds the code to that. `tolerance` stands above all: every
 //! threshold is a row of its one table; so do `elementary`, sine and exponential with the same bits on every processor, `known`, the
 //! words for how a result is known, `progress`, by which long work
-//! tells how far it has come, `stop`, by which it is ended, `bracket`, which finds roots, `interval`, which proves that it has found all, `estimate`, a number with its error, `ball`, a number with the radius that is proved, `draw`, which turns a
-//! plot into SVG or PNG and knows no mechanics, `foreign`, which shows text of somebody else, and `file`, which writes files whole or not at all and reads them up to
+//! tells how far it has come, `cancel`, by which it is ended, `bracket`, which finds roots, `interval`, which proves that it has found all, `estimate`, a number with its error, `ball`, a number with the radius that is proved, `draw`, which turns a
+//! plot into SVG or PNG and knows no mechanics, `untrusted`, which shows text of somebody else, and `file`, which writes files whole or not at all and reads them up to
 //! a limit.
 //!
 //! ```
@@ -71,9 +71,9 @@ pub mod known;
 
 pub mod progress;
 
-pub mod stop;
+pub mod cancel;
 
-pub mod foreign;
+pub mod untrusted;
 
 pub mod bracket;
 pub mod estimate;

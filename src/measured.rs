@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::cam::{Cam, Fit, Stray, fit, spread, strays};
-use crate::model::{Model, ModelError, Reading, Row, Smoothing, TableProfile, Tolerance};
+use crate::model::{Model, ModelError, Reading, Smoothing, SmoothingTolerance, TableProfile, TableRow};
 use crate::tolerance;
 
 /// Accuracy of a measured cam.
@@ -64,7 +64,7 @@ pub type LikelyCam = (Model, Cam);
 
 /// The best guess at a measured cam, and other cams that are equally likely, as models.
 #[derive(Clone, Debug)]
-pub struct Likely {
+pub struct PlausibleCams {
     /// Accuracy of the model's cam.
     pub measured: Measured,
     /// Model with the smoothing spline; none if the rows have no noise that a spline through them would follow.
@@ -78,7 +78,7 @@ pub struct Likely {
 /// Number of tables that might have been measured: the largest of so many deviations is near two standard deviations.
 const TABLES: u64 = 16;
 
-impl Likely {
+impl PlausibleCams {
     /// Estimates the accuracy of a model's cam. None if the cam is not given by a table, or if the table has too few rows.
     ///
     /// A spline through the rows needs no smoothing: if no smooth motion can be fitted to them, only their noise is unknown.
@@ -290,7 +290,7 @@ impl Remarks {
             return Ok(Self { strays: strays(profile), ..Self::default() });
         };
         let spread = spread(profile);
-        let within = if let Tolerance::Within(within) = own.tolerance { Some(within) } else { None };
+        let within = if let SmoothingTolerance::Within(within) = own.tolerance { Some(within) } else { None };
         let loose = within.filter(|within| spread < tolerance::SMOOTHED_AWAY.value * within);
         Ok(Self {
             strays: strays(profile),
@@ -315,7 +315,7 @@ fn contradicted(
         _ => return Ok(None),
     };
     let cam = Cam::new(model)?;
-    let off = |row: &Row| (cam.lift(row.angle_deg.to_radians()).value - row.lift).abs();
+    let off = |row: &TableRow| (cam.lift(row.angle_deg.to_radians()).value - row.lift).abs();
     let worst = profile.rows.iter().map(|row| (row.angle_deg, off(row))).max_by(|one, two| one.1.total_cmp(&two.1));
     let least = tolerance::NOISE_SEEN.value * profile.rise();
     let is_far = |(_, off): &(f64, f64)| *off > FAR * within.max(least);
@@ -324,7 +324,7 @@ fn contradicted(
 
 /// Uncertainty of a cam from the noise of its table.
 #[derive(Clone, Debug)]
-pub enum Openness {
+pub enum CamUncertainty {
     /// Estimated from equally likely cams.
     Told(Box<Measured>),
     /// Spread of the rows, m, of a table with too many rows for a quick estimate.
@@ -333,7 +333,7 @@ pub enum Openness {
     Unknown(String),
 }
 
-impl Openness {
+impl CamUncertainty {
     /// Estimates the uncertainty of a model's cam; none if the rows have no noise.
     pub fn of(model: &Model) -> Result<Option<Self>, ModelError> {
         /// Number of rows above which the estimate takes longer than many commands.
@@ -346,7 +346,7 @@ impl Openness {
         if profile.rows.len() > MOST_ROWS {
             return Ok(Some(Self::Noise(spread)));
         }
-        Ok(Likely::of(model)?.and_then(|Likely { measured, .. }| match measured.noise_unknown {
+        Ok(PlausibleCams::of(model)?.and_then(|PlausibleCams { measured, .. }| match measured.noise_unknown {
             Some(why) => Some(Self::Unknown(why)),
             None => measured.is_noisy.then(|| Self::Told(Box::new(measured))),
         }))

@@ -12,8 +12,8 @@ use std::process::{Child, Command, ExitStatus, Stdio};
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
+use crate::cancel;
 use crate::file::{Scratch, Started};
-use crate::stop;
 
 /// The scripts, the modules that they import and the file that they read, by their paths in the project.
 const FILES: [(&str, &str); 24] = [
@@ -131,7 +131,7 @@ fn talk(mut child: Child, input: Vec<u8>, limit: Duration) -> std::io::Result<Ta
         let stderr = pipes.2.map(|pipe| scope.spawn(|| collect(pipe)));
         let start = Instant::now();
         let status = loop {
-            stop::ask();
+            cancel::check_now();
             match child.child().try_wait()? {
                 Some(status) => break Some(status),
                 None if start.elapsed() > limit => {

@@ -127,7 +127,7 @@ impl Periodic {
 
 /// Follower and cam at one moment of a trace.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sample {
+pub struct TraceSample {
     /// The angle turned since the cam passed 0 in revolution 0, rad.
     pub turned: f64,
     /// The cam's angle, rad, in `[0, 2 pi)`.
@@ -153,13 +153,13 @@ pub fn trace(
     mut motion: Motion,
     revolutions: u64,
     samples: u32,
-) -> Result<(Vec<Sample>, Vec<Event>), SimulateError> {
+) -> Result<(Vec<TraceSample>, Vec<Event>), SimulateError> {
     let omega = machine.angular_velocity();
     // N/m = c'' - (b q' + k (q - rest) + m g)/m, of which the last is the acceleration in flight
     let pressing = |lift: Lift, state: State| omega * omega * lift.curvature - machine.flight().acceleration(state);
     let sample = |motion: &Motion| {
         let lift = machine.cam().lift(motion.cam_angle);
-        Sample {
+        TraceSample {
             turned: motion.revolution as f64 * TAU + motion.cam_angle,
             cam_angle: motion.cam_angle,
             state: motion.state,
@@ -187,7 +187,7 @@ pub fn trace(
                 let state = State { position: event.position, velocity };
                 // Contact ends where the cam no longer presses.
                 let sticks = contact && event.kind == EventKind::Stick;
-                Sample {
+                TraceSample {
                     turned: event.turned_since(0.0),
                     cam_angle: event.cam_angle,
                     state,

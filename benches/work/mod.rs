@@ -12,7 +12,7 @@ use corner_impact::model::{Model, OSORIO_2008};
 use corner_impact::orbit::Parameter;
 use corner_impact::simulate::{Machine, angular_velocity};
 use corner_impact::study::survey::{
-    Axis, Beginning, Counted, Following, Placed, Section, Start, Survey, Sweep, SweepError, Values,
+    Axis, Beginning, Counted, Placed, Section, Start, Survey, Sweep, SweepError, SweepStart, Values,
 };
 
 use crate::baseline::{Baseline, Place};
@@ -111,7 +111,7 @@ pub fn sweep() -> Sweep {
     Sweep {
         over,
         starts: Beginning::One(Start { cam_angle: 2.62112450116623235 + PI, follower: Placed::At(state) }),
-        following: Following::Nothing,
+        following: SweepStart::Nothing,
         transient: 300,
         record: 100,
         section: Section::Impacts,

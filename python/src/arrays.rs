@@ -3,7 +3,7 @@
 use std::mem::take;
 
 use corner_impact::simulate::{Event, EventKind};
-use corner_impact::study::survey::{Block, Row, Seen};
+use corner_impact::study::survey::{RecordBlock, RecordRow, Seen};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -97,8 +97,8 @@ pub(crate) struct Rows {
     growth_error: Vec<f64>,
 }
 
-impl Block for Rows {
-    fn push(&mut self, row: &Row) {
+impl RecordBlock for Rows {
+    fn push(&mut self, row: &RecordRow) {
         self.value.push(row.value);
         self.revolution.push(row.revolution as i64);
         match &row.seen {

@@ -20,11 +20,11 @@ use corner_impact::study::certify::{certify, proved_counts, proved_orbits};
 use corner_impact::study::compare::compare;
 use corner_impact::study::design::{Asked, design};
 use corner_impact::study::locate::locate;
-use corner_impact::study::orbit::{Wanted, orbits};
+use corner_impact::study::orbit::{OrbitQuery, orbits};
 use corner_impact::study::simulate::{self, Sight, Simulation, Until};
 use corner_impact::study::speeds::{speeds, usual_range};
 use corner_impact::study::survey::{
-    Beginning, Following, Growth, Over, Sample, Section, Survey, Sweep, SweepError, growth,
+    Beginning, Growth, Over, Sample, Section, Survey, Sweep, SweepError, SweepStart, growth,
 };
 use corner_impact::study::verify::{External, verify};
 use numpy::{PyArray1, PyArrayMethods};
@@ -236,7 +236,7 @@ impl Model {
             machine.revolve(&mut first, transient)?;
             let mut events = Events::new(start.cam_angle, machine.angular_velocity());
             let until = Until::Revolutions(revolutions);
-            let wanted = simulate::Wanted { until, events: true, strobe: None, drawn: 0, long_run: None };
+            let wanted = simulate::RunRequest { until, events: true, strobe: None, drawn: 0, long_run: None };
             let simulation = Simulation::of(&self.model.name, rpm, machine, first);
             let run = simulation.run(wanted, &Unwatched, |sight| {
                 if let Sight::Events(seen) = sight {
@@ -291,9 +291,9 @@ impl Model {
             Some(angle) => return refused(format!("strobe = {angle} must be a finite number")),
         };
         let following = match follow {
-            None => Following::Nothing,
-            Some("up") => Following::Up,
-            Some("down") => Following::Down,
+            None => SweepStart::Nothing,
+            Some("up") => SweepStart::Up,
+            Some("down") => SweepStart::Down,
             Some(other) => return refused(format!("follow = {other:?} must be None, \"up\" or \"down\"")),
         };
         let budget = Budget {
@@ -426,8 +426,8 @@ impl Model {
     ) -> PyResult<Bound<'py, PyDict>> {
         let revolutions = within("revolutions", revolutions, [1, Search::MOST_REVOLUTIONS])?;
         let wanted = match (guess, impacts) {
-            (None, impacts) => Wanted::All(Search { revolutions, impacts }),
-            (Some((position, velocity)), None) => Wanted::Near(State { position, velocity }, revolutions),
+            (None, impacts) => OrbitQuery::All(Search { revolutions, impacts }),
+            (Some((position, velocity)), None) => OrbitQuery::Near(State { position, velocity }, revolutions),
             (Some(_), Some(_)) => {
                 return refused("guess and impacts: it is one orbit, or those of so many impacts".into());
             }

@@ -5,7 +5,7 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use corner_impact::stop;
+use corner_impact::cancel;
 use corner_impact::study::survey::{SweepError, threads};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -34,7 +34,7 @@ pub(crate) fn alone<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) ->
         asked.lock().unwrap_or_else(PoisonError::into_inner).raised = raised;
         is_raised
     };
-    let done = py.detach(|| stop::unless(Arc::new(question), work));
+    let done = py.detach(|| cancel::run(Arc::new(question), work));
     done.ok_or_else(|| {
         let raised = looks.lock().unwrap_or_else(PoisonError::into_inner).raised.take();
         raised.unwrap_or_else(ended)
@@ -49,7 +49,7 @@ pub(crate) fn shared<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -
             let (asked, (sender, receiver)) = (ends.clone(), channel());
             let question = Arc::new(move || asked.load(Ordering::Relaxed));
             let worker = scope.spawn(move || {
-                let done = stop::unless(question, work);
+                let done = cancel::run(question, work);
                 // The other end is there until this thread has ended.
                 let _ = sender.send(());
                 done

@@ -141,7 +141,7 @@ fn compare_on_scale(
 
 /// What a route finds of a quantity.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Found {
+pub struct RouteValue {
     /// The quantity.
     pub quantity: Quantity,
     /// Its entries, rows first.
@@ -151,12 +151,12 @@ pub struct Found {
 }
 
 /// The quantities that routes are compared in, as one of them finds them.
-pub fn quantities(route: &Route) -> Vec<Found> {
+pub fn quantities(route: &Route) -> Vec<RouteValue> {
     let (map, own) = (&route.map, &route.own);
     let rows = |matrix: nalgebra::Matrix2<f64>| matrix.transpose().as_slice().to_vec();
     let flat = |pair: [Eigenvalue; 2]| pair.iter().flat_map(|value| [value.re, value.im]).collect();
     let (derived, both) = (own.eigenvalues.is_some(), route.eigenvalues());
-    let found = |quantity, entries, is_own| Found { quantity, entries, is_own };
+    let found = |quantity, entries, is_own| RouteValue { quantity, entries, is_own };
     let border = own.border.map(|(e, f)| found(Quantity::Border, vec![e[0], e[1], f], true));
     let all = [
         found(Quantity::A(Side::Minus), rows(map.minus.a), true),
@@ -185,7 +185,7 @@ pub fn compare_routes(routes: &[Route]) -> Vec<Agreement> {
             };
             let ((a, b), (other_a, other_b)) = (of(left), of(right));
             let (a, b) = (a.max(other_a), b.max(other_b));
-            let compare = move |(x, y): (Found, Found)| {
+            let compare = move |(x, y): (RouteValue, RouteValue)| {
                 let comparison = match x.quantity {
                     Quantity::Eigenvalues(_) => Comparison::Eigenvalues,
                     _ if integrated => Comparison::Integrated,

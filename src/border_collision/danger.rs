@@ -15,13 +15,13 @@ use nalgebra::Vector2;
 use serde::Serialize;
 
 use super::feigin::{Classification, Speeds};
-use super::local_map::{LocalMap, PeriodicOrbit};
-use super::long_run::{End, Escape};
+use super::local_map::{LocalMap, MapOrbit};
+use super::long_run::{EscapeReason, LocalLongRun};
 use super::outcome::LocalOutcome;
 use super::word::Word;
 use crate::bracket::{Width, halve};
 use crate::elementary;
-use crate::known::Known;
+use crate::known::Evidence;
 use crate::tolerance;
 
 /// A kind of danger.
@@ -42,7 +42,7 @@ pub struct Danger {
     /// Its kind; dangerous where it is both.
     pub kind: DangerKind,
     /// How the kind is known: as well as the weakest of what it rests on.
-    pub known: Known,
+    pub known: Evidence,
     /// The motions that diverge at omega*; none where there are several attractors alone.
     pub divergence: Option<Divergence>,
     /// The attractors on either side.
@@ -63,7 +63,7 @@ pub struct Divergence {
     /// then 1 stands for the motions of every start but the corner impact itself.
     pub share: f64,
     /// Computed by intervals on the doubles of the map; proved where these hold the matrices of a certificate.
-    pub known: Known,
+    pub known: Evidence,
     /// The word that one of them repeats, and by which factor it grows each time.
     pub follows: Option<(Word, f64)>,
 }
@@ -81,9 +81,9 @@ pub struct LocalAttractor {
     /// At which speeds.
     pub speeds: Speeds,
     /// How that it is one is known.
-    pub known: Known,
+    pub known: Evidence,
     /// The motion.
-    pub end: End,
+    pub end: LocalLongRun,
     /// Which disturbances of it return; none of chaos, and none where the basin is not looked at.
     pub returns: Option<Returns>,
 }
@@ -109,7 +109,7 @@ pub struct Returns {
 }
 
 document!(Returns as it {
-    known: Known::Sampled,
+    known: Evidence::Sampled,
     position_m_per_rpm: it.position,
     velocity_m_s_per_rpm: it.velocity,
     any_m_per_rpm: it.any,
@@ -127,7 +127,7 @@ impl LocalAttractor {
     /// The word of a periodic orbit.
     pub fn word(&self) -> Option<&Word> {
         match &self.end {
-            End::Periodic(orbit) => Some(&orbit.word),
+            LocalLongRun::Periodic(orbit) => Some(&orbit.word),
             _ => None,
         }
     }
@@ -142,10 +142,10 @@ impl Danger {
     /// Takes note of what is proved: the share of directions in which motions diverge, and that every attractor is one.
     pub fn prove(&mut self, share: f64, is_attracting: bool) {
         if let Some(divergence) = self.divergence.as_mut().filter(|_| share > 0.0) {
-            (divergence.share, divergence.known) = (share, Known::Proved);
+            (divergence.share, divergence.known) = (share, Evidence::Proved);
             if is_attracting && self.attractors.iter().all(|attractor| attractor.end.fixed_on().is_some()) {
-                self.attractors.iter_mut().for_each(|attractor| attractor.known = Known::Proved);
-                self.known = Known::Proved;
+                self.attractors.iter_mut().for_each(|attractor| attractor.known = Evidence::Proved);
+                self.known = Evidence::Proved;
             }
         }
     }
@@ -164,9 +164,9 @@ impl LocalMap {
             None => return None,
         };
         let known = attractors.iter().map(|attractor| attractor.known);
-        let known = known.chain(divergence.as_ref().map(|it| it.known)).max().unwrap_or(Known::Sampled);
+        let known = known.chain(divergence.as_ref().map(|it| it.known)).max().unwrap_or(Evidence::Sampled);
         for attractor in &mut attractors {
-            if let End::Periodic(orbit) = &attractor.end {
+            if let LocalLongRun::Periodic(orbit) = &attractor.end {
                 attractor.returns = Some(self.returns(orbit, attractor.speeds, period));
             }
         }
@@ -183,24 +183,24 @@ impl LocalMap {
             let angle = TAU * (f64::from(index) + 0.3) / f64::from(SAMPLED);
             self.end(Vector2::new(elementary::cos(angle) * scales[0], elementary::sin(angle) * scales[1]), 0.0)
         };
-        let escapes: Vec<Escape> = (0..SAMPLED)
+        let escapes: Vec<EscapeReason> = (0..SAMPLED)
             .filter_map(|index| match end(index) {
-                End::Escapes(escape) => Some(escape),
+                LocalLongRun::Escapes(escape) => Some(escape),
                 _ => None,
             })
             .collect();
         let follows = escapes.iter().find_map(|escape| match escape {
-            Escape::Follows { word, multiplier } => Some((word.clone(), *multiplier)),
-            Escape::Grown => None,
+            EscapeReason::Follows { word, multiplier } => Some((word.clone(), *multiplier)),
+            EscapeReason::Grown => None,
         });
         let (computed, sampled) =
             (self.homogeneous().diverging(!escapes.is_empty()), escapes.len() as f64 / f64::from(SAMPLED));
-        let (share, known) = if computed > 0.0 { (computed, Known::Computed) } else { (sampled, Known::Sampled) };
+        let (share, known) = if computed > 0.0 { (computed, Evidence::Computed) } else { (sampled, Evidence::Sampled) };
         (share > 0.0).then_some(Divergence { share, known, follows })
     }
 
     /// The disturbances of a stable orbit that return to it.
-    fn returns(&self, orbit: &PeriodicOrbit, speeds: Speeds, period: f64) -> Returns {
+    fn returns(&self, orbit: &MapOrbit, speeds: Speeds, period: f64) -> Returns {
         /// Directions of a disturbance.
         const DIRECTIONS: u32 = 16;
         let mu = if speeds == Speeds::Faster { -1.0 } else { 1.0 };
@@ -226,7 +226,7 @@ impl LocalMap {
     }
 
     /// The smallest disturbance of a point of a stable orbit, in one direction, that does not return to the orbit.
-    fn first_lost(&self, orbit: &PeriodicOrbit, point: Vector2<f64>, along: Vector2<f64>, mu: f64) -> Option<f64> {
+    fn first_lost(&self, orbit: &MapOrbit, point: Vector2<f64>, along: Vector2<f64>, mu: f64) -> Option<f64> {
         /// By how much each disturbance is larger than the one before.
         const GROWTH: f64 = 1.25;
         /// The largest that is tried, in the map's natural units.
@@ -234,7 +234,7 @@ impl LocalMap {
         let unit = 1.0 / along.component_div(&self.units()).norm();
         let word = orbit.word.least_rotation().0;
         let is_lost = |size: f64| match self.end(point + along * size, mu) {
-            End::Periodic(reached) => reached.word.least_rotation().0 != word,
+            LocalLongRun::Periodic(reached) => reached.word.least_rotation().0 != word,
             _ => true,
         };
         let (mut returned, mut size) = (0.0, tolerance::LEAST_DISTURBANCE.value * unit);
@@ -257,11 +257,12 @@ fn attractors(outcome: &LocalOutcome) -> Vec<LocalAttractor> {
     let Some(speeds) = Speeds::of(outcome.mu) else { return Vec::new() };
     let attractor = |end, known| LocalAttractor { speeds, known, end, returns: None };
     let stable = outcome.orbits.iter().filter(|orbit| orbit.stable());
-    let mut all: Vec<_> = stable.map(|orbit| attractor(End::Periodic(orbit.clone()), Known::Computed)).collect();
+    let mut all: Vec<_> =
+        stable.map(|orbit| attractor(LocalLongRun::Periodic(orbit.clone()), Evidence::Computed)).collect();
     for fate in &outcome.fates {
         let known = match &fate.end {
-            End::Periodic(_) => Known::Computed,
-            End::Chaotic(_) => Known::Sampled,
+            LocalLongRun::Periodic(_) => Evidence::Computed,
+            LocalLongRun::Chaotic(_) => Evidence::Sampled,
             _ => continue,
         };
         if !all.iter().any(|other| other.end.is_like(&fate.end)) {

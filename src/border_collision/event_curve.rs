@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::feigin::{Scenario, scenario};
-use crate::orbit::branch::{Branch, BranchPoint, End, GrazeClass, Kind, Special};
+use crate::orbit::branch::{Branch, BranchPoint, End, GrazeClass, Special, SpecialKind};
 use crate::orbit::{Eigenvalue, eigenvalues};
 use crate::tolerance;
 
@@ -46,13 +46,13 @@ pub struct EventPoint {
 }
 
 impl EventPoint {
-    fn new(point: &BranchPoint, kind: Kind) -> Self {
+    fn new(point: &BranchPoint, kind: SpecialKind) -> Self {
         let BranchPoint { rpm, value, orbit, held, special } = point;
         let sides = held.as_ref().map(|held| held.sides.as_slice()).unwrap_or_default();
         let of_sides = |sides: [_; 2]| scenario(&sides).map_or(Happening::Degenerate, Happening::BorderCollision);
         let happening = match (kind, sides) {
-            (Kind::Corner { jump_order: 2, .. }, [minus, plus]) => Some(of_sides([*minus, *plus])),
-            (Kind::Corner { .. }, _) => Some(Happening::NotPiecewiseLinear),
+            (SpecialKind::Corner { jump_order: 2, .. }, [minus, plus]) => Some(of_sides([*minus, *plus])),
+            (SpecialKind::Corner { .. }, _) => Some(Happening::NotPiecewiseLinear),
             _ => held.as_ref().and_then(|held| held.class).map(Happening::Graze),
         };
         Self {
@@ -72,7 +72,7 @@ impl EventPoint {
 #[derive(Clone, Debug, PartialEq)]
 pub struct EventCurve {
     /// The event where the model is as it is.
-    pub kind: Kind,
+    pub kind: SpecialKind,
     pub points: Vec<EventPoint>,
     /// Why it starts and ends where it does.
     pub ends: [End; 2],
@@ -80,7 +80,7 @@ pub struct EventCurve {
 
 impl EventCurve {
     /// The events along a curve of what is `kind` where the model is as it is.
-    pub fn new(curve: &Branch, kind: Kind) -> Self {
+    pub fn new(curve: &Branch, kind: SpecialKind) -> Self {
         let points = curve.points.iter().map(|point| EventPoint::new(point, kind)).collect();
         Self { kind, points, ends: curve.ends.clone() }
     }

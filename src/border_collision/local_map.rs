@@ -25,7 +25,7 @@ pub struct LocalMap {
 
 /// An orbit that repeats a word, wherever its points lie.
 #[derive(Clone, Debug, PartialEq)]
-pub struct PeriodicOrbit {
+pub struct MapOrbit {
     /// The sides it is to visit.
     pub word: Word,
     /// Its points, one for each letter.
@@ -37,7 +37,7 @@ pub struct PeriodicOrbit {
     pub margin: f64,
 }
 
-document!(PeriodicOrbit as orbit {
+document!(MapOrbit as orbit {
     word: orbit.word.to_string(),
     points: orbit.points.iter().map(|point| [point[0], point[1]]).collect::<Vec<_>>(),
     multipliers: orbit.multipliers,
@@ -47,7 +47,7 @@ document!(PeriodicOrbit as orbit {
     margin: orbit.margin,
 });
 
-impl PeriodicOrbit {
+impl MapOrbit {
     /// Whether every point lies on the side of its letter, and not on the border to rounding.
     pub fn admissible(&self) -> bool {
         self.margin > tolerance::DEGENERATE.value
@@ -102,7 +102,7 @@ impl LocalMap {
     }
 
     /// The orbit that repeats `word`; `None` where `det(I - A_W)` is zero to rounding, so that there is none or too many.
-    pub fn orbit(&self, word: &Word, mu: f64) -> Option<PeriodicOrbit> {
+    pub fn orbit(&self, word: &Word, mu: f64) -> Option<MapOrbit> {
         // Each point from its own rotation: carried from one to the next it would lose what the word expands.
         let point = |by: usize| {
             let round = self.along(&word.turned(by));
@@ -121,13 +121,13 @@ impl LocalMap {
         let least = points.iter().zip(word.sides()).map(inward).fold(f64::INFINITY, f64::min);
         let terms = points.iter().map(|x| self.height(*x, mu).1).fold(0.0, f64::max);
         let margin = if terms > 0.0 { least / terms } else { 0.0 };
-        Some(PeriodicOrbit { word: word.clone(), points, multipliers: self.along(word).eigenvalues(), margin })
+        Some(MapOrbit { word: word.clone(), points, multipliers: self.along(word).eigenvalues(), margin })
     }
 
     /// Every admissible periodic orbit with a word of `longest` letters or fewer, the short ones first.
-    pub fn admissible_orbits(&self, mu: f64, longest: usize) -> Vec<PeriodicOrbit> {
+    pub fn admissible_orbits(&self, mu: f64, longest: usize) -> Vec<MapOrbit> {
         let words = Word::primitive(longest);
-        words.iter().filter_map(|word| self.orbit(word, mu)).filter(PeriodicOrbit::admissible).collect()
+        words.iter().filter_map(|word| self.orbit(word, mu)).filter(MapOrbit::admissible).collect()
     }
 }
 

@@ -7,8 +7,8 @@
 
 use nalgebra::{Matrix2, Vector2};
 
-use super::local_map::{LocalMap, PeriodicOrbit};
-use super::trapping::Region;
+use super::local_map::{LocalMap, MapOrbit};
+use super::trapping::TrappingRegion;
 use super::word::Word;
 use crate::cam::Side;
 use crate::corner::map::Eigenvalue;
@@ -18,35 +18,35 @@ use crate::tolerance;
 
 /// Where a motion ends.
 #[derive(Clone, Debug, PartialEq)]
-pub enum End {
+pub enum LocalLongRun {
     /// On a stable periodic orbit; a fixed point for a word of one letter.
-    Periodic(PeriodicOrbit),
+    Periodic(MapOrbit),
     /// In chaos.
-    Chaotic(Chaos),
+    Chaotic(LocalChaos),
     /// In a motion that has not left yet, with its exponent: on a closed curve, not settled, or with no region found that it
     /// stays in, so that it may be a long transient.
     Undecided(Estimate),
     /// At the corner impact itself: at mu = 0 the motion shrinks to nothing.
     Corner,
     /// Nowhere: it grows without bound.
-    Escapes(Escape),
+    Escapes(EscapeReason),
 }
 
 /// A motion that stays and parts neighbours.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Chaos {
+pub struct LocalChaos {
     /// Its largest Lyapunov exponent a step, a natural logarithm.
     pub exponent: Estimate,
     /// What the exponent of no motion is below, by [`super::robust_chaos`]; none where its saddles are not there, and then the
     /// exponent is above 0 as a measured number is.
     pub least_exponent: Option<f64>,
     /// Where it stays.
-    pub region: Region,
+    pub region: TrappingRegion,
 }
 
 /// Why a motion is taken to escape.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Escape {
+pub enum EscapeReason {
     /// It follows a word for ever and grows by a factor each time.
     Follows {
         /// The word.
@@ -94,7 +94,7 @@ impl LocalMap {
     }
 
     /// Where the motion from `start` ends.
-    pub fn end(&self, start: Vector2<f64>, mu: f64) -> End {
+    pub fn end(&self, start: Vector2<f64>, mu: f64) -> LocalLongRun {
         let scales = self.scales();
         let size = |x: Vector2<f64>| {
             let over = |index: usize| if scales[index] > 0.0 { (x[index] / scales[index]).abs() } else { 0.0 };
@@ -120,21 +120,21 @@ impl LocalMap {
                 x = map.a * x + map.b * mu;
                 tangent.carry(&map.a);
                 if escaped(x) {
-                    return End::Escapes(self.escape(&sides, x, mu).unwrap_or(Escape::Grown));
+                    return LocalLongRun::Escapes(self.escape(&sides, x, mu).unwrap_or(EscapeReason::Grown));
                 }
             }
             if mu == 0.0 && size(x) < tolerance::ESCAPED.value {
-                return End::Corner;
+                return LocalLongRun::Corner;
             }
             if let Some(escape) = self.escape(&sides, x, mu) {
-                return End::Escapes(escape);
+                return LocalLongRun::Escapes(escape);
             }
             // At mu = 0 the only orbit is the corner impact itself, which is on no side.
             let word = if mu == 0.0 { None } else { Word::repeated(&sides, REPEATED) };
             if let Some(orbit) = word.and_then(|word| self.orbit(&word, mu)) {
                 if orbit.admissible() && orbit.stable() {
                     let (word, _) = orbit.word.least_rotation();
-                    return self.orbit(&word, mu).map_or(End::Periodic(orbit), End::Periodic);
+                    return self.orbit(&word, mu).map_or(LocalLongRun::Periodic(orbit), LocalLongRun::Periodic);
                 }
                 // Rounding can put a motion on an unstable orbit and keep it there.
                 x += scales * tolerance::KICK.value;
@@ -149,8 +149,8 @@ impl LocalMap {
         let known = exponent.error <= tolerance::CHAOTIC_EXPONENT.value * exponent.value && exponent.value > 0.0;
         let region = if known || least_exponent.is_some() { self.region(&visited, mu) } else { None };
         match region {
-            Some(region) => End::Chaotic(Chaos { exponent, least_exponent, region }),
-            None => End::Undecided(exponent),
+            Some(region) => LocalLongRun::Chaotic(LocalChaos { exponent, least_exponent, region }),
+            None => LocalLongRun::Undecided(exponent),
         }
     }
 
@@ -184,11 +184,11 @@ impl LocalMap {
     }
 
     /// The escape of a motion that has visited `sides` and is at `x` now, if it provably goes on like that.
-    fn escape(&self, sides: &[Side], x: Vector2<f64>, mu: f64) -> Option<Escape> {
+    fn escape(&self, sides: &[Side], x: Vector2<f64>, mu: f64) -> Option<EscapeReason> {
         // What follows is proved, so that a word seen twice is worth trying.
         let word = Word::repeated(&sides[sides.len() / 2..], 2)?;
         let multiplier = self.follows_for_ever(&word, x, mu)?;
-        Some(Escape::Follows { word: word.least_rotation().0, multiplier })
+        Some(EscapeReason::Follows { word: word.least_rotation().0, multiplier })
     }
 }
 

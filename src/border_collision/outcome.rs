@@ -3,10 +3,10 @@
 use nalgebra::Vector2;
 
 use super::feigin::speeds_at;
-use super::local_map::{LocalMap, PeriodicOrbit};
-use super::long_run::{Chaos, End, Escape, MEASURED, STEPS};
+use super::local_map::{LocalMap, MapOrbit};
+use super::long_run::{EscapeReason, LocalChaos, LocalLongRun, MEASURED, STEPS};
 use super::robust_chaos::RobustChaos;
-use super::trapping::Region;
+use super::trapping::TrappingRegion;
 use super::word::Word;
 use crate::cam::Side;
 use crate::elementary;
@@ -22,11 +22,11 @@ pub struct LocalOutcome {
     /// 1, -1 or 0; everything scales with its size.
     pub mu: f64,
     /// The fixed points of both sides, admissible or not; none where mu is 0.
-    pub fixed_points: Vec<PeriodicOrbit>,
+    pub fixed_points: Vec<MapOrbit>,
     /// The orbit LR, admissible or not; none where mu is 0 or where it is not alone.
-    pub period_two: Option<PeriodicOrbit>,
+    pub period_two: Option<MapOrbit>,
     /// Every admissible periodic orbit of `LONGEST_WORD` steps or fewer, fixed points included.
-    pub orbits: Vec<PeriodicOrbit>,
+    pub orbits: Vec<MapOrbit>,
     /// The theorem of robust chaos, where its saddles are there.
     pub robust_chaos: Option<RobustChaos>,
     /// Where motions end, each kind once; first the one that x = 0 has, the state of the corner impact.
@@ -36,7 +36,7 @@ pub struct LocalOutcome {
 /// Where some of the starts end.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fate {
-    pub end: End,
+    pub end: LocalLongRun,
     /// How many starts end there, of [`LocalOutcome::starts`].
     pub starts: usize,
 }
@@ -54,7 +54,7 @@ document!(LocalOutcome as outcome {
 document!(Fate as fate {
     end: fate.end.name(),
     word if_any: match &fate.end {
-        End::Periodic(orbit) => Some(orbit.word.to_string()),
+        LocalLongRun::Periodic(orbit) => Some(orbit.word.to_string()),
         _ => None,
     },
     exponent if_any: fate.end.exponent().map(|exponent| exponent.value),
@@ -113,7 +113,7 @@ impl LocalMap {
     }
 }
 
-impl End {
+impl LocalLongRun {
     /// Its name in documents.
     pub fn name(&self) -> &'static str {
         match self {
@@ -137,7 +137,7 @@ impl End {
                     orbit.word
                 )
             }
-            Self::Chaotic(Chaos { region: Region { polygons, corners }, least_exponent, .. }) => {
+            Self::Chaotic(LocalChaos { region: TrappingRegion { polygons, corners }, least_exponent, .. }) => {
                 let above = match least_exponent {
                     Some(least) => {
                         format!("of no motion is the Lyapunov exponent below {least:.6}, by an invariant cone")
@@ -157,10 +157,10 @@ impl End {
                  {MEASURED} of them, is not known to be above 0, or no region is found that it stays in, and it may leave later"
             ),
             Self::Corner => "the motion shrinks below any size".into(),
-            Self::Escapes(Escape::Follows { word, multiplier }) => {
+            Self::Escapes(EscapeReason::Follows { word, multiplier }) => {
                 format!("the motion follows {word} for ever and grows by {multiplier:.6} each time")
             }
-            Self::Escapes(Escape::Grown) => {
+            Self::Escapes(EscapeReason::Grown) => {
                 format!("the motion grew past {:.0e} times its scale", 1.0 / tolerance::ESCAPED.value)
             }
         }
@@ -170,7 +170,7 @@ impl End {
     pub(super) fn is_like(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Periodic(one), Self::Periodic(other)) => one.word == other.word,
-            (Self::Chaotic(Chaos { exponent: one, .. }), Self::Chaotic(Chaos { exponent: other, .. })) => {
+            (Self::Chaotic(LocalChaos { exponent: one, .. }), Self::Chaotic(LocalChaos { exponent: other, .. })) => {
                 let apart = (one.value - other.value).abs() * tolerance::CHAOTIC_EXPONENT.value;
                 apart <= elementary::hypot(one.error, other.error).max(tolerance::DEGENERATE.value)
             }
@@ -181,7 +181,7 @@ impl End {
     /// The exponent of a motion that repeats nothing.
     fn exponent(&self) -> Option<&Estimate> {
         match self {
-            Self::Chaotic(Chaos { exponent, .. }) | Self::Undecided(exponent) => Some(exponent),
+            Self::Chaotic(LocalChaos { exponent, .. }) | Self::Undecided(exponent) => Some(exponent),
             _ => None,
         }
     }

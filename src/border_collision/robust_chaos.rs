@@ -25,7 +25,7 @@ use crate::cam::Side;
 use crate::corner::SideMap;
 use crate::elementary;
 use crate::interval::{Interval, Number};
-use crate::known::Known;
+use crate::known::Evidence;
 use crate::orbit::Eigenvalue;
 use crate::tolerance;
 
@@ -39,7 +39,7 @@ pub struct RobustChaos {
     /// `ln min(l, k)`, below which no motion's Lyapunov exponent is, a step.
     pub least_exponent: f64,
     /// How the signs of the hypotheses are known.
-    pub known: Known,
+    pub known: Evidence,
 }
 
 document!(RobustChaos as chaos {
@@ -88,7 +88,7 @@ impl RobustChaos {
         let traces = matrices.map(|[[a, _], [_, d]]| a + d);
         let determinants = matrices.map(|[[a, b], [c, d]]| a * d - b * c);
         if hypotheses(traces, determinants).iter().all(|(value, _)| value.is_positive()) {
-            self.known = Known::Proved;
+            self.known = Evidence::Proved;
         }
     }
 }
@@ -112,7 +112,7 @@ impl LocalMap {
                 saddle,
                 hypotheses,
                 least_exponent: elementary::ln(l.min(-minus_k)),
-                known: Known::Computed,
+                known: Evidence::Computed,
             })
         })
     }

@@ -22,7 +22,7 @@ type Polygon = Vec<Vector2<f64>>;
 
 /// A region that the map sends into its own inside.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Region {
+pub struct TrappingRegion {
     /// How many convex polygons it consists of.
     pub polygons: usize,
     /// How many corners these have together.
@@ -32,7 +32,7 @@ pub struct Region {
 impl LocalMap {
     /// A region around the `visited` points of one motion, in their order and all at `mu`, that the map sends into its inside
     /// by [`tolerance::TRAPPED`]: so the motion stays in it for ever. `None` says nothing: there may be one that is not found.
-    pub fn region(&self, visited: &[Vector2<f64>], mu: f64) -> Option<Region> {
+    pub fn region(&self, visited: &[Vector2<f64>], mu: f64) -> Option<TrappingRegion> {
         let scaled = Scaled { map: self, mu, units: self.units() };
         (0..=LONGEST_MEMORY).find_map(|memory| scaled.region(visited, memory))
     }
@@ -46,7 +46,7 @@ struct Scaled<'a> {
 
 impl Scaled<'_> {
     /// The same with one polygon for each word of `memory` sides.
-    fn region(&self, visited: &[Vector2<f64>], memory: u32) -> Option<Region> {
+    fn region(&self, visited: &[Vector2<f64>], memory: u32) -> Option<TrappingRegion> {
         // Of too few points no word is known, and where nothing is, nothing is held.
         if visited.len() <= memory as usize {
             return None;
@@ -79,7 +79,7 @@ impl Scaled<'_> {
             }
             if sent_out.iter().all(Vec::is_empty) {
                 let corners = polygons.iter().map(Vec::len).sum();
-                return Some(Region {
+                return Some(TrappingRegion {
                     polygons: polygons.iter().filter(|polygon| !polygon.is_empty()).count(),
                     corners,
                 });

@@ -12,7 +12,7 @@ use nalgebra::Vector2;
 use serde::Serialize;
 
 use super::feigin::speeds_at;
-use super::local_map::{LocalMap, PeriodicOrbit};
+use super::local_map::{LocalMap, MapOrbit};
 use super::word::Word;
 use crate::bracket::{Width, halve};
 use crate::cam::{Cam, Side};
@@ -29,7 +29,7 @@ use crate::tolerance;
 /// What is compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Compared {
+pub enum ComparedMotion {
     /// The image of x* after one revolution, to first order `B dT`.
     OneRevolution,
     /// The fixed point before the corner, to first order `(I - A-)^{-1} B- dT`.
@@ -38,7 +38,7 @@ pub enum Compared {
     FixedPointPlus,
 }
 
-named!(Compared);
+named!(ComparedMotion);
 
 /// What ends the range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -56,7 +56,7 @@ pub enum Ends {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Range {
     /// Of what.
-    pub compared: Compared,
+    pub compared: ComparedMotion,
     /// To which order in dT, 1 or 2.
     pub order: u32,
     /// By how much the two may differ, of the prediction.
@@ -108,11 +108,11 @@ pub fn ranges(model: &Model, cam: &Cam, at: &CornerImpact, map: &LocalMap, curve
         };
         let image = curved.of(map.side(Vector2::zeros(), sign)).image();
         let image = |dt: f64, _| machine.revolution(dt, predicted(image, dt));
-        found.push(machine.range(asked(Compared::OneRevolution), image));
+        found.push(machine.range(asked(ComparedMotion::OneRevolution), image));
         for (name, side, compared) in
-            [("L", Side::Minus, Compared::FixedPointMinus), ("R", Side::Plus, Compared::FixedPointPlus)]
+            [("L", Side::Minus, ComparedMotion::FixedPointMinus), ("R", Side::Plus, ComparedMotion::FixedPointPlus)]
         {
-            let orbit = Word::read(name).and_then(|word| map.orbit(&word, sign)).filter(PeriodicOrbit::admissible);
+            let orbit = Word::read(name).and_then(|word| map.orbit(&word, sign)).filter(MapOrbit::admissible);
             let Some(point) = orbit.and_then(|_| curved.of(side).fixed_point()) else { continue };
             found.push(machine.range(asked(compared), |dt, before| {
                 let predicted = predicted(point, dt);
@@ -127,7 +127,7 @@ pub fn ranges(model: &Model, cam: &Cam, at: &CornerImpact, map: &LocalMap, curve
 
 impl Range {
     /// One that is still to be found: it holds nowhere yet.
-    fn asked(compared: Compared, order: u32, within: f64, sign: f64) -> Self {
+    fn asked(compared: ComparedMotion, order: u32, within: f64, sign: f64) -> Self {
         let (period_change, speed_rpm, difference, ends) = (0.0, f64::NAN, None, Ends::Nothing);
         Self { compared, order, within, sign, period_change, speed_rpm, difference, ends }
     }

@@ -14,7 +14,7 @@ use serde::Serialize;
 
 pub(super) use super::smoothing::Features;
 use crate::elementary;
-use crate::model::{Row, Smoothing, TableProfile};
+use crate::model::{Smoothing, TableProfile, TableRow};
 use crate::tolerance;
 
 /// Rows at rising angles, once round.
@@ -117,7 +117,7 @@ pub(crate) fn strays(profile: &TableProfile) -> Vec<Stray> {
         }
     }
     let stray = |row: usize| {
-        let Row { line, angle_deg, lift } = profile.rows[row];
+        let TableRow { line, angle_deg, lift } = profile.rows[row];
         Stray { line, cam_angle_deg: angle_deg, lift_m: lift, off_m: lift - lifts[row] }
     };
     (0..lifts.len()).filter(|row| is_far[*row]).map(stray).collect()

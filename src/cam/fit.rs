@@ -16,7 +16,7 @@ use super::smoothing::{Fitted, Layout, Smoothed};
 use super::{Cam, Joint};
 use crate::bracket::{Width, halve};
 use crate::elementary;
-use crate::model::{Model, ModelError, Smoothing, TableProfile, Tolerance};
+use crate::model::{Model, ModelError, Smoothing, SmoothingTolerance, TableProfile};
 
 /// A smoothing spline fitted to a table.
 #[derive(Clone, Debug)]
@@ -138,12 +138,12 @@ fn polished(mut features: Features, gap: f64, least: impl Fn(&Features) -> Optio
 fn weight(
     model: &Model,
     profile: &TableProfile,
-    tolerance: Tolerance,
+    tolerance: SmoothingTolerance,
     at: &impl Fn(f64) -> Option<Smoothed>,
 ) -> Result<f64, ModelError> {
     let overflow = || overflow(model, profile);
     match tolerance {
-        Tolerance::Auto => {
+        SmoothingTolerance::Auto => {
             let cross_validated = cross_validated(at).ok_or_else(overflow)?;
             // The smoother of the two.
             Ok(match within(at, profile.reading.half_step()) {
@@ -152,8 +152,8 @@ fn weight(
                 Some(Kept::Never(_)) | None => cross_validated,
             })
         }
-        Tolerance::Weighted(weight) => Ok(weight),
-        Tolerance::Within(limit) => match within(at, limit).ok_or_else(overflow)? {
+        SmoothingTolerance::Weighted(weight) => Ok(weight),
+        SmoothingTolerance::Within(limit) => match within(at, limit).ok_or_else(overflow)? {
             Kept::At(weight) => Ok(weight),
             Kept::Always => {
                 let words = "is so large that nothing of the lift would be left: every row is as near to a circle";

@@ -9,7 +9,7 @@ use super::law::Law;
 use super::polynomial::Polynomial;
 use super::sinusoid::Sinusoid;
 use super::{Cam, Joint};
-use crate::model::{Model, ModelError, Motion, MotionSegment, ProgramProfile};
+use crate::model::{Model, ModelError, MotionSegment, ProgramProfile, StandardMotion};
 use crate::tolerance;
 
 /// One motion laid on the cam: where it starts, rad, what it takes, rad, where its lift starts and ends, m.
@@ -74,31 +74,31 @@ impl Wave {
 }
 
 /// The laws of a motion with the angles where they start.
-fn laws(motion: Motion, placed: &Placed) -> Vec<(f64, Law)> {
+fn laws(motion: StandardMotion, placed: &Placed) -> Vec<(f64, Law)> {
     let start = placed.start;
     match motion {
-        Motion::Dwell => vec![(start, Law::Dwell(placed.from))],
+        StandardMotion::Dwell => vec![(start, Law::Dwell(placed.from))],
         // s = 2 x^2, then 1 - 2 (1 - x)^2
-        Motion::Parabolic => vec![
+        StandardMotion::Parabolic => vec![
             (start, placed.polynomial(0.0, placed.from, &[0.0, 0.0, 2.0])),
             (placed.angle(0.5), placed.polynomial(1.0, placed.to, &[0.0, 0.0, -2.0])),
         ],
         // s = (1 - cos(pi x))/2
-        Motion::Harmonic => {
+        StandardMotion::Harmonic => {
             let wave = Wave { velocity: 0.0, sine: 0.0, cosine: 0.5, frequency: PI };
             vec![(start, placed.sinusoid(0.0, placed.from, wave))]
         }
         // s = x - sin(2 pi x)/(2 pi)
-        Motion::Cycloidal => {
+        StandardMotion::Cycloidal => {
             let wave = Wave { velocity: 0.0, sine: 1.0 / TAU, cosine: 0.0, frequency: TAU };
             vec![(start, placed.sinusoid(0.0, placed.from, wave))]
         }
-        Motion::ModifiedTrapezoid => modified_trapezoid(placed),
-        Motion::ModifiedSine => modified_sine(placed),
+        StandardMotion::ModifiedTrapezoid => modified_trapezoid(placed),
+        StandardMotion::ModifiedSine => modified_sine(placed),
         // s = 10 x^3 - 15 x^4 + 6 x^5
-        Motion::Poly345 => halves(placed, [10.0, -15.0, 6.0, 0.0, 0.0]),
+        StandardMotion::Poly345 => halves(placed, [10.0, -15.0, 6.0, 0.0, 0.0]),
         // s = 35 x^4 - 84 x^5 + 70 x^6 - 20 x^7
-        Motion::Poly4567 => halves(placed, [0.0, 35.0, -84.0, 70.0, -20.0]),
+        StandardMotion::Poly4567 => halves(placed, [0.0, 35.0, -84.0, 70.0, -20.0]),
     }
 }
 
@@ -170,7 +170,7 @@ pub(super) fn build(model: &Model, profile: &ProgramProfile) -> Result<Cam, Mode
         let words = format!("rises add up to {total}, and must to 0: the lift jumps at 360 degrees");
         return Err(model.reject(&format!("{last}.rise"), words));
     }
-    let last_motion = segments.iter().rposition(|segment| segment.motion != Motion::Dwell);
+    let last_motion = segments.iter().rposition(|segment| segment.motion != StandardMotion::Dwell);
     let mut placed = Placed { start: 0.0, span: 0.0, from: profile.base, to: profile.base };
     let (mut turned, mut lifted) = (0.0, 0.0);
     let mut all = Vec::new();
@@ -179,7 +179,7 @@ pub(super) fn build(model: &Model, profile: &ProgramProfile) -> Result<Cam, Mode
         lifted += segment.rise;
         // The last motion ends where the first began, to the last bit; a dwell stays where it is.
         placed.to = match segment.motion {
-            Motion::Dwell => placed.from,
+            StandardMotion::Dwell => placed.from,
             _ if Some(index) == last_motion => profile.base,
             _ => profile.base + lifted,
         };

@@ -9,12 +9,12 @@ use super::threads::threads;
 use super::{CommandError, Exit, ModelArgument, Session, picture, picture::Target, progress::watched};
 use crate::figures::{basins_figure, shares_figure};
 use crate::flight::State;
-use crate::foreign;
 use crate::model::Model;
 use crate::orbit::long_run::Budget;
 use crate::show::csv;
-use crate::study::basins::{BasinsOver, Begun, Grid, Section, SectionStarts, States, Summary};
+use crate::study::basins::{BasinSection, BasinsOver, Begun, Grid, SectionStarts, States, Summary};
 use crate::study::survey::{Over, Values};
+use crate::untrusted;
 
 /// Runs a grid of starts at one speed and says what each ends on, as a table or a picture; or over a number, and says how many end on what.
 #[derive(clap::Args)]
@@ -74,7 +74,7 @@ struct Cells([usize; 2]);
 /// `NxM`.
 fn cells(text: &str) -> Result<Cells, String> {
     let count = |part: &str| {
-        part.trim().parse::<usize>().map_err(|_| format!("\"{}\" is not a number of cells", foreign::value(part)))
+        part.trim().parse::<usize>().map_err(|_| format!("\"{}\" is not a number of cells", untrusted::value(part)))
     };
     let Some((columns, rows)) = text.split_once('x') else {
         return Err("must be NxM: cells along the positions and along the velocities".into());
@@ -94,7 +94,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         (Some(Rpm::One(rpm)), None) => rpm,
         _ => return shares(arguments, &model, angle, session),
     };
-    let section = Section::new(&model, rpm, angle)?;
+    let section = BasinSection::new(&model, rpm, angle)?;
     let grid =
         arguments.grid.map(|Cells(cells)| section.grid(cells, arguments.position, arguments.velocity)).transpose()?;
     let budget = arguments.budget()?;

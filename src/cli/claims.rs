@@ -2,7 +2,7 @@
 
 use super::{CommandError, Exit, ModelArgument, Session, progress::Progress};
 use crate::cam::Cam;
-use crate::known::Known;
+use crate::known::Evidence;
 use crate::pages;
 use crate::paper::{Claims, Context};
 use crate::published::Verdict;
@@ -28,8 +28,8 @@ pub(super) struct Arguments {
     #[arg(long, value_parser = named::<Verdict>, conflicts_with = "markdown")]
     verdict: Option<Verdict>,
     /// Only statements whose verdict is known so: proved, computed, sampled, read.
-    #[arg(long, value_parser = named::<Known>, conflicts_with = "markdown")]
-    known: Option<Known>,
+    #[arg(long, value_parser = named::<Evidence>, conflicts_with = "markdown")]
+    known: Option<Evidence>,
     /// Print the page of docs/claims.md.
     #[arg(long)]
     markdown: bool,

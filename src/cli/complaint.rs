@@ -5,8 +5,8 @@ use std::fmt;
 
 use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme, LabeledSpan, NamedSource, SourceCode};
 
-use crate::foreign;
 use crate::model::ModelError;
+use crate::untrusted;
 
 /// A complaint as miette sees one.
 #[derive(Debug)]
@@ -72,8 +72,11 @@ pub(super) fn shown(words: &str, at: &ModelError, coloured: bool, is_terminal: b
         (false, false) => GraphicalTheme::none(),
     };
     let is_of_the_file = words == at.to_string();
-    let pointed =
-        Pointed { at, is_of_the_file, source: NamedSource::new(foreign::visible(&at.file), foreign::in_place(text)) };
+    let pointed = Pointed {
+        at,
+        is_of_the_file,
+        source: NamedSource::new(untrusted::visible(&at.file), untrusted::in_place(text)),
+    };
     let handler = GraphicalReportHandler::new_themed(theme).with_links(false).with_width(width);
     let mut drawn = String::new();
     if handler.render_report(&mut drawn, &pointed).is_err() {

@@ -20,7 +20,7 @@ use crate::orbit::long_run::Budget;
 use crate::show::csv;
 use crate::study::design::loads::Load;
 use crate::study::diagram::{self as swept, Shown, Swept, on_attractors};
-use crate::study::survey::{Beginning, Counted, Following, Growth, Places, Section, Survey, Sweep, Values, growth};
+use crate::study::survey::{Beginning, Counted, Growth, Places, Section, Survey, Sweep, SweepStart, Values, growth};
 
 /// Sweeps over speeds, or over a number of the model: what the motion settles on, as a table or a picture.
 #[derive(clap::Args)]
@@ -119,9 +119,9 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
             false => Beginning::One(arguments.start.start()?),
         },
         following: match arguments.following {
-            FollowingName::Fixed => Following::Nothing,
-            FollowingName::Up => Following::Up,
-            FollowingName::Down => Following::Down,
+            FollowingName::Fixed => SweepStart::Nothing,
+            FollowingName::Up => SweepStart::Up,
+            FollowingName::Down => SweepStart::Down,
         },
         transient: budget.transient,
         record: budget.record,
@@ -233,12 +233,12 @@ fn title(model: &str, sweep: &Sweep) -> String {
     };
     let is_speed = sweep.over.axis().parameter == Parameter::Speed;
     let how = match sweep.following {
-        Following::Nothing if matches!(sweep.starts, Beginning::Found(_)) => "on each attractor",
-        Following::Nothing => "from one start",
-        Following::Up if is_speed => "speed going up",
-        Following::Down if is_speed => "speed going down",
-        Following::Up => "each value from the end of the next lower",
-        Following::Down => "each value from the end of the next higher",
+        SweepStart::Nothing if matches!(sweep.starts, Beginning::Found(_)) => "on each attractor",
+        SweepStart::Nothing => "from one start",
+        SweepStart::Up if is_speed => "speed going up",
+        SweepStart::Down if is_speed => "speed going down",
+        SweepStart::Up => "each value from the end of the next lower",
+        SweepStart::Down => "each value from the end of the next higher",
     };
     let at = sweep.over.speed().map_or(String::new(), |rpm| format!(", at {rpm} rpm"));
     format!("{model}: {what} of {} revolutions after {}, {how}{at}", sweep.record, sweep.transient)

@@ -9,10 +9,10 @@ use super::model::Changes;
 use super::progress::{Progress, watched};
 use super::start::rpm_range;
 use super::{CommandError, Exit, ModelArgument, Session, picture};
-use crate::figures::{FIGURES, Listed, Plate, Subject, listed};
-use crate::foreign;
+use crate::figures::{FIGURES, FigureContext, Listed, RenderedFigure, listed};
 use crate::model::Model;
 use crate::show::json;
+use crate::untrusted;
 
 /// Lists the figures of the report, or draws one of them.
 #[derive(clap::Args)]
@@ -53,7 +53,7 @@ struct One {
     schema: &'static str,
     model: String,
     #[serde(flatten)]
-    plate: Plate,
+    plate: RenderedFigure,
 }
 
 const SCHEMA: &str = "corner-impact/figure/1";
@@ -76,13 +76,13 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     if id.is_none() && arguments.out.is_some() {
         return Err(CommandError::Words("--out is for one figure: name it, from the list without --out".into()));
     }
-    let subject = watched("verifying the model", |_| Subject::new(&model, arguments.rpm))?;
+    let subject = watched("verifying the model", |_| FigureContext::new(&model, arguments.rpm))?;
     let page = match id {
         None => list(&model, &subject, arguments.json)?,
         Some(id) => {
             let Some(entry) = FIGURES.iter().find(|entry| entry.id == id) else {
                 let there = FIGURES.map(|entry| entry.id).join(", ");
-                let id = foreign::value(id);
+                let id = untrusted::value(id);
                 return Err(CommandError::Words(format!("no figure called \"{id}\"; there are: {there}")));
             };
             // Opened before the work: a name that cannot be is told at once.
@@ -108,7 +108,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     Ok(Exit::Agrees)
 }
 
-fn list(model: &Model, subject: &Subject, as_json: bool) -> Result<String, CommandError> {
+fn list(model: &Model, subject: &FigureContext, as_json: bool) -> Result<String, CommandError> {
     let figures = listed(subject);
     if as_json {
         return Ok(json::render(&List { schema: SCHEMA, model: model.name.clone(), figures }, &model.units)?);
@@ -122,7 +122,7 @@ fn list(model: &Model, subject: &Subject, as_json: bool) -> Result<String, Comma
     Ok(page)
 }
 
-fn one(subject: &Subject, plate: Plate, arguments: &Arguments) -> Result<String, CommandError> {
+fn one(subject: &FigureContext, plate: RenderedFigure, arguments: &Arguments) -> Result<String, CommandError> {
     if arguments.json {
         return Ok(json::render(
             &One { schema: SCHEMA, model: subject.model.name.clone(), plate },

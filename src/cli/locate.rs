@@ -4,7 +4,7 @@ use super::start::rpm_range;
 use super::{CommandError, Exit, ModelArgument, Session, progress::watched};
 use crate::model::Study;
 use crate::orbit::Search;
-use crate::study::locate::{LocateError, locate};
+use crate::study::locate::{LocateRangeError, locate};
 
 /// Lists the speeds at which a periodic orbit has an impact on a corner of the cam, and what happens there.
 #[derive(clap::Args)]
@@ -36,7 +36,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let model = arguments.model.read(session)?;
     let found = watched("looking for orbits with an impact on a corner", |watch| {
         locate(&model, arguments.rpm, arguments.revolutions, watch).map_err(|error| match error {
-            LocateError::Range(error) => CommandError::Words(format!("{}: {error}", model.file())),
+            LocateRangeError::Range(error) => CommandError::Words(format!("{}: {error}", model.file())),
             error => error.into(),
         })
     })?;

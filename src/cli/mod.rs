@@ -43,10 +43,10 @@ use model::ModelArgument;
 use session::Session;
 pub use session::Terminal;
 
+use crate::cancel;
 use crate::file::{self, FileError, Output};
 use crate::model::{ModelError, Units};
 use crate::simulate::SimulateError;
-use crate::stop;
 
 /// How a command ended; the process's exit code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -183,7 +183,7 @@ fn begun(arguments: &Arguments, only_prints: bool, session: &mut Session<'_>) ->
         return work();
     }
     standard::takes_more()?;
-    stop::unless(standard::is_unread(), work).unwrap_or(Err(CommandError::Unread))
+    cancel::run(standard::is_unread(), work).unwrap_or(Err(CommandError::Unread))
 }
 
 /// Runs one command line, program name first, with streams that `terminal` describes.

@@ -4,7 +4,7 @@ use super::start::{rpm, state};
 use super::{CommandError, Exit, ModelArgument, Session, progress::watched};
 use crate::flight::State;
 use crate::orbit::Search;
-use crate::study::orbit::{Wanted, orbits};
+use crate::study::orbit::{OrbitQuery, orbits};
 
 /// Finds periodic orbits at one speed, stable and unstable, with their multipliers.
 #[derive(clap::Args)]
@@ -38,8 +38,8 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
     let model = arguments.model.read(session)?;
     let wanted = match arguments.guess {
-        Some(state) => Wanted::Near(state, arguments.revolutions),
-        None => Wanted::All(Search { revolutions: arguments.revolutions, impacts: arguments.impacts }),
+        Some(state) => OrbitQuery::Near(state, arguments.revolutions),
+        None => OrbitQuery::All(Search { revolutions: arguments.revolutions, impacts: arguments.impacts }),
     };
     let found = watched("looking for periodic orbits", |watch| orbits(&model, arguments.rpm, wanted, watch))?;
     session.answer(&found, arguments.json)

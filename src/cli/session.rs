@@ -9,10 +9,10 @@ use clap::{ColorChoice, ValueEnum};
 use serde::Serialize;
 
 use super::{CommandError, Exit, complaint};
-use crate::foreign;
 use crate::model::{ModelError, Units};
 use crate::show::block::in_units;
 use crate::show::{Page, Paged, json};
+use crate::untrusted;
 
 /// The colours that a command line asks for before it is known to be one.
 pub(super) fn said(words: &[OsString]) -> ColorChoice {
@@ -37,9 +37,9 @@ pub(super) fn speeds(matches: &clap::ArgMatches) -> Option<[f64; 2]> {
 /// Words of a command line as a complaint shows them.
 fn shown(value: &ContextValue) -> ContextValue {
     match value {
-        ContextValue::String(text) => ContextValue::String(foreign::value(text).into_owned()),
+        ContextValue::String(text) => ContextValue::String(untrusted::value(text).into_owned()),
         ContextValue::Strings(texts) => {
-            ContextValue::Strings(texts.iter().map(|text| foreign::value(text).into_owned()).collect())
+            ContextValue::Strings(texts.iter().map(|text| untrusted::value(text).into_owned()).collect())
         }
         other => other.clone(),
     }
@@ -150,13 +150,13 @@ impl Session<'_> {
     /// Says something on standard error.
     pub(super) fn note(&mut self, words: &str) {
         // A closed pipe leaves nobody to tell.
-        let _ = writeln!(self.err, "note: {}", foreign::sentence(words));
+        let _ = writeln!(self.err, "note: {}", untrusted::sentence(words));
     }
 
     /// Complains on standard error, in the words that every complaint begins with.
     pub(super) fn complain(&mut self, words: &str) {
         // A closed pipe leaves nobody to tell.
-        let _ = writeln!(self.err, "{} {}", complaint::word(self.colours_err()), foreign::sentence(words));
+        let _ = writeln!(self.err, "{} {}", complaint::word(self.colours_err()), untrusted::sentence(words));
     }
 
     /// The same, with the line of the model file that it is about.
@@ -170,7 +170,7 @@ impl Session<'_> {
     pub(super) fn refuse(&mut self, mut error: clap::Error) -> Result<Exit, CommandError> {
         // Advice that repeats what nobody can read is none.
         let is_odd =
-            |value: &ContextValue| matches!(value, ContextValue::String(text) if foreign::value(text) != *text);
+            |value: &ContextValue| matches!(value, ContextValue::String(text) if untrusted::value(text) != *text);
         if error.context().any(|(_, value)| is_odd(value)) {
             error.remove(ContextKind::Suggested);
         }

@@ -12,7 +12,7 @@ use crate::figures::{self, phase_plane as phase_plane_figure, time_trace, with_f
 use crate::file::{self, Output};
 use crate::orbit::long_run::Budget;
 use crate::show::csv;
-use crate::study::simulate::{Sight, Simulation, Until, Wanted};
+use crate::study::simulate::{RunRequest, Sight, Simulation, Until};
 
 /// Runs one motion of a model and says what happened.
 #[derive(clap::Args)]
@@ -99,7 +99,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let (machine, first) = (&simulation.machine, &simulation.first);
     let shown = trace.is_some() || phase_plane.is_some();
     let drawn = if shown { arguments.drawn.unwrap_or(DRAWN) } else { 0 };
-    let wanted = Wanted {
+    let wanted = RunRequest {
         until: arguments.impacts.map_or(Until::Revolutions(arguments.revolutions), Until::Impacts),
         events: events.is_some(),
         strobe: arguments.strobe.map(|angle| cam_angle("--strobe", angle, session)),
@@ -145,23 +145,23 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let run = watched("", |watch| simulation.run(wanted, watch, see))?;
     let seen = |points: u32| {
         let points = arguments.points_per_revolution.unwrap_or(points);
-        figures::Run::new(machine, run.before_drawn, drawn.min(arguments.revolutions), points)
+        figures::TracedRun::new(machine, run.before_drawn, drawn.min(arguments.revolutions), points)
     };
     let written = written.map(|mut file| -> Result<_, CommandError> {
         let (omega, mass) = (machine.angular_velocity(), model.follower.mass);
-        let lines = csv::trace(&seen(figures::Run::WRITTEN)?.samples, first.cam_angle, omega, mass);
+        let lines = csv::trace(&seen(figures::TracedRun::WRITTEN)?.samples, first.cam_angle, omega, mass);
         file.write_all(csv::in_units(&lines, csv::TRACE, &model.units).as_bytes())?;
         Ok(file)
     });
     let mut files: Vec<Output<'_>> = [events, states, written.transpose()?].into_iter().flatten().collect();
     let title = format!("{} at {} rpm", model.name, arguments.rpm);
     if let Some(canvas) = trace {
-        let run = seen(figures::Run::DRAWN)?;
+        let run = seen(figures::TracedRun::DRAWN)?;
         let figure = with_force(time_trace(&title, &run), &run, model.follower.mass, &model.units.force);
         files.push(canvas.draw(figure, &model.units)?);
     }
     if let Some(canvas) = plane {
-        files.push(canvas.draw(phase_plane_figure(&title, &seen(figures::Run::DRAWN)?), &model.units)?);
+        files.push(canvas.draw(phase_plane_figure(&title, &seen(figures::TracedRun::DRAWN)?), &model.units)?);
     }
     super::commit(files)?;
     if arguments.summary || streams == 0 {

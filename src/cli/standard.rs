@@ -3,7 +3,7 @@
 use std::io;
 
 use super::CommandError;
-use crate::stop::Question;
+use crate::cancel::Question;
 
 /// Refuses to begin what nobody would ever have.
 pub(super) fn takes_more() -> Result<(), CommandError> {

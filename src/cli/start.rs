@@ -6,10 +6,10 @@ use super::CommandError;
 use super::session::Session;
 use crate::cam::within_a_turn;
 use crate::flight::State;
-use crate::foreign;
 use crate::orbit::Search;
 use crate::orbit::long_run::Budget;
 use crate::study::survey::{Placed, Sample, Spacing, Start, Values};
+use crate::untrusted;
 
 /// Where the run starts, or the runs of a survey.
 #[derive(clap::Args)]
@@ -113,7 +113,7 @@ pub(super) fn cam_angle(option: &str, angle: f64, session: &mut Session<'_>) -> 
 }
 
 pub(super) fn finite(text: &str) -> Result<f64, String> {
-    let number: f64 = text.trim().parse().map_err(|_| format!("\"{}\" is not a number", foreign::value(text)))?;
+    let number: f64 = text.trim().parse().map_err(|_| format!("\"{}\" is not a number", untrusted::value(text)))?;
     if number.is_finite() { Ok(number) } else { Err("must be a finite number".into()) }
 }
 
@@ -235,7 +235,7 @@ fn spaced(text: &str, number: fn(&str) -> Result<f64, String>, what: &str) -> Re
     let (low, high, count, spacing) = match parts.as_slice() {
         [low, high, count] => (low, high, count, Spacing::Linear),
         [low, high, count, spacing] if spacing.trim() == "log" => (low, high, count, Spacing::Logarithmic),
-        [_, _, _, other] => return Err(format!("\"{}\" is no spacing: it can only be log", foreign::value(other))),
+        [_, _, _, other] => return Err(format!("\"{}\" is no spacing: it can only be log", untrusted::value(other))),
         _ => {
             return Err(format!(
                 "must be LO:HI:N: lowest {what}, highest {what}, how many; and :log, if they are to be spaced by it"
@@ -244,7 +244,7 @@ fn spaced(text: &str, number: fn(&str) -> Result<f64, String>, what: &str) -> Re
     };
     let (low, high) = (number(low)?, number(high)?);
     let count: usize =
-        count.trim().parse().map_err(|_| format!("\"{}\" is not a number of {what}s", foreign::value(count)))?;
+        count.trim().parse().map_err(|_| format!("\"{}\" is not a number of {what}s", untrusted::value(count)))?;
     match (high >= low && (high - low).is_finite(), count) {
         (false, _) => Err(format!("the highest {what}, {high}, is below the lowest, {low}")),
         (true, _) if spacing == Spacing::Logarithmic && low <= 0.0 => Err(begins_below(low)),

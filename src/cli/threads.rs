@@ -3,8 +3,8 @@
 use std::error::Error;
 
 use super::CommandError;
-use crate::foreign;
-use crate::stop;
+use crate::cancel;
+use crate::untrusted;
 
 /// A thread without work looks through all others for some, so that what is lost grows with the square of how many there are: a tenth
 /// of a second of one core with these, before anything is done, and more than a second with four times as many.
@@ -28,12 +28,12 @@ pub(super) fn start() -> Result<(), CommandError> {
     let asked = match said.as_ref() {
         "" | "0" => 0,
         text => threads(text)
-            .map_err(|words| CommandError::Words(format!("{VARIABLE} = {}: {words}", foreign::value(text))))?,
+            .map_err(|words| CommandError::Words(format!("{VARIABLE} = {}: {words}", untrusted::value(text))))?,
     };
     // Where a program runs several commands, the first has started them.
     let builder = rayon::ThreadPoolBuilder::new().num_threads(asked.into());
     let builder = builder
-        .spawn_handler(|thread| std::thread::Builder::new().spawn(stop::carried(move || thread.run())).map(drop));
+        .spawn_handler(|thread| std::thread::Builder::new().spawn(cancel::carry(move || thread.run())).map(drop));
     match builder.build_global() {
         Err(error) if error.source().is_some() => {
             let words = format!("threads cannot be started: {error}; {VARIABLE} says how many there are to be");

@@ -10,7 +10,7 @@ use super::corner_impact::Way;
 use super::period_equation::at_corner;
 use crate::cam::{Cam, Side};
 use crate::model::{Model, Study};
-use crate::orbit::branch::{BranchPoint, Kind, MetPoints, special_points};
+use crate::orbit::branch::{BranchPoint, MetPoints, SpecialKind, special_points};
 use crate::orbit::{Course, Impact, Search};
 use crate::progress::Watch;
 use crate::tolerance;
@@ -23,7 +23,7 @@ pub const NEAREST_OTHER: f64 = 4.0 * tolerance::LEAST_REACH.value;
 
 /// What was looked at.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Branches {
+pub struct SearchedBranches {
     /// Speeds at which orbits were searched for, rpm.
     pub speeds: Vec<f64>,
     /// Branches of orbits that were found there.
@@ -39,16 +39,16 @@ pub fn candidates(
     range: Study,
     revolutions: u64,
     watch: &dyn Watch,
-) -> (Vec<Candidate>, Branches) {
+) -> (Vec<Candidate>, SearchedBranches) {
     let wanted = Search { revolutions, impacts: None };
-    let is_corner = |kind| matches!(kind, Kind::Corner { .. });
+    let is_corner = |kind| matches!(kind, SpecialKind::Corner { .. });
     match special_points(model, [range.rpm_min, range.rpm_max], &wanted, is_corner, watch) {
         Ok(found) => {
             let candidates = found.points.iter().filter_map(|point| candidate(cam, point)).collect();
             let MetPoints { speeds, branches, failed, .. } = found;
-            (candidates, Branches { speeds, branches, failed: failed.map(|error| error.to_string()) })
+            (candidates, SearchedBranches { speeds, branches, failed: failed.map(|error| error.to_string()) })
         }
-        Err(error) => (Vec::new(), Branches { failed: Some(error.to_string()), ..Branches::default() }),
+        Err(error) => (Vec::new(), SearchedBranches { failed: Some(error.to_string()), ..SearchedBranches::default() }),
     }
 }
 
@@ -60,7 +60,8 @@ fn candidate(cam: &Cam, point: &BranchPoint) -> Option<Candidate> {
 /// The corner impact that a branch passes, if its follower is not about to chatter.
 pub(crate) fn on_branch(cam: &Cam, point: &BranchPoint) -> Option<Candidate> {
     let special = point.special?;
-    let (Kind::Corner { impact, segment, jump_order }, Course::Impacts(cycle)) = (special.kind, &point.orbit.course)
+    let (SpecialKind::Corner { impact, segment, jump_order }, Course::Impacts(cycle)) =
+        (special.kind, &point.orbit.course)
     else {
         return None;
     };

@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 use nalgebra::{Matrix2, RowVector2, Vector2};
 
 use super::corner_impact::CornerImpact;
-use super::map::{CornerMap, Line, Own, Route, RouteName, SideMap};
+use super::map::{CornerMap, LinearForm, Own, Route, RouteName, SideMap};
 use crate::bracket::secants;
 use crate::cam::Lift;
 use crate::elementary;
@@ -34,7 +34,7 @@ pub fn route(model: &Model, at: &CornerImpact) -> Route {
 
 /// `(e, f)`, the derivatives of eq:H: how far the flight is from the cam when the corner passes, to first order; `v` is the
 /// velocity before the impact, m/s, and `period` T*, s.
-fn border(follower: &Follower, period: f64, v: f64) -> Line {
+fn border(follower: &Follower, period: f64, v: f64) -> LinearForm {
     let f = propagator(follower.damping / (2.0 * follower.mass), follower.stiffness / follower.mass, 0.5 * period);
     // Eq:dti_dxn   e = dH/dx = h phi_{T/2}
     // Eq:dti_dT    f = dH/dT = h phi_{T/2}' x/2 = v/2, both at t_i = 0; the cam at the corner does not depend on T

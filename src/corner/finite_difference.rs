@@ -39,7 +39,7 @@ pub fn side_map(
     at: &CornerImpact,
     side: Side,
     varied: &Varied,
-) -> Result<Known, SampleError> {
+) -> Result<Evidence, SampleError> {
     let whole = OneSidedMap::by(model, cam, at, side, varied);
     if at.cycle.impacts.len() == 1 {
         return whole.and_then(|map| differences(&map, amplified_once(&map)?));
@@ -75,17 +75,17 @@ pub struct Differenced {
 }
 
 /// The value and the error of each entry.
-type Known = (Differenced, Differenced);
+type Evidence = (Differenced, Differenced);
 
 /// The border, which the gap vanishes on.
-pub(crate) fn own((found, error): &Known) -> Own {
+pub(crate) fn own((found, error): &Evidence) -> Own {
     let border = (RowVector2::new(found.gap[0], found.gap[1]), found.gap[2]);
     Own { border_error: Some(error.gap.max()), ..Own::border(border) }
 }
 
 /// A period as the product of its parts, each with one impact.
 struct Parts {
-    parts: Vec<Known>,
+    parts: Vec<Evidence>,
     /// The product of the A after each part, of the last the identity.
     after: Vec<Matrix2<f64>>,
 }
@@ -103,7 +103,7 @@ fn by_impacts(model: &Model, cam: &Cam, at: &CornerImpact, side: Side, varied: &
 
 impl Parts {
     /// The map of the period, and what the errors of the parts make of it to first order.
-    fn product(&self) -> Known {
+    fn product(&self) -> Evidence {
         let (mut all, mut off) = (SideMap::IDENTITY, SideMap::ZERO);
         let (mut gap, mut gap_off) = (RowVector3::zeros(), RowVector3::zeros());
         for ((next, error), after) in self.parts.iter().zip(&self.after) {
@@ -170,7 +170,7 @@ fn amplified_once(map: &OneSidedMap<'_>) -> Result<Vector3<f64>, SampleError> {
 }
 
 /// The map, with ends of stretches and gaps known to `rounding`.
-fn differences(map: &OneSidedMap<'_>, rounding: Vector3<f64>) -> Result<Known, SampleError> {
+fn differences(map: &OneSidedMap<'_>, rounding: Vector3<f64>) -> Result<Evidence, SampleError> {
     let mut columns = [(Vector3::zeros(), Vector3::zeros()); 3];
     for (direction, column) in columns.iter_mut().enumerate() {
         let step = widest(map, direction);

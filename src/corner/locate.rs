@@ -3,7 +3,7 @@
 use std::fmt;
 
 pub use super::corner_impact::CornerImpact;
-use super::period_equation::{PeriodEquation, Verdict};
+use super::period_equation::{PeriodEquation, RootVerdict};
 use super::range::{RangeError, Rejected, one_impact};
 use crate::cam::{Cam, Corner};
 use crate::model::{Model, ModelError};
@@ -82,9 +82,9 @@ pub fn locate(model: &Model, cam: &Cam) -> Result<(CornerImpact, Vec<CornerImpac
     for (corner, period, verdict) in one_impact(model, cam, &corners, study, 1).map_err(complaint)?.0 {
         let (cam_angle, speed_rpm) = (corner.angle, 60.0 / period);
         match verdict {
-            Verdict::Orbit(orbit) => found.push(*orbit),
-            Verdict::Rejected(why) => rejected.push(Rejected { cam_angle, speed_rpm, why }),
-            Verdict::Grazing(velocity) => {
+            RootVerdict::Orbit(orbit) => found.push(*orbit),
+            RootVerdict::Rejected(why) => rejected.push(Rejected { cam_angle, speed_rpm, why }),
+            RootVerdict::Grazing(velocity) => {
                 let file = model.file().into();
                 grazing.get_or_insert(LocateError::Grazing { file, cam_angle, speed_rpm, velocity });
             }

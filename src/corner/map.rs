@@ -139,24 +139,24 @@ pub struct Route {
 }
 
 /// A line in the space of deviations of state and period: what multiplies (dx1, dx2), and what multiplies dT.
-pub type Line = (RowVector2<f64>, f64);
+pub type LinearForm = (RowVector2<f64>, f64);
 
 /// What a route says besides A and B that it does not take from these by the one function that all share.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Own {
     /// `(C, D)`, by another way than the difference of the two sides.
-    pub jump: Option<Line>,
+    pub jump: Option<LinearForm>,
     /// The eigenvalues of both sides, by another way than [`SideMap::eigenvalues`].
     pub eigenvalues: Option<Sides<[Eigenvalue; 2]>>,
     /// `(e, f)`: the impact comes before the corner where `e dx + f dT < 0`.
-    pub border: Option<Line>,
+    pub border: Option<LinearForm>,
     /// How far an entry of the border may be off, where an estimate says so.
     pub border_error: Option<f64>,
 }
 
 impl Own {
     /// A border alone.
-    pub(crate) fn border(border: Line) -> Self {
+    pub(crate) fn border(border: LinearForm) -> Self {
         Self { border: Some(border), ..Self::default() }
     }
 }

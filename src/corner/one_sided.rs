@@ -57,12 +57,12 @@ pub struct OneSidedMap<'a> {
     varied: Turned,
     /// What unit perturbations are made smaller by.
     shrunk: f64,
-    stretch: Stretch,
+    stretch: SampledArc,
 }
 
 /// A stretch of the orbit from one section to another.
 #[derive(Clone, Debug)]
-struct Stretch {
+struct SampledArc {
     /// The first section, rad, and the follower there.
     section: f64,
     start: State,
@@ -75,7 +75,7 @@ struct Stretch {
     velocity_before: f64,
 }
 
-impl Stretch {
+impl SampledArc {
     fn whole(at: &CornerImpact) -> Self {
         let section = at.section_angle();
         Self {
@@ -127,7 +127,7 @@ enum Turned {
 
 /// A sampled period.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sample {
+pub struct PeriodSample {
     /// Deviation of position (m), velocity (m/s), and period (s) or number that it started with.
     pub perturbation: Vector3<f64>,
     /// Deviation from the orbit at its end: m, m/s.
@@ -157,7 +157,7 @@ impl<'a> OneSidedMap<'a> {
         side: Side,
         varied: &Varied,
     ) -> Result<Self, SampleError> {
-        Self::over(model, whole, at, side, varied, Stretch::whole(at))
+        Self::over(model, whole, at, side, varied, SampledArc::whole(at))
     }
 
     /// The maps from the middle of each flight to that of the next, which the map of a period is made of: impacts one after
@@ -170,7 +170,7 @@ impl<'a> OneSidedMap<'a> {
         varied: &Varied,
     ) -> Result<Vec<Self>, SampleError> {
         let machine = Machine::new(whole.clone(), &model.follower, at.angular_velocity());
-        let stretches = Stretch::pieces(at, &machine).into_iter();
+        let stretches = SampledArc::pieces(at, &machine).into_iter();
         stretches.map(|stretch| Self::over(model, whole, at, side, varied, stretch)).collect()
     }
 
@@ -180,7 +180,7 @@ impl<'a> OneSidedMap<'a> {
         at: &'a CornerImpact,
         side: Side,
         varied: &Varied,
-        stretch: Stretch,
+        stretch: SampledArc,
     ) -> Result<Self, SampleError> {
         let varied = match varied {
             Varied::Period => Turned::Slower,
@@ -246,7 +246,7 @@ impl<'a> OneSidedMap<'a> {
 
     /// How far the follower was from the cam when the corner passed, to first order: it comes down by `c' - v-` in each unit of the
     /// time that passes from the corner to the impact.
-    pub fn gap(&self, sample: &Sample) -> f64 {
+    pub fn gap(&self, sample: &PeriodSample) -> f64 {
         sample.past_corner * self.per_angle()
     }
 
@@ -299,8 +299,8 @@ impl<'a> OneSidedMap<'a> {
 
     /// One period from about `x* + (dx1, dx2)` at a period of about `T* + dT`, or another number; the sample says from where
     /// exactly.
-    pub fn sample(&self, perturbation: Vector3<f64>) -> Result<Sample, SampleError> {
-        let Stretch { section, start, goal, end, .. } = self.stretch;
+    pub fn sample(&self, perturbation: Vector3<f64>) -> Result<PeriodSample, SampleError> {
+        let SampledArc { section, start, goal, end, .. } = self.stretch;
         let state = State { position: start.position + perturbation[0], velocity: start.velocity + perturbation[1] };
         let (machine, whole, corner, third) = self.machine(perturbation[2])?;
         // A perturbation of a ten-thousandth keeps twelve digits when it is added to x* and T*. What is left of it is known
@@ -317,7 +317,7 @@ impl<'a> OneSidedMap<'a> {
             .map_err(failed)?;
         let moved_corner = corner - self.at.corner.angle;
         match self.past_corner(&whole, section, &events).map(|past| past - moved_corner) {
-            Some(past_corner) if past_corner.abs() < self.reach => Ok(Sample {
+            Some(past_corner) if past_corner.abs() < self.reach => Ok(PeriodSample {
                 perturbation: exact,
                 end: Vector2::new(motion.state.position - end.position, motion.state.velocity - end.velocity),
                 past_corner,

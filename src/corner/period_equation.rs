@@ -19,7 +19,7 @@ use super::corner_impact::{CornerImpact, Way, origin};
 use crate::cam::{Cam, Corner, Lift, Side};
 use crate::flight::{Flight, State};
 use crate::interval::Interval;
-use crate::interval::roots::{Isolated, Over, isolate};
+use crate::interval::roots::{BoxValues, Isolated, isolate};
 use crate::model::{Follower, Model, Study};
 use crate::orbit::complete::{OneImpact, Standing, Struck, joined};
 use crate::orbit::{Cycle, Impact};
@@ -75,7 +75,7 @@ pub enum Roots {
 pub const RESONANCE: &str = "the flight would need an unbounded velocity: the period is in resonance";
 
 /// What a root is.
-pub enum Verdict {
+pub enum RootVerdict {
     /// An orbit of the cam as it is.
     Orbit(Box<CornerImpact>),
     /// An orbit that touches the corner at this velocity, m/s, and does not hit it.
@@ -149,7 +149,7 @@ impl<'a> PeriodEquation<'a> {
         let most = least + for_each * radians as usize;
         let Isolated { roots, undecided, .. } = isolate([Interval::new(times[0], times[1])], most, |[time]| {
             let equation = at(*time);
-            Over { values: [equation.value], derivatives: [[equation.by_time]], is_wanted: true }
+            BoxValues { values: [equation.value], derivatives: [[equation.by_time]], is_wanted: true }
         });
         let ends = |time: Interval| [time.low(), time.high()].map(|time| time / self.revolutions as f64);
         let undecided: Vec<[f64; 2]> = joined(undecided).into_iter().map(|[time]| ends(time)).collect();
@@ -179,7 +179,7 @@ impl<'a> PeriodEquation<'a> {
     }
 
     /// Whether a flight that leaves the corner with the cam's own velocity is free of the cam until it is back.
-    pub fn graze(&self, model: &Model, cam: &Cam, period: f64) -> Verdict {
+    pub fn graze(&self, model: &Model, cam: &Cam, period: f64) -> RootVerdict {
         let velocity = self.cam_velocity(period);
         let machine = Machine::new(cam.clone(), &model.follower, TAU / period);
         let state = State { position: self.corner.plus.value, velocity };
@@ -187,13 +187,13 @@ impl<'a> PeriodEquation<'a> {
         let from_corner = |turned: f64| if turned > whole * PI { turned - whole * TAU } else { turned };
         match self.one_period(&machine, self.corner.angle, state, from_corner) {
             // Adding 0 takes the sign off a zero.
-            Ok(_) => Verdict::Grazing(velocity + 0.0),
-            Err(why) => Verdict::Rejected(format!("a graze, v = c', and no orbit: {why}")),
+            Ok(_) => RootVerdict::Grazing(velocity + 0.0),
+            Err(why) => RootVerdict::Rejected(format!("a graze, v = c', and no orbit: {why}")),
         }
     }
 
     /// Whether a root is an orbit of the cam as it is.
-    pub fn orbit(&self, model: &Model, cam: &Cam, root: Root) -> Verdict {
+    pub fn orbit(&self, model: &Model, cam: &Cam, root: Root) -> RootVerdict {
         let Root { period, bracket, residual, .. } = root;
         let time = self.flight_time(period);
         let response = self.flight.response(time);
@@ -204,17 +204,17 @@ impl<'a> PeriodEquation<'a> {
                 // v+ is free, so only v+ = v- = c' obeys the restitution law.
                 return self.graze(model, cam, period);
             }
-            return Verdict::Rejected(RESONANCE.into());
+            return RootVerdict::Rejected(RESONANCE.into());
         }
         let Some([velocity_before, velocity_after]) = self.velocities(period) else {
-            return Verdict::Rejected(RESONANCE.into());
+            return RootVerdict::Rejected(RESONANCE.into());
         };
         let approach = cam_velocity - velocity_before;
         if approach.abs() <= tolerance::GRAZING.value * (cam_velocity.abs() + velocity_before.abs()) {
             return self.graze(model, cam, period);
         }
         if approach < 0.0 {
-            return Verdict::Rejected("the flight would come out of the cam at the corner".into());
+            return RootVerdict::Rejected("the flight would come out of the cam at the corner".into());
         }
         let position = self.corner.plus.value;
         let state = self.flight.fly(State { position, velocity: velocity_after }, 0.5 * time).1;
@@ -223,7 +223,7 @@ impl<'a> PeriodEquation<'a> {
         let machine = Machine::new(cam.clone(), &model.follower, TAU / period);
         let (is_hit, end) = match self.one_period(&machine, section, state, |turned| turned - half) {
             Ok(result) => result,
-            Err(why) => return Verdict::Rejected(why),
+            Err(why) => return RootVerdict::Rejected(why),
         };
         // What is simulated has met the cam too slowly to hit it.
         if !is_hit {
@@ -233,9 +233,9 @@ impl<'a> PeriodEquation<'a> {
         let size = (state.position - position).abs() + time * (approach + state.velocity.abs());
         let closure = ((end.position - state.position).abs() + time * (end.velocity - state.velocity).abs()) / size;
         if closure > tolerance::ORBIT_CLOSURE.value {
-            return Verdict::Rejected(format!("one period ends {closure:e} of the orbit's size from its start"));
+            return RootVerdict::Rejected(format!("one period ends {closure:e} of the orbit's size from its start"));
         }
-        Verdict::Orbit(Box::new(CornerImpact {
+        RootVerdict::Orbit(Box::new(CornerImpact {
             corner: *self.corner,
             period,
             bracket,

@@ -3,13 +3,13 @@
 
 use std::collections::BTreeMap;
 
-use super::candidates::{Branches, candidates};
+use super::candidates::{SearchedBranches, candidates};
 use super::confirm::Candidate;
 use super::corner_impact::{CornerImpact, Way};
-use super::period_equation::{PeriodEquation, RESONANCE, Root, Roots, Verdict};
+use super::period_equation::{PeriodEquation, RESONANCE, Root, RootVerdict, Roots};
 use super::shots::shots;
 use crate::cam::{Cam, Corner, Side};
-use crate::known::{Complete, Known};
+use crate::known::{Complete, Evidence};
 use crate::model::{Model, Study};
 use crate::orbit::complete::Standing;
 use crate::progress::Watch;
@@ -56,7 +56,7 @@ pub struct FoundCornerImpacts {
     /// Where one of one impact may be missing, or refused without a proof.
     pub undecided: Vec<UndecidedSpeeds>,
     /// How orbits of several impacts were looked for.
-    pub searched: Branches,
+    pub searched: SearchedBranches,
 }
 
 /// How many corner impacts two ways of looking found that know nothing of each other.
@@ -118,7 +118,7 @@ pub fn find_corner_impacts(
     }
     let corners = &worth_looking_at(model, cam);
     let (one_impact, undecided) = one_impact(model, cam, corners, range, revolutions)?;
-    let known = if undecided.is_empty() { Known::Proved } else { Known::Sampled };
+    let known = if undecided.is_empty() { Evidence::Proved } else { Evidence::Sampled };
     let complete = vec![Complete { revolutions, impacts: 1, known }];
     let (mut on_branches, searched) = candidates(model, cam, range, revolutions, watch);
     on_branches.retain(|candidate| corners.contains(&candidate.corner));
@@ -161,7 +161,7 @@ pub(super) fn one_impact(
     corners: &[Corner],
     range: Study,
     revolutions: u64,
-) -> Result<(Vec<(Corner, f64, Verdict)>, Vec<UndecidedSpeeds>), RangeError> {
+) -> Result<(Vec<(Corner, f64, RootVerdict)>, Vec<UndecidedSpeeds>), RangeError> {
     let Study { rpm_min: low, rpm_max: high } = range;
     let (mut all, mut undecided) = (Vec::new(), Vec::new());
     for corner in corners {
@@ -181,7 +181,7 @@ pub(super) fn one_impact(
                             false => equation.orbit(model, cam, root),
                         };
                         let proved =
-                            if matches!(verdict, Verdict::Orbit(_)) { Standing::Orbit } else { Standing::NoOrbit };
+                            if matches!(verdict, RootVerdict::Orbit(_)) { Standing::Orbit } else { Standing::NoOrbit };
                         if root.standing != proved {
                             leave(root.bracket);
                         }
@@ -195,7 +195,7 @@ pub(super) fn one_impact(
                     let why = "flights of every period start and end there, so nothing fixes a speed";
                     let verdict = match equation.rests() {
                         true => equation.graze(model, cam, slowest),
-                        false => Verdict::Rejected(why.into()),
+                        false => RootVerdict::Rejected(why.into()),
                     };
                     all.push((*corner, slowest, verdict));
                 }
@@ -206,25 +206,25 @@ pub(super) fn one_impact(
 }
 
 /// A root at a corner of velocity, where a simulation in doubles cannot tell which side is hit: its flight is simulated.
-fn one_side(model: &Model, cam: &Cam, equation: &PeriodEquation<'_>, root: Root) -> Verdict {
+fn one_side(model: &Model, cam: &Cam, equation: &PeriodEquation<'_>, root: Root) -> RootVerdict {
     match equation.candidate(cam, root) {
         Some(candidate) => verdict(candidate, model, cam),
-        None => Verdict::Rejected(RESONANCE.into()),
+        None => RootVerdict::Rejected(RESONANCE.into()),
     }
 }
 
-fn verdict(candidate: Candidate, model: &Model, cam: &Cam) -> Verdict {
-    candidate.confirmed(model, cam).map_or_else(Verdict::Rejected, |orbit| Verdict::Orbit(Box::new(orbit)))
+fn verdict(candidate: Candidate, model: &Model, cam: &Cam) -> RootVerdict {
+    candidate.confirmed(model, cam).map_or_else(RootVerdict::Rejected, |orbit| RootVerdict::Orbit(Box::new(orbit)))
 }
 
 impl FoundCornerImpacts {
     /// What the verdict keeps; what it refuses is told.
-    fn orbit(&mut self, corner: &Corner, speed_rpm: f64, verdict: Verdict) -> Option<CornerImpact> {
+    fn orbit(&mut self, corner: &Corner, speed_rpm: f64, verdict: RootVerdict) -> Option<CornerImpact> {
         let cam_angle = corner.angle;
         let why = match verdict {
-            Verdict::Orbit(orbit) => return Some(*orbit),
-            Verdict::Rejected(why) => why,
-            Verdict::Grazing(_) => {
+            RootVerdict::Orbit(orbit) => return Some(*orbit),
+            RootVerdict::Rejected(why) => why,
+            RootVerdict::Grazing(_) => {
                 "a graze, v = c': the corner is touched, not hit, and the map has no linear part".into()
             }
         };

@@ -14,7 +14,7 @@
 use nalgebra::{Matrix2, Matrix2x3, RowVector2, SMatrix, Vector2};
 
 use super::corner_impact::CornerImpact;
-use super::map::{CornerMap, Line, Own, Route, RouteName, SideMap, Sides, Uncertainty};
+use super::map::{CornerMap, LinearForm, Own, Route, RouteName, SideMap, Sides, Uncertainty};
 use super::varied::{Change, LiftChange, NoChange, Varied};
 use crate::cam::{Cam, Side};
 use crate::flight::State;
@@ -55,7 +55,7 @@ pub fn route_by(model: &Model, cam: &Cam, at: &CornerImpact, varied: &Varied) ->
 
 /// `(e, f)`: `e dx + f dT` is, to first order, how far the follower is from the cam when the corner passes, without the impact on
 /// it; where it is negative, the impact has been before.
-pub fn border(model: &Model, cam: &Cam, at: &CornerImpact) -> Line {
+pub fn border(model: &Model, cam: &Cam, at: &CornerImpact) -> LinearForm {
     Around::new(model, cam, at).border()
 }
 
@@ -77,7 +77,7 @@ impl<'a> Around<'a> {
         SideMap { a: around.fixed_view::<2, 2>(0, 0).into(), b: around.column(2).into() }
     }
 
-    fn border(&self) -> Line {
+    fn border(&self) -> LinearForm {
         let gap = self.go(self.at.side, &Change::of_period(self.at.cycle.impacts.len()), true);
         (RowVector2::new(gap[(0, 0)], gap[(0, 1)]), gap[(0, 2)])
     }

@@ -1,7 +1,7 @@
 //! Where an h-set may begin: at a saddle of few impacts, along what its map stretches and what it shrinks.
 
 use super::HSet;
-use super::frame::Frame;
+use super::frame::HSetFrame;
 use super::map::ImpactMap;
 use crate::orbit::{PeriodicOrbit, Search, search};
 use crate::simulate::{Machine, SimulateError};
@@ -42,7 +42,7 @@ fn of_orbit(machine: &Machine, orbit: &PeriodicOrbit, rpm: f64) -> Vec<HSet> {
             cone_slope: None,
             strips: Vec::new(),
         };
-        let derivative = Frame::new(&plain).derivative(&map, impacts, plain.rpm)?;
+        let derivative = HSetFrame::new(&plain).derivative(&map, impacts, plain.rpm)?;
         let [one, two] = directions(derivative)?;
         Some(HSet { unstable: one, stable: two, ..plain })
     };

@@ -9,7 +9,7 @@ use std::cmp::Ordering;
 use rayon::prelude::*;
 
 use super::base::{bases, rounded};
-use super::frame::{Frame, Image};
+use super::frame::{HSetFrame, Image};
 use super::map::ImpactMap;
 use super::prove::{Covered, Refused, Relation, covered, loses, stands};
 use super::sample::{Crossing, Line, MOST_IMPACTS};
@@ -55,7 +55,7 @@ const MOST_BOXES: usize = 1536;
 
 /// How much is to be proved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Wanted {
+pub struct ProofScope {
     /// The most strips, the shortest in turns first.
     pub strips: usize,
     /// Whether cones are looked for.
@@ -66,7 +66,7 @@ pub struct Wanted {
 pub fn find(
     machine: &Machine,
     rpm: [f64; 2],
-    wanted: Wanted,
+    wanted: ProofScope,
     watch: &dyn Watch,
 ) -> Result<Result<Proved, Short>, SimulateError> {
     /// For each impact of a saddle the h-sets that are sampled at all heights, and of all saddles those that are tried to be proved; the
@@ -313,7 +313,7 @@ fn proved(machine: &Machine, set: HSet) -> Result<Proved, Vec<Refused>> {
 /// entropy of these.
 fn with_cones(machine: &Machine, set: HSet) -> (f64, HSet) {
     let map = ImpactMap::new(machine);
-    let frame = Frame::new(&set);
+    let frame = HSetFrame::new(&set);
     let images = set.strips.iter().map(|strip| {
         let at = |part: f64, [low, high]: [f64; 2]| low + part * (high - low);
         let parts = [0.0, 0.1, 0.5, 0.9, 1.0];

@@ -1,16 +1,16 @@
 //! The coordinates of an h-set, and the images of boxes in them.
 
-use super::map::{Impact, ImpactMap, Over, Unproved};
+use super::map::{Impact, ImpactMap, Over, UnprovedFlight};
 use super::{HSet, Strip};
-use crate::interval::centred::Centred;
+use crate::interval::mean_value_form::MeanValueForm;
 use crate::interval::{Interval, Number};
 
 /// x, y and the speed of the cam, rad/s.
-pub type Place = [Interval; 3];
+pub type SectionBox = [Interval; 3];
 
 /// The coordinates of an h-set.
 #[derive(Debug)]
-pub struct Frame {
+pub struct HSetFrame {
     centre: [Interval; 2],
     unstable: [Interval; 2],
     stable: [Interval; 2],
@@ -37,7 +37,7 @@ pub(super) fn angular_velocities([low, high]: [f64; 2]) -> Interval {
     Interval::new(low, high) * Interval::TURN / 60.0
 }
 
-impl Frame {
+impl HSetFrame {
     /// Those of an h-set.
     pub fn new(set: &HSet) -> Self {
         let number = |pair: [f64; 2]| pair.map(Interval::from);
@@ -81,10 +81,10 @@ impl Frame {
     }
 
     /// Where a box of a strip is carried.
-    pub fn image(&self, map: &ImpactMap<'_>, strip: &Strip, place: &Place) -> Result<Image, Unproved> {
+    pub fn image(&self, map: &ImpactMap<'_>, strip: &Strip, place: &SectionBox) -> Result<Image, UnprovedFlight> {
         let centre = place.map(|side| Interval::from(side.middle()));
         let over = std::array::from_fn(|side| place[side] - centre[side]);
-        let [x, y, omega] = std::array::from_fn(|side| Centred::unknown(side, centre[side], &over));
+        let [x, y, omega] = std::array::from_fn(|side| MeanValueForm::unknown(side, centre[side], &over));
         let mut impact = self.impact([x, y]);
         for _ in 0..strip.impacts {
             impact = map.next(&impact, omega)?;
@@ -104,7 +104,7 @@ impl Frame {
         strip: &Strip,
         [x, y]: [f64; 2],
         rpm: [f64; 2],
-    ) -> Result<Image, Unproved> {
+    ) -> Result<Image, UnprovedFlight> {
         self.image(map, strip, &[x.into(), y.into(), angular_velocities(rpm).middle().into()])
     }
 

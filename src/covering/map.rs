@@ -19,17 +19,17 @@ use serde::Serialize;
 
 use crate::cam::{Lift, Segment};
 use crate::interval::Interval;
-use crate::interval::centred::Centred;
+use crate::interval::mean_value_form::MeanValueForm;
 use crate::interval::roots::falls_to_zero;
 use crate::simulate::{Event, EventKind, Machine};
 
 /// A number over a box of two coordinates and the speed.
-pub(super) type Over<'a> = Centred<'a, 3>;
+pub(super) type Over<'a> = MeanValueForm<'a, 3>;
 
 /// Why nothing is proved of a flight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Unproved {
+pub enum UnprovedFlight {
     /// The follower may stay on the cam, or not come back to it for long.
     NoImpact,
     /// The next impact may be a graze, or not the same one all over the box.
@@ -38,7 +38,7 @@ pub enum Unproved {
     NotFirst,
 }
 
-named!(Unproved);
+named!(UnprovedFlight);
 
 /// Turns of the cam that a flight may take.
 const MOST_TURNS: u64 = 20;
@@ -108,9 +108,9 @@ impl<'a> ImpactMap<'a> {
     }
 
     /// The impact after one, at the cam's speed, rad/s.
-    pub(super) fn next<'b>(&self, from: &Impact<'b>, omega: Over<'b>) -> Result<Impact<'b>, Unproved> {
+    pub(super) fn next<'b>(&self, from: &Impact<'b>, omega: Over<'b>) -> Result<Impact<'b>, UnprovedFlight> {
         if !from.velocity.value().is_positive() {
-            return Err(Unproved::NoImpact);
+            return Err(UnprovedFlight::NoImpact);
         }
         let landing = self.land(from, &self.launch(from, omega))?;
         let turns = (landing.angle.centre.middle() / TAU).floor();
@@ -132,30 +132,30 @@ impl<'a> ImpactMap<'a> {
         segment: &Segment,
         place: [Interval; 2],
         omega: Interval,
-    ) -> Result<[[Interval; 2]; 2], Unproved> {
+    ) -> Result<[[Interval; 2]; 2], UnprovedFlight> {
         let restitution = Interval::from(self.machine.restitution());
         // v- = c' - u/r
         let before = omega * segment.law.lift_over(place[0]).slope - place[1] / restitution;
         let place = [place[0], before, omega];
         let centre = place.map(|side| Interval::from(side.middle()));
         let over = std::array::from_fn(|side| place[side] - centre[side]);
-        let [angle, before, omega] = std::array::from_fn(|side| Centred::unknown(side, centre[side], &over));
+        let [angle, before, omega] = std::array::from_fn(|side| MeanValueForm::unknown(side, centre[side], &over));
         let ([lift, slope], _) = lift_of(angle, |angles| segment.law.lift_over(angles));
         let velocity = (omega * slope - before) * restitution;
         let from = Impact { angle, velocity, turns: 0 };
         if !velocity.value().is_positive() {
-            return Err(Unproved::NoImpact);
+            return Err(UnprovedFlight::NoImpact);
         }
         let landing = self.land(&from, &self.launched(&from, omega, [lift, slope]))?;
         Ok([landing.angle, landing.velocity].map(|row| [row.whole.by[0], row.whole.by[1]]))
     }
 
     /// The flight to the first impact, which is transversal, as it is there.
-    fn land<'b>(&self, from: &Impact<'b>, launch: &Launch<'b, '_>) -> Result<Gap<'b>, Unproved> {
-        let guess = self.guess(from, launch.omega).ok_or(Unproved::NoImpact)?;
+    fn land<'b>(&self, from: &Impact<'b>, launch: &Launch<'b, '_>) -> Result<Gap<'b>, UnprovedFlight> {
+        let guess = self.guess(from, launch.omega).ok_or(UnprovedFlight::NoImpact)?;
         let time = launch.landing(guess)?;
         if !launch.is_first(time.value(), from.velocity.value()) {
-            return Err(Unproved::NotFirst);
+            return Err(UnprovedFlight::NotFirst);
         }
         Ok(launch.gap(time))
     }
@@ -188,7 +188,7 @@ impl<'a> ImpactMap<'a> {
         from: &Impact<'b>,
         omega: Over<'b>,
         shortest: f64,
-    ) -> Result<Vec<[Interval; 2]>, Unproved> {
+    ) -> Result<Vec<[Interval; 2]>, UnprovedFlight> {
         /// Steps that a flight begins with, of the shortest.
         const STEPS: f64 = 64.0;
         // What is below 0 came of rounding: cells have none.
@@ -216,7 +216,7 @@ impl<'a> ImpactMap<'a> {
                 continue;
             }
             if time == 0.0 {
-                return Err(Unproved::NoImpact);
+                return Err(UnprovedFlight::NoImpact);
             }
             let away = times - times.middle();
             let middle = launch.over(times.middle().into());
@@ -232,7 +232,7 @@ impl<'a> ImpactMap<'a> {
             }
             time = times.high();
         }
-        Err(Unproved::NoImpact)
+        Err(UnprovedFlight::NoImpact)
     }
 
     /// The time to the next impact from the centre, s, as simulated: where the proof begins to look.
@@ -283,7 +283,7 @@ impl<'a> Launch<'a, '_> {
     }
 
     /// The time of the impact that is near a guess, s, all over the box, and how it changes.
-    fn landing(&self, guess: f64) -> Result<Over<'a>, Unproved> {
+    fn landing(&self, guess: f64) -> Result<Over<'a>, UnprovedFlight> {
         let at_centre = |times| {
             let gap = self.over(times);
             [gap.value.centre, gap.rate.centre]
@@ -292,8 +292,8 @@ impl<'a> Launch<'a, '_> {
             let gap = self.over(times);
             [gap.value.value(), gap.rate.value()]
         };
-        let centre = falls_to_zero(guess, at_centre).ok_or(Unproved::NotTransversal)?;
-        let whole = falls_to_zero(guess, all_over).ok_or(Unproved::NotTransversal)?;
+        let centre = falls_to_zero(guess, at_centre).ok_or(UnprovedFlight::NotTransversal)?;
+        let whole = falls_to_zero(guess, all_over).ok_or(UnprovedFlight::NotTransversal)?;
         let gap = self.over(whole);
         // dt = -dg/g'
         let by = gap.value.whole.by.map(|by| -(by / gap.rate.value()));

@@ -29,9 +29,9 @@ pub(crate) mod sample;
 use serde::{Deserialize, Serialize};
 
 pub use entropy::entropy;
-pub use frame::{Frame, Image};
+pub use frame::{HSetFrame, Image};
 pub use known::known;
-pub use map::{ImpactMap, Unproved};
+pub use map::{ImpactMap, UnprovedFlight};
 
 /// A parallelogram of impacts, `centre + x unstable + y stable`, with strips that are carried across it.
 ///

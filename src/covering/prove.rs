@@ -16,8 +16,8 @@
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::frame::{Frame, Image, Place, angular_velocities};
-use super::map::{ImpactMap, Unproved};
+use super::frame::{HSetFrame, Image, SectionBox, angular_velocities};
+use super::map::{ImpactMap, UnprovedFlight};
 use super::{HSet, Strip};
 use crate::interval::{Interval, Number};
 use crate::simulate::Machine;
@@ -67,13 +67,13 @@ pub struct Refused {
     /// Where: x and y.
     pub at: [f64; 2],
     /// What is not proved of a flight.
-    pub flight: Option<Unproved>,
+    pub flight: Option<UnprovedFlight>,
     /// Whether it is shown not to hold, or the boxes ran out.
     pub is_refuted: bool,
 }
 
 /// A part of a strip, with its image where that is known.
-type Part = (Place, Option<Image>);
+type Part = (SectionBox, Option<Image>);
 
 /// Boxes that a relation is given up after: a strip that covers with room to spare takes some hundreds.
 const MOST_BOXES: usize = 1 << 12;
@@ -128,7 +128,7 @@ pub(super) fn loses(machine: &Machine, set: &HSet) -> Result<(), Refused> {
 
 /// Whether one strip covers the h-set, and keeps cones where they are asked for.
 pub(super) fn covered(machine: &Machine, set: &HSet, strip: &Strip, most_boxes: usize) -> Result<Covered, Refused> {
-    let proof = Proof { map: ImpactMap::new(machine), frame: Frame::new(set), set, strip, most_boxes };
+    let proof = Proof { map: ImpactMap::new(machine), frame: HSetFrame::new(set), set, strip, most_boxes };
     let (y, omega) = (Interval::new(set.y[0], set.y[1]), angular_velocities(set.rpm));
     let whole = Interval::new(set.x[0], set.x[1]);
     let beyond = |left: bool, image: &Image| {
@@ -173,7 +173,7 @@ pub(super) fn covered(machine: &Machine, set: &HSet, strip: &Strip, most_boxes: 
 /// The proof of one strip.
 struct Proof<'a> {
     map: ImpactMap<'a>,
-    frame: Frame,
+    frame: HSetFrame,
     set: &'a HSet,
     strip: &'a Strip,
     most_boxes: usize,
@@ -214,7 +214,7 @@ impl Proof<'_> {
     }
 
     /// The halves of a box, across the side that its image is widest by, or that of its middle.
-    fn halves(&self, place: &Place, image: Option<Image>) -> [Place; 2] {
+    fn halves(&self, place: &SectionBox, image: Option<Image>) -> [SectionBox; 2] {
         let sizes = [self.set.x, self.set.y].map(|[low, high]| high - low);
         let middle = || self.frame.image(&self.map, self.strip, &place.map(|side| side.middle().into())).ok();
         let image = image.or_else(middle);

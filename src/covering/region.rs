@@ -16,9 +16,9 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::frame::{angular_velocities, stretched};
-use super::map::{Impact, ImpactMap, Unproved};
+use super::map::{Impact, ImpactMap, UnprovedFlight};
 use crate::elementary;
-use crate::interval::centred::Centred;
+use crate::interval::mean_value_form::MeanValueForm;
 use crate::interval::{Interval, Number};
 use crate::orbit::search::velocity_scale;
 use crate::progress::Watch;
@@ -131,7 +131,7 @@ pub fn parted(machine: &Machine, rpm: f64, region: &Region) -> Option<f64> {
 
 /// A region that is not closed.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Escape {
+pub struct OpenRegion {
     /// Squares of a degree.
     pub squares_per_degree: u32,
     /// Cells so far.
@@ -139,7 +139,7 @@ pub struct Escape {
     /// The impact whose cell is not carried on: degrees of the cam, and m/s.
     pub at: [f64; 2],
     /// What is not proved of the flight from there; nothing where there were too many cells, or no impacts to begin with.
-    pub flight: Option<Unproved>,
+    pub flight: Option<UnprovedFlight>,
 }
 
 /// The plane of impacts of a machine, in squares.
@@ -164,7 +164,7 @@ pub fn trap(
     squares_per_degree: u32,
     most: usize,
     watch: &dyn Watch,
-) -> Result<Region, Escape> {
+) -> Result<Region, OpenRegion> {
     // Ends of cells are doubles.
     let squares_per_degree = squares_per_degree.next_power_of_two();
     /// So many squares on top of each other reach to what few impacts are faster than.
@@ -176,7 +176,7 @@ pub fn trap(
     let mut cover = Cover { known: HashMap::new(), pending: HashMap::new(), turn: 360 * i64::from(squares_per_degree) };
     let escape = |cells, place: Place, flight| {
         let at = [place[0].middle() / f64::from(squares_per_degree), place[1].middle() * height];
-        Escape { squares_per_degree, cells, at, flight }
+        OpenRegion { squares_per_degree, cells, at, flight }
     };
     impacts.iter().for_each(|place| cover.touch(&plane.squares(*place)));
     if cover.pending.is_empty() {
@@ -259,19 +259,19 @@ impl Plane<'_> {
     }
 
     /// The same of impacts that follow those of a cell. As wide as a turn, or without an end, it says nothing of where they are.
-    fn image(&self, contact: [Interval; 2]) -> Result<Place, Unproved> {
+    fn image(&self, contact: [Interval; 2]) -> Result<Place, UnprovedFlight> {
         let image = self.squares(contact);
         let turn = f64::from(360 * self.per_degree);
-        if image.iter().all(|side| side.width() < turn) { Ok(image) } else { Err(Unproved::NoImpact) }
+        if image.iter().all(|side| side.width() < turn) { Ok(image) } else { Err(UnprovedFlight::NoImpact) }
     }
 
     /// Where the impacts of a cell are followed by impacts.
-    fn look(&self, cell: &Cell) -> Result<Look, Unproved> {
+    fn look(&self, cell: &Cell) -> Result<Look, UnprovedFlight> {
         let angle = cell.side(0) / f64::from(self.per_degree) * (Interval::TURN / 360.0);
         let place = [angle, cell.side(1) * self.height, self.omega];
         let centre = place.map(|side| Interval::from(side.middle()));
         let over = std::array::from_fn(|side| place[side] - centre[side]);
-        let [angle, velocity, omega] = std::array::from_fn(|side| Centred::unknown(side, centre[side], &over));
+        let [angle, velocity, omega] = std::array::from_fn(|side| MeanValueForm::unknown(side, centre[side], &over));
         let from = Impact { angle, velocity, turns: 0 };
         let halved = cell.halved[0] + cell.halved[1];
         match self.map.next(&from, omega) {

@@ -4,7 +4,7 @@
 //! letters are estimated generously, because an SVG in a page is shown in whatever sans-serif font is available.
 
 use super::ticks::{self, Tick, ticks};
-use super::{Axis, Data, Figure, Mark, Panel};
+use super::{Data, Figure, FigureAxis, Mark, Panel};
 use crate::tolerance;
 
 /// Default width of the page.
@@ -174,7 +174,7 @@ fn horizontal_range(figure: &Figure) -> Option<[f64; 2]> {
 }
 
 /// Name of an axis with its unit in brackets.
-fn name(axis: &Axis, exponent: i32) -> String {
+fn name(axis: &FigureAxis, exponent: i32) -> String {
     let unit = ticks::unit(&axis.unit, exponent);
     if unit.is_empty() { axis.label.clone() } else { format!("{} ({unit})", axis.label) }
 }
@@ -189,7 +189,7 @@ fn vertical_ticks(panel: &Panel, range: Option<[f64; 2]>, height: f64) -> ticks:
     if few.ticks.len() == 1 { ticks(range, panel.y.spacing, (height / LINE) as usize, fits) } else { few }
 }
 
-fn horizontal_ticks(axis: &Axis, range: Option<[f64; 2]>, across: f64) -> ticks::Ticks {
+fn horizontal_ticks(axis: &FigureAxis, range: Option<[f64; 2]>, across: f64) -> ticks::Ticks {
     let Some(range) = range else { return ticks::Ticks::default() };
     let half = |tick: &Tick| width(&tick.label, TEXT) / 2.0;
     ticks(range, axis.spacing, (across / 44.0) as usize, |ticks| {

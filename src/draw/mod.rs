@@ -23,7 +23,7 @@ use serde::Serialize;
 
 pub use density::{Cloud, Density};
 pub use look::{Look, Theme};
-pub use ticks::Spacing;
+pub use ticks::TickSpacing;
 
 /// A drawing: panels below each other that share the horizontal axis.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -31,7 +31,7 @@ pub struct Figure {
     /// Title above the panels; empty for none.
     pub title: String,
     /// Horizontal axis of every panel.
-    pub x: Axis,
+    pub x: FigureAxis,
     /// Vertical lines through every panel, labelled above the first.
     pub marks: Vec<Mark>,
     /// Panels from top to bottom.
@@ -42,7 +42,7 @@ pub struct Figure {
 
 impl Figure {
     /// A figure without marks on its horizontal axis and without a note.
-    pub(crate) fn new(title: &str, x: Axis, panels: Vec<Panel>) -> Self {
+    pub(crate) fn new(title: &str, x: FigureAxis, panels: Vec<Panel>) -> Self {
         Self { title: title.into(), x, marks: Vec::new(), panels, note: String::new() }
     }
 
@@ -57,7 +57,7 @@ impl Figure {
 
 /// An axis: its name, unit and range.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Axis {
+pub struct FigureAxis {
     /// Name of the quantity on the axis.
     pub label: String,
     /// Unit; empty for a pure number.
@@ -65,20 +65,20 @@ pub struct Axis {
     /// Ends of the axis, the lower first; `None` for the extent of the data.
     pub range: Option<[f64; 2]>,
     /// Spacing of the ticks.
-    pub spacing: Spacing,
+    pub spacing: TickSpacing,
     /// Whether a unit of this vertical axis is as long as one of the horizontal axis, so that circles are round.
     pub to_scale: bool,
 }
 
-impl Axis {
+impl FigureAxis {
     /// An axis over the extent of the data.
     pub fn new(label: &str, unit: &str) -> Self {
-        Self { label: label.into(), unit: unit.into(), range: None, spacing: Spacing::Decimal, to_scale: false }
+        Self { label: label.into(), unit: unit.into(), range: None, spacing: TickSpacing::Decimal, to_scale: false }
     }
 
     /// An axis of degrees.
     pub fn degrees(label: &str) -> Self {
-        Self { spacing: Spacing::Degrees, ..Self::new(label, "deg") }
+        Self { spacing: TickSpacing::Degrees, ..Self::new(label, "deg") }
     }
 
     /// The axis with its ends set.
@@ -96,7 +96,7 @@ impl Axis {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Panel {
     /// The vertical axis.
-    pub y: Axis,
+    pub y: FigureAxis,
     /// Height of the frame, in units of the figure's width.
     pub height: f64,
     /// Series of data; the first is drawn first.
@@ -107,7 +107,7 @@ pub struct Panel {
 
 impl Panel {
     /// A panel without marks.
-    pub(crate) fn new(y: Axis, height: f64, series: Vec<Series>) -> Self {
+    pub(crate) fn new(y: FigureAxis, height: f64, series: Vec<Series>) -> Self {
         Self { y, height, series, marks: Vec::new() }
     }
 
@@ -187,7 +187,7 @@ impl Series {
     }
 
     /// A series of words, in the colour of the text and without a legend entry.
-    pub(crate) fn words(words: impl IntoIterator<Item = Word>) -> Self {
+    pub(crate) fn words(words: impl IntoIterator<Item = Label>) -> Self {
         Self::new("", Colour::Ink, Data::Words(words.into_iter().collect()))
     }
 
@@ -226,7 +226,7 @@ pub enum Data {
         marker: Marker,
     },
     /// Words at points, above all other data.
-    Words(Vec<Word>),
+    Words(Vec<Label>),
     /// Points counted on a grid, when there are too many to draw one by one.
     Density(Density),
     /// Regions of the plane, as the cells of a grid.
@@ -252,7 +252,7 @@ impl Data {
 
 /// A word at a point.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Word {
+pub struct Label {
     /// Position `[x, y]`.
     pub at: [f64; 2],
     /// Text; `_` lowers and `^` raises the letter after it, or the letters in braces.
@@ -261,7 +261,7 @@ pub struct Word {
     pub beside: Beside,
 }
 
-impl Word {
+impl Label {
     pub(crate) fn new(at: [f64; 2], text: &str, beside: Beside) -> Self {
         Self { at, text: text.into(), beside }
     }

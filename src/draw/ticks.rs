@@ -6,7 +6,7 @@ use serde::Serialize;
 /// Spacing of ticks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Spacing {
+pub enum TickSpacing {
     /// Multiples of 1, 2 or 5 times a power of ten.
     Decimal,
     /// Degrees: multiples of 15, 30, 45, 60, 90, …; decimal below 10.
@@ -46,13 +46,13 @@ pub struct Ticks {
 }
 
 /// The finest ticks, at most `most`, for which `fits` says that the labels do not touch.
-pub fn ticks(range: [f64; 2], spacing: Spacing, most: usize, fits: impl Fn(&[Tick]) -> bool) -> Ticks {
+pub fn ticks(range: [f64; 2], spacing: TickSpacing, most: usize, fits: impl Fn(&[Tick]) -> bool) -> Ticks {
     let [low, high] = range;
     let span = high - low;
-    if spacing == Spacing::Nothing || !(span > 0.0 && span.is_finite()) {
+    if spacing == TickSpacing::Nothing || !(span > 0.0 && span.is_finite()) {
         return Ticks::default();
     }
-    if spacing == Spacing::Logarithmic {
+    if spacing == TickSpacing::Logarithmic {
         return Ticks { ticks: powers([low, high], most.max(2), fits), exponent: 0 };
     }
     let exponent = exponent(low.abs().max(high.abs()));
@@ -101,20 +101,20 @@ fn exponent(largest: f64) -> i32 {
     if plain { 0 } else { (elementary::log10(largest) / 3.0).floor() as i32 * 3 }
 }
 
-fn first_step(least: f64, spacing: Spacing) -> f64 {
+fn first_step(least: f64, spacing: TickSpacing) -> f64 {
     let power = elementary::powf(10_f64, elementary::log10(least).floor());
     let decimal = [1.0, 2.0, 5.0, 10.0].into_iter().map(|part| part * power).find(|step| *step >= least);
     let step = decimal.unwrap_or(10.0 * power);
     match spacing {
-        Spacing::Degrees if step >= 10.0 => {
+        TickSpacing::Degrees if step >= 10.0 => {
             let part = PARTS_OF_A_CIRCLE.into_iter().find(|part| *part >= least);
-            part.unwrap_or_else(|| 360.0 * first_step(least / 360.0, Spacing::Decimal))
+            part.unwrap_or_else(|| 360.0 * first_step(least / 360.0, TickSpacing::Decimal))
         }
         _ => step,
     }
 }
 
-fn next_step(step: f64, spacing: Spacing) -> f64 {
+fn next_step(step: f64, spacing: TickSpacing) -> f64 {
     // Slightly above the step, to find the next one of the series.
     first_step(step * 1.01, spacing)
 }

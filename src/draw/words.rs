@@ -4,7 +4,7 @@ use std::fmt::{self, Write};
 
 use super::element::{escaped, fill, number};
 use super::layout::TEXT;
-use super::{Beside, Colour, Word};
+use super::{Beside, Colour, Label};
 
 /// Distance from a point to the word beside it.
 const AWAY: f64 = 7.0;
@@ -12,7 +12,7 @@ const AWAY: f64 = 7.0;
 const SHIFT: f64 = 4.0;
 
 /// Writes a word beside a point within the height of a frame; writes nothing if the point is NaN.
-pub(super) fn write(out: &mut impl Write, word: &Word, [x, y]: [f64; 2], height: f64, colour: Colour) -> fmt::Result {
+pub(super) fn write(out: &mut impl Write, word: &Label, [x, y]: [f64; 2], height: f64, colour: Colour) -> fmt::Result {
     if x.is_nan() || y.is_nan() {
         return Ok(());
     }

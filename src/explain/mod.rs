@@ -9,14 +9,14 @@ use serde_json::Value;
 
 use crate::cam::{Cam, Side};
 use crate::corner::map::RouteName;
-use crate::known::Known;
+use crate::known::Evidence;
 use crate::model::{Model, ModelError, Units, nearest};
 use crate::paper::checks::{self, Check};
 use crate::paper::{Claim, Context, LedgerError, ledger, proofs};
-use crate::report::quantities::{Quantity, quantities};
+use crate::report::quantities::{ReportQuantity, quantities};
 use crate::study::certify::Certificate;
-use crate::study::compare::{self, Values};
-use crate::study::compared::Skipped;
+use crate::study::compare::{self, NamedValues};
+use crate::study::routes::Skipped;
 use crate::study::verify::{External, Verification};
 use crate::tolerance::{self, Tolerance};
 
@@ -47,7 +47,7 @@ pub struct Explanation {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub skipped: Vec<Skipped>,
     /// Kind of knowledge: proved, computed or otherwise.
-    pub known: Known,
+    pub known: Evidence,
     /// Hypotheses of the proof of the value.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub hypotheses: Vec<String>,
@@ -65,7 +65,7 @@ pub struct Explanation {
 }
 
 impl Explanation {
-    fn plain(what: &str, sentence: &str, known: Known) -> Self {
+    fn plain(what: &str, sentence: &str, known: Evidence) -> Self {
         Self {
             schema: "corner-impact/explain/1",
             what: what.into(),
@@ -171,7 +171,7 @@ struct Link {
     value: Option<String>,
     routes: Option<String>,
     orbits: Option<String>,
-    known: Known,
+    known: Evidence,
     code: String,
     derivation: Option<String>,
     tests: Vec<String>,
@@ -196,7 +196,7 @@ enum Target<'a> {
     Link(&'a Link, Option<Side>),
     Tolerance(&'static Tolerance),
     Claim(&'a Claim),
-    Field(Quantity),
+    Field(ReportQuantity),
 }
 
 /// Results for a model, from which values are read.
@@ -206,7 +206,7 @@ pub struct Findings<'a> {
     cam: Cam,
     document: Value,
     /// Values by the names of `compare`.
-    values: Values,
+    values: NamedValues,
 }
 
 impl<'a> Findings<'a> {
@@ -319,18 +319,18 @@ impl Links {
                 value: Some(row.value.into()),
                 code: Some(Code { file: "src/tolerance.rs".into(), function: row.name.into() }),
                 tests: tests(&["tests/it/tolerance.rs: every_row_has_its_reason".into()]),
-                ..plain(&format!("A tolerance: {}.", row.reason), Known::Read)
+                ..plain(&format!("A tolerance: {}.", row.reason), Evidence::Read)
             },
             Target::Claim(claim) => Explanation {
                 evidence: evidence(claim, findings)?,
-                ..self.of_claim(claim, plain(&claim.statement, Known::Read))
+                ..self.of_claim(claim, plain(&claim.statement, Evidence::Read))
             },
             Target::Field(it) => {
                 let unit = if it.unit.is_empty() { String::new() } else { format!(", in {}", it.unit) };
                 Explanation {
                     value: Some(it.value.into()),
                     code: Some(Code { file: "src/report/quantities.rs".into(), function: "quantities".into() }),
-                    ..plain(&format!("A number of the model: {}{unit}.", it.meaning), Known::Read)
+                    ..plain(&format!("A number of the model: {}{unit}.", it.meaning), Evidence::Read)
                 }
             }
         })
@@ -338,7 +338,7 @@ impl Links {
 
     /// Evidence for each statement of the paper, by its id.
     pub fn of_claims(&self) -> BTreeMap<&str, Explanation> {
-        let of = |claim: &Claim| self.of_claim(claim, Explanation::plain(&claim.id, &claim.statement, Known::Read));
+        let of = |claim: &Claim| self.of_claim(claim, Explanation::plain(&claim.id, &claim.statement, Evidence::Read));
         self.claims.iter().map(|claim| (claim.id.as_str(), of(claim))).collect()
     }
 
@@ -397,7 +397,7 @@ impl Links {
             also: others.map(|other| other.name.clone()).chain(plus).chain(statements).collect(),
             inputs,
             value: own.or_else(|| at(link.value.as_deref()?)).cloned().or_else(|| of_input(&link.name)),
-            known: if is_proved { Known::Proved } else { link.known },
+            known: if is_proved { Evidence::Proved } else { link.known },
             hypotheses: certificate.map(Certificate::hypotheses).unwrap_or_default(),
             routes,
             skipped,
@@ -431,21 +431,21 @@ impl Links {
         let (known, code_at, proof) = match checks::find(&claim.id) {
             Some(Check::Equation(label)) => {
                 let link = link(&|link| link.labels.iter().any(|of| of == label));
-                (Known::Proved, link.map_or("src/paper/checks.rs: equation", |link| &link.code), proved(label))
+                (Evidence::Proved, link.map_or("src/paper/checks.rs: equation", |link| &link.code), proved(label))
             }
             Some(Check::Proofs(_, all, _)) => {
-                (Known::Proved, "src/paper/checks.rs: run", all.first().and_then(|one| proved(one)))
+                (Evidence::Proved, "src/paper/checks.rs: run", all.first().and_then(|one| proved(one)))
             }
             Some(Check::Number(quantity)) => {
                 let base = quantity.trim_end_matches("_minus").trim_end_matches("_plus");
                 let link = link(&|link| link.name == base || link.name == quantity);
                 let proof = link.and_then(|link| derivation(link.derivation.as_deref()?));
-                (Known::Computed, link.map_or("src/published.rs: compare_published", |link| &link.code), proof)
+                (Evidence::Computed, link.map_or("src/published.rs: compare_published", |link| &link.code), proof)
             }
             Some(Check::Any(known, _) | Check::Paper(known, _)) => {
                 (known, claim.check.as_deref().unwrap_or_default(), None)
             }
-            Some(Check::Read(..)) | None => (Known::Read, "", None),
+            Some(Check::Read(..)) | None => (Evidence::Read, "", None),
         };
         let right = claim.correct.as_ref().map_or_else(String::new, |right| format!(" Right instead: {right}"));
         Explanation {

@@ -1,10 +1,10 @@
 //! Basins on a section: the ending of each start, the orbits, and the boundary curve of the basins.
 
-use crate::draw::{Axis, BREAK, Colour, Data, Density, Figure, Marker, Panel, Series, Stroke};
+use crate::draw::{BREAK, Colour, Data, Density, Figure, FigureAxis, Marker, Panel, Series, Stroke};
 use crate::figures::{Across, position};
 use crate::flight::State;
 use crate::show::words;
-use crate::study::basins::{Basins, BasinsOver, Border, Grid, SharesOf};
+use crate::study::basins::{BasinBoundary, Basins, BasinsOver, Grid, SharesOf};
 
 /// Colour and strength of each part, in order, chosen so that their greys differ; further parts share the last.
 const COLOURS: [(Colour, f64); 5] =
@@ -12,8 +12,8 @@ const COLOURS: [(Colour, f64); 5] =
 
 /// Basins with position across, velocity up, and a colour for each ending. The figure also marks where stable orbits and saddles cross the
 /// section, and draws the saddles' stable manifolds.
-pub fn basins_figure(title: &str, grid: &Grid, basins: &Basins, border: &Border) -> Figure {
-    let Border { stable, saddles, curves } = border;
+pub fn basins_figure(title: &str, grid: &Grid, basins: &Basins, border: &BasinBoundary) -> Figure {
+    let BasinBoundary { stable, saddles, curves } = border;
     let (x, y) = (grid.positions, grid.velocities);
     let mut areas = vec![Density::new(x, y); basins.parts.len().min(COLOURS.len())];
     let [columns, rows] = Density::new(x, y).cells();
@@ -37,7 +37,11 @@ pub fn basins_figure(title: &str, grid: &Grid, basins: &Basins, border: &Border)
     series.extend(Series::points("stable orbit", Colour::Ink, Marker::Dot, stable.iter().map(at)).if_any());
     series.extend(Series::points("saddle", Colour::Ink, Marker::Ring, saddles.iter().map(at)).if_any());
     let title = format!("{title}{}", words::followed_for(basins.followed.iter().copied().flatten()));
-    Figure::new(&title, position().over(x), vec![Panel::new(Axis::new("velocity q'", "m/s").over(y), 0.66, series)])
+    Figure::new(
+        &title,
+        position().over(x),
+        vec![Panel::new(FigureAxis::new("velocity q'", "m/s").over(y), 0.66, series)],
+    )
 }
 
 /// Share of the starts that end on each kind of motion against the varied number, for the kinds with the most starts.
@@ -55,7 +59,7 @@ pub fn shares_figure(found: &BasinsOver) -> Figure {
         Series::line(&label(it), colour, stroke, points)
     });
     let title = format!("{}: what starts end on, {}", found.model, found.over.range(found.range));
-    let shares = Axis::new("share of starts", "%").over([-5.0, 105.0]);
+    let shares = FigureAxis::new("share of starts", "%").over([-5.0, 105.0]);
     let panel = Panel::new(shares, 0.5, series.collect());
     let note = match all.len().saturating_sub(COLOURS.len()) {
         0 => String::new(),

@@ -2,11 +2,11 @@
 //! own shape; attractors of runs lie behind them. No distinction needs colour.
 
 use crate::border_collision::feigin::Scenario;
-use crate::draw::{Axis, BREAK, Colour, Data, Figure, Marker, Panel, Series};
+use crate::draw::{BREAK, Colour, Data, Figure, FigureAxis, Marker, Panel, Series};
 use crate::figures::cam::{CornerMark, corner_marks};
 use crate::figures::impacts::{WHOLE_CAM, cloud, impact_angles, shown_impacts};
-use crate::figures::{Entry, Fast, SPEED, Subject, by_stability, drawn};
-use crate::orbit::branch::{Branch, BranchPoint, Kind, find_branches};
+use crate::figures::{Entry, Fast, FigureContext, SPEED, by_stability, drawn};
+use crate::orbit::branch::{Branch, BranchPoint, SpecialKind, find_branches};
 use crate::orbit::{Course, Search, Stability};
 use crate::show::words;
 use crate::study::survey::recurrence;
@@ -55,18 +55,21 @@ const MARKED: [(&str, Colour, Marker); 6] = [
     ("branching", Colour::Ink, Marker::Plus),
 ];
 
-fn mark(kind: &Kind) -> usize {
+fn mark(kind: &SpecialKind) -> usize {
     match kind {
-        Kind::Corner { .. } => 0,
-        Kind::Fold => 1,
-        Kind::Flip => 2,
-        Kind::Branching => 5,
-        Kind::Graze { .. } => 3,
-        Kind::Chatter | Kind::Detachment => 4,
+        SpecialKind::Corner { .. } => 0,
+        SpecialKind::Fold => 1,
+        SpecialKind::Flip => 2,
+        SpecialKind::Branching => 5,
+        SpecialKind::Graze { .. } => 3,
+        SpecialKind::Chatter | SpecialKind::Detachment => 4,
         // These kinds belong to another figure.
-        Kind::Type { .. } | Kind::Cusp | Kind::DegenerateGraze | Kind::Class(_) | Kind::Place | Kind::Turn => {
-            MARKED.len()
-        }
+        SpecialKind::Type { .. }
+        | SpecialKind::Cusp
+        | SpecialKind::DegenerateGraze
+        | SpecialKind::Class(_)
+        | SpecialKind::Place
+        | SpecialKind::Turn => MARKED.len(),
     }
 }
 
@@ -98,7 +101,7 @@ pub fn branches_figure(
     let label = if name == "rpm" { SPEED[0] } else { name };
     let panel = Panel::new(impact_angles().over(WHOLE_CAM), 0.52, series);
     let panel = Panel { marks: corners.iter().map(CornerMark::mark).collect(), ..panel };
-    Figure::new(title, Axis::new(label, unit).over(range), vec![panel])
+    Figure::new(title, FigureAxis::new(label, unit).over(range), vec![panel])
 }
 
 /// Splits the impacts of runs: one period at each value where the run recurs, and all impacts at the other values.
@@ -118,11 +121,11 @@ fn by_recurrence(settled: &[[f64; 2]]) -> (Vec<[f64; 2]>, Vec<[f64; 2]>) {
 /// position is at the grazing point.
 fn place(point: &BranchPoint, which: usize) -> Option<[f64; 2]> {
     let special = point.special.filter(|special| mark(&special.kind) == which)?;
-    let index = if let Kind::Corner { impact, .. } = special.kind { impact } else { 0 };
+    let index = if let SpecialKind::Corner { impact, .. } = special.kind { impact } else { 0 };
     let impact = point.orbit.impacts().nth(index).or_else(|| point.orbit.impacts().next());
     let angle = match (impact, special.kind) {
         (Some(impact), _) => impact.cam_angle,
-        (None, Kind::Graze { turned, .. }) => turned,
+        (None, SpecialKind::Graze { turned, .. }) => turned,
         (None, _) => return None,
     };
     Some([point.value, angle.to_degrees()])
@@ -138,7 +141,7 @@ fn lines(branches: &[Branch], stability: Stability) -> Vec<[f64; 2]> {
     .collect()
 }
 
-impl Subject {
+impl FigureContext {
     /// Branches of orbits of one impact in one revolution, and of two in two, over the fast speeds that are shown.
     pub(crate) fn branches(&self) -> Result<&[Branch], String> {
         let found = self.followed.get_or_init(|| {

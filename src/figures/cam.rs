@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use crate::cam::{Cam, Corner, Law, Lift};
-use crate::draw::{Axis, BREAK, Colour, Figure, Mark, Panel, Series, Stroke};
+use crate::draw::{BREAK, Colour, Figure, FigureAxis, Mark, Panel, Series, Stroke};
 use crate::figures::{Entry, drawn};
 
 /// The report's figure of the cam.
@@ -122,14 +122,14 @@ pub fn cam_figure(cam: &Cam, title: &str) -> Figure {
     };
     let panel = |name: &str, unit: &str, of: fn(&Lift) -> f64, order: usize| {
         let line = Series::line("", Colour::Blue, Stroke::Solid, samples(cam, corners, of, order));
-        Panel::new(Axis::new(name, unit), 0.21, vec![line])
+        Panel::new(FigureAxis::new(name, unit), 0.21, vec![line])
     };
     let panels = vec![
         panel("lift c", "m", |lift| lift.value, 0),
         panel("velocity dc/dθ", "m/rad", |lift| lift.slope, 1).with_zero(),
         panel("acceleration d²c/dθ²", "m/rad²", |lift| lift.curvature, 2).with_zero(),
     ];
-    let x = Axis::degrees("cam angle θ").over([0.0, 360.0]);
+    let x = FigureAxis::degrees("cam angle θ").over([0.0, 360.0]);
     Figure { marks: marks.iter().map(CornerMark::mark).collect(), note, ..Figure::new(title, x, panels) }
 }
 

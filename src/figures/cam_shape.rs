@@ -6,7 +6,7 @@
 use std::f64::consts::TAU;
 
 use crate::cam::{Arc, Cam, Corner, Law, Segment};
-use crate::draw::{Axis, BREAK, Beside, Colour, Figure, Marker, Panel, Series, Stroke, Word, extent};
+use crate::draw::{BREAK, Beside, Colour, Figure, FigureAxis, Label, Marker, Panel, Series, Stroke, extent};
 use crate::elementary;
 use crate::figures::cam::{corner_marks, corners_in_words, of_circles};
 use crate::figures::{Entry, drawn};
@@ -120,10 +120,10 @@ fn figure(title: &str, cam: &Cam, outline: &Outline) -> Figure {
     let letters = letters(cam, outline, farthest);
     series.push(Series::points("", Colour::Ink, Marker::Dot, letters.iter().map(|word| word.at)));
     // Of labels that would overlap, keep the first.
-    let mut apart: Vec<Word> = Vec::new();
+    let mut apart: Vec<Label> = Vec::new();
     for word in letters {
         let near =
-            |other: &Word| elementary::hypot(other.at[0] - word.at[0], other.at[1] - word.at[1]) < NEAR * farthest;
+            |other: &Label| elementary::hypot(other.at[0] - word.at[0], other.at[1] - word.at[1]) < NEAR * farthest;
         if !apart.iter().any(near) {
             apart.push(word);
         }
@@ -141,14 +141,14 @@ fn figure(title: &str, cam: &Cam, outline: &Outline) -> Figure {
         Series::arrow("follower, and the way the cam turns", Colour::Purple, Stroke::Thin, follower),
         Series::arrow("", Colour::Purple, Stroke::Thin, turn),
         Series::words([
-            Word::new([0.0, 0.0], "O", Beside::BelowRight),
-            Word::new(follower[1], "q", Beside::Right),
-            Word::new([0.0, 0.25 * farthest], "ω", Beside::Above),
+            Label::new([0.0, 0.0], "O", Beside::BelowRight),
+            Label::new(follower[1], "q", Beside::Right),
+            Label::new([0.0, 0.25 * farthest], "ω", Beside::Above),
         ]),
     ]);
     let reach = 1.7 * farthest;
-    let x = Axis::new("from the axis, across", "m").over([-reach, reach]);
-    let y = Axis::new("from the axis, along the follower", "m").over([-1.12 * farthest, 1.3 * farthest]).scaled();
+    let x = FigureAxis::new("from the axis, across", "m").over([-reach, reach]);
+    let y = FigureAxis::new("from the axis, along the follower", "m").over([-1.12 * farthest, 1.3 * farthest]).scaled();
     Figure::new(title, x, vec![Panel::new(y, 0.6, series)])
 }
 
@@ -175,7 +175,7 @@ fn segments(pieces: &[Piece]) -> Vec<Series> {
 }
 
 /// Names of the corners, placed on the outer side of the outline.
-fn letters(cam: &Cam, outline: &Outline, farthest: f64) -> Vec<Word> {
+fn letters(cam: &Cam, outline: &Outline, farthest: f64) -> Vec<Label> {
     let letter = |mark: &super::CornerMark| {
         let (_, at) = outline.corners.iter().find(|(angle, _)| *angle == mark.angle_rad)?;
         let steep = at[1].abs() > 2.0 * at[0].abs();
@@ -191,7 +191,7 @@ fn letters(cam: &Cam, outline: &Outline, farthest: f64) -> Vec<Word> {
             (false, false, false) => Beside::AboveLeft,
             (false, false, true) => Beside::BelowLeft,
         };
-        Some(Word::new(*at, &mark.label(), beside))
+        Some(Label::new(*at, &mark.label(), beside))
     };
     corner_marks(cam).iter().filter_map(letter).collect()
 }
@@ -205,7 +205,7 @@ fn construction(pieces: &[Piece]) -> Vec<Series> {
         };
         lines.extend([*first, centre, *last, BREAK]);
         centres.push(centre);
-        words.push(Word::new(centre, text, beside));
+        words.push(Label::new(centre, text, beside));
     }
     vec![
         Series::line("", Colour::Grey, Stroke::Thin, lines),

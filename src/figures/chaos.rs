@@ -3,7 +3,7 @@
 use crate::covering::prove::prove;
 use crate::covering::{HSet, known};
 use crate::draw::layout::widened;
-use crate::draw::{Axis, BREAK, Beside, Colour, Data, Density, Figure, Panel, Series, Stroke, Word, extent};
+use crate::draw::{BREAK, Beside, Colour, Data, Density, Figure, FigureAxis, Label, Panel, Series, Stroke, extent};
 use crate::figures::{Entry, drawn};
 use crate::show::words::hypotheses;
 use crate::study::chaos::{Portrait, portrait};
@@ -61,13 +61,17 @@ pub fn chaos_figure(title: &str, set: &HSet, portrait: &Portrait) -> Figure {
         let label = format!("{} impacts", strip.impacts);
         series.push(Series::line(&label, colour, Stroke::Solid, outline));
         let middle = 0.5 * (strip.x[0] + strip.x[1]);
-        names.push(Word::new(set.at([middle, set.y[1]]), &strip.impacts.to_string(), Beside::AboveRight));
+        names.push(Label::new(set.at([middle, set.y[1]]), &strip.impacts.to_string(), Beside::AboveRight));
     }
     let outline = corners.into_iter().chain(corners.first().copied());
     series.push(Series::line("h-set N", Colour::Ink, Stroke::Thin, outline));
     series.push(Series::words(names));
-    let velocity = Axis::new("velocity u after the impact, relative to the cam", "m/s").over(up);
-    Figure::new(title, Axis::degrees("cam angle at impact φ").over(across), vec![Panel::new(velocity, 0.7, series)])
+    let velocity = FigureAxis::new("velocity u after the impact, relative to the cam", "m/s").over(up);
+    Figure::new(
+        title,
+        FigureAxis::degrees("cam angle at impact φ").over(across),
+        vec![Panel::new(velocity, 0.7, series)],
+    )
 }
 
 /// Number of lines that fill a strip.

@@ -4,8 +4,8 @@ use serde::Serialize;
 
 use super::{Across, curve};
 use crate::border_collision::EventCurve;
-use crate::draw::ticks::{Spacing, Tick, Ticks, ticks};
-use crate::draw::{Axis, Colour, Data, Density, Figure, Panel, Series};
+use crate::draw::ticks::{Tick, TickSpacing, Ticks, ticks};
+use crate::draw::{Colour, Data, Density, Figure, FigureAxis, Panel, Series};
 use crate::model::Units;
 use crate::orbit::Parameter;
 use crate::orbit::long_run::Kind;
@@ -51,7 +51,7 @@ fn classes(found: &Charted, coloured: Coloured) -> (Vec<Class>, impl Fn(&Point) 
     // A few outliers fall into the outermost bands.
     let part = |share: f64| finite.get((share * finite.len() as f64) as usize).copied().unwrap_or(f64::NAN);
     let range = [part(0.01), part(0.99)];
-    let Ticks { ticks: edges, exponent } = ticks(range, Spacing::Decimal, BANDS, |_| true);
+    let Ticks { ticks: edges, exponent } = ticks(range, TickSpacing::Decimal, BANDS, |_| true);
     let mut classes: Vec<Class> = match coloured {
         Coloured::Period => PERIODS.map(|(label, colour, strength)| (label.into(), colour, strength)).into(),
         Coloured::Regime => REGIMES.map(|(kind, colour, strength)| (words::kind(kind).into(), colour, strength)).into(),
@@ -173,7 +173,7 @@ pub fn chart_figure(found: &Charted, coloured: Coloured, curves: &[EventCurve], 
     };
     let series = series.chain(curve::lines(curves, place)).collect();
     let axis = |axis: &survey::Axis, range| match &axis.parameter {
-        Parameter::Speed => Axis { label: "speed".into(), ..Across::of(axis, units).axis() }.over(range),
+        Parameter::Speed => FigureAxis { label: "speed".into(), ..Across::of(axis, units).axis() }.over(range),
         Parameter::Field(_) => Across::of(axis, units).axis().over(range),
     };
     let what = match coloured {

@@ -20,8 +20,8 @@ use nalgebra::Vector2;
 
 use crate::cam::{Side, apart};
 use crate::corner::CornerImpact;
-use crate::draw::{Axis, BREAK, Beside, Colour, Figure, Marker, Panel, Series, Stroke, Word};
-use crate::figures::{Entry, Subject, drawn};
+use crate::draw::{BREAK, Beside, Colour, Figure, FigureAxis, Label, Marker, Panel, Series, Stroke};
+use crate::figures::{Entry, FigureContext, drawn};
 use crate::flight::{Flight, State};
 use crate::impact::rebound;
 use crate::section::StroboscopicMap;
@@ -119,7 +119,7 @@ fn flown(flight: &Flight, state: State, from: f64, to: f64) -> Option<(State, Li
     Some((end, (0..=SAMPLES).map(at).collect()))
 }
 
-impl Subject {
+impl FigureContext {
     /// Computes the composition at a visible size, or says why there is none.
     pub fn composition(&self) -> Result<Composition, String> {
         let at = &self.found()?.at;
@@ -226,18 +226,18 @@ fn figure(title: &str, shown: &Composition) -> Figure {
     let sections = [-0.5, 0.0, 0.5].into_iter().flat_map(|time| [[time, range[0]], [time, range[1]], BREAK]);
     let middle = |line: &[[f64; 2]]| line.get(line.len() / 2).copied().unwrap_or(BREAK);
     let words = [
-        Word::new([-0.5, top + 0.12 * height], "Π_1", Beside::Right),
-        Word::new([0.0, top + 0.12 * height], "Π_D", Beside::Right),
-        Word::new([0.5, top + 0.12 * height], "Π_2", Beside::Right),
-        Word::new([-0.5, star], "x^*", Beside::Above),
-        Word::new([0.5, star], "x^*", Beside::Above),
-        Word::new([-0.5, first], "x_1", Beside::Left),
-        Word::new([0.5, last], "x_2", Beside::Right),
-        Word::new([0.0, minus], "x_d^−", Beside::BelowRight),
-        Word::new([0.0, plus], "x_d^+", Beside::AboveRight),
-        Word::new(middle(&coming), "P_1", Beside::Left),
-        Word::new(middle(&going), "P_2", Beside::Right),
-        Word::new([0.0, minus + 0.3 * (plus - minus)], "P_D", Beside::Right),
+        Label::new([-0.5, top + 0.12 * height], "Π_1", Beside::Right),
+        Label::new([0.0, top + 0.12 * height], "Π_D", Beside::Right),
+        Label::new([0.5, top + 0.12 * height], "Π_2", Beside::Right),
+        Label::new([-0.5, star], "x^*", Beside::Above),
+        Label::new([0.5, star], "x^*", Beside::Above),
+        Label::new([-0.5, first], "x_1", Beside::Left),
+        Label::new([0.5, last], "x_2", Beside::Right),
+        Label::new([0.0, minus], "x_d^−", Beside::BelowRight),
+        Label::new([0.0, plus], "x_d^+", Beside::AboveRight),
+        Label::new(middle(&coming), "P_1", Beside::Left),
+        Label::new(middle(&going), "P_2", Beside::Right),
+        Label::new([0.0, minus + 0.3 * (plus - minus)], "P_D", Beside::Right),
     ];
     let (red, mapping) = (Colour::Vermilion, [[0.0, minus], [0.0, plus]]);
     let series = vec![
@@ -251,6 +251,6 @@ fn figure(title: &str, shown: &Composition) -> Figure {
         Series::points("", Colour::Blue, Marker::Disc, [[-0.5, star], [0.5, star]]),
         Series::words(words),
     ];
-    let x = Axis::new("time from the passage of the corner, in periods T*", "").over([-1.0, 1.0]);
-    Figure::new(title, x, vec![Panel::new(Axis::new("position", "m").over(range), 0.55, series)])
+    let x = FigureAxis::new("time from the passage of the corner, in periods T*", "").over([-1.0, 1.0]);
+    Figure::new(title, x, vec![Panel::new(FigureAxis::new("position", "m").over(range), 0.55, series)])
 }

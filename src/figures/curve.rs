@@ -3,7 +3,7 @@
 use crate::border_collision::EventCurve;
 use crate::border_collision::event_curve::{EventPoint, Happening};
 use crate::border_collision::feigin::Scenario;
-use crate::draw::{Axis, BREAK, Colour, Figure, Mark, Marker, Panel, Series, Stroke};
+use crate::draw::{BREAK, Colour, Figure, FigureAxis, Mark, Marker, Panel, Series, Stroke};
 use crate::orbit::branch::Bifurcation;
 
 /// Kinds of corner impact, with their names, colours and strokes.
@@ -40,10 +40,11 @@ pub fn curve_figure(
     speeds: [f64; 2],
     curves: &[EventCurve],
 ) -> Figure {
-    let panel = Panel::new(Axis::new("speed", "rpm").over(speeds), 0.52, lines(curves, |rpm, value| [value, rpm]));
+    let panel =
+        Panel::new(FigureAxis::new("speed", "rpm").over(speeds), 0.52, lines(curves, |rpm, value| [value, rpm]));
     let is_shown = (range[0]..=range[1]).contains(&own);
     let marks = is_shown.then(|| Mark { at: own, label: format!("the model, {own}") }).into_iter().collect();
-    Figure { marks, ..Figure::new(title, Axis::new(name, unit).over(range), vec![panel]) }
+    Figure { marks, ..Figure::new(title, FigureAxis::new(name, unit).over(range), vec![panel]) }
 }
 
 /// A line for each kind of event, and their marks; `place` maps a speed, rpm, and a value of the number to a point of the figure.

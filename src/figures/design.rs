@@ -1,6 +1,6 @@
 //! Figures for design: the contact force round the cam, forces and loads against the speed, or one number against another.
 
-use crate::draw::{Axis, BREAK, Colour, Figure, Mark, Marker, Panel, Series, Stroke, extent};
+use crate::draw::{BREAK, Colour, Figure, FigureAxis, Mark, Marker, Panel, Series, Stroke, extent};
 use crate::figures::Across;
 use crate::figures::impacts::WHOLE_CAM;
 use crate::measured::Measured;
@@ -8,7 +8,7 @@ use crate::model::Units;
 use crate::show::digits::with_error;
 use crate::study::design::contact::Separation;
 use crate::study::design::loads::{Load, Loads};
-use crate::study::design::{Design, Pair, Trade};
+use crate::study::design::{Design, RequiredPair, Trade};
 use crate::study::survey::Place;
 
 /// Draws trades if there are any, else the force round the cam at one speed, else forces and loads against the speed.
@@ -19,8 +19,8 @@ pub fn design_figure(found: &Design) -> Figure {
     if !found.round.is_empty() { round(found) } else { speeds(found) }
 }
 
-fn force_axis(found: &Design, name: &str) -> Axis {
-    Axis::new(name, found.units.force.name())
+fn force_axis(found: &Design, name: &str) -> FigureAxis {
+    FigureAxis::new(name, found.units.force.name())
 }
 
 fn round(found: &Design) -> Figure {
@@ -29,7 +29,7 @@ fn round(found: &Design) -> Figure {
     let panel = Panel::new(force_axis(found, "contact force"), 0.5, vec![line]).with_zero();
     let rpm = found.forces.first().map_or(f64::NAN, |at| at.place.rpm);
     let title = format!("{} at {rpm} rpm: contact force round the cam", found.model.name);
-    let figure = Figure::new(&title, Axis::degrees("cam angle").over(WHOLE_CAM), vec![panel]);
+    let figure = Figure::new(&title, FigureAxis::degrees("cam angle").over(WHOLE_CAM), vec![panel]);
     // A negative force would pull, which a cam cannot do.
     let pulls = found.round.iter().any(|[_, force]| *force < 0.0);
     Figure {
@@ -71,7 +71,7 @@ fn speeds(found: &Design) -> Figure {
             let error = |loads: &Loads| loads.errors.map(|errors| scale * errors[index]);
             let open =
                 open_by_cam("", found.loads.iter().map(|loads| (x(loads.place), value(loads), error(loads))).collect());
-            Panel::new(Axis::new(name, unit), 0.15, open.into_iter().chain([line]).collect()).with_zero()
+            Panel::new(FigureAxis::new(name, unit), 0.15, open.into_iter().chain([line]).collect()).with_zero()
         }));
     }
     let at = found.separation.speed();
@@ -100,35 +100,35 @@ pub fn loads_diagram(title: &str, across: &Across, sweep: &[Vec<Loads>], load: L
         Load::Force => ("largest contact force of a revolution", units.force.name()),
     };
     let series = Series::points("", Colour::Blue, Marker::Dot, points);
-    Figure::new(title, across.axis(), vec![Panel::new(Axis::new(name, unit), 0.5, vec![series])])
+    Figure::new(title, across.axis(), vec![Panel::new(FigureAxis::new(name, unit), 0.5, vec![series])])
 }
 
 fn trades(found: &Design) -> Figure {
     // A trade that no value satisfies, or that every value satisfies, has no line.
-    let does = |pair: &Pair| pair.found.is_some_and(|value| value > 0.0) || pair.other.is_some();
+    let does = |pair: &RequiredPair| pair.found.is_some_and(|value| value > 0.0) || pair.other.is_some();
     let has_line = |trade: &&Trade| trade.pairs.windows(2).any(|pairs| pairs.iter().all(does));
     let mut shown: Vec<&Trade> = found.trades.iter().filter(has_line).collect();
     if shown.is_empty() {
         shown = found.trades.iter().collect();
     }
     let panels = shown.into_iter().map(|trade| {
-        let line = |name: &str, stroke: Stroke, end: fn(&Pair) -> Option<f64>| {
+        let line = |name: &str, stroke: Stroke, end: fn(&RequiredPair) -> Option<f64>| {
             let points = trade.pairs.iter().map(|pair| [pair.given, end(pair).unwrap_or(f64::NAN)]);
             Series::line(name, Colour::Blue, stroke, points)
         };
         let is_range = trade.pairs.iter().any(|pair| pair.other.is_some());
         let [bound, beyond] = if trade.parameter.is_upper_bound() { ["most", "least"] } else { ["least", "most"] };
-        let error = |pair: &Pair| Some((pair.given, pair.found?, pair.error));
+        let error = |pair: &RequiredPair| Some((pair.given, pair.found?, pair.error));
         let mut series: Vec<Series> =
             open_by_cam(OPEN, trade.pairs.iter().filter_map(error).collect()).into_iter().collect();
         series.push(line(if is_range { bound } else { "" }, Stroke::Solid, |pair| pair.found));
         if is_range {
-            let error = |pair: &Pair| Some((pair.given, pair.other?, pair.other_error));
+            let error = |pair: &RequiredPair| Some((pair.given, pair.other?, pair.other_error));
             series.extend(open_by_cam("", trade.pairs.iter().filter_map(error).collect()));
             series.push(line(beyond, Stroke::Dashed, |pair| pair.other));
         }
         let name = if is_range { trade.parameter.to_string() } else { format!("{bound} {}", trade.parameter) };
-        Panel::new(Axis::new(&name, &trade.unit), 0.22, series)
+        Panel::new(FigureAxis::new(&name, &trade.unit), 0.22, series)
     });
     let (against, unit) = found
         .trades
@@ -137,7 +137,7 @@ fn trades(found: &Design) -> Figure {
     let range = extent(found.trades.iter().flat_map(|trade| trade.pairs.iter().map(|pair| pair.given)));
     let needs: Vec<&str> = found.trades.iter().map(|trade| trade.need.as_str()).collect();
     let title = format!("{}: {}", found.model.name, needs.first().unwrap_or(&""));
-    Figure::new(&title, Axis::new(&against, unit).over(range), panels.collect())
+    Figure::new(&title, FigureAxis::new(&against, unit).over(range), panels.collect())
 }
 
 /// Label, once in a panel, of the lines that show the uncertainty due to a measured cam.

@@ -1,7 +1,7 @@
 //! The discontinuity mapping P_D near the corner: an impact before it in the upper panel, one after it in the lower.
 
 use crate::cam::Side;
-use crate::draw::{Axis, BREAK, Beside, Colour, Figure, Marker, Panel, Series, Stroke, Word, extent};
+use crate::draw::{BREAK, Beside, Colour, Figure, FigureAxis, Label, Marker, Panel, Series, Stroke, extent};
 use crate::figures::composition::{Composition, Neighbour};
 use crate::figures::{Entry, drawn};
 
@@ -13,7 +13,7 @@ pub(crate) const DISCONTINUITY_MAPPING: Entry = Entry {
     draw: |subject, title| {
         let shown = subject.composition()?;
         let window = shown.window * MILLI;
-        let x = Axis::new("time from the passage of the corner", "ms").over([-window, window]);
+        let x = FigureAxis::new("time from the passage of the corner", "ms").over([-window, window]);
         let panels = shown.neighbours.iter().map(|near| mapping(&shown, near)).collect();
         drawn(
             Figure::new(title, x, panels),
@@ -44,24 +44,24 @@ fn mapping(shown: &Composition, near: &Neighbour) -> Panel {
     let is_before = near.side == Side::Minus;
     let (name, unreal, label, law, [at_section, at_impact]) = if is_before {
         let end = before[1].last().copied().unwrap_or(BREAK);
-        let law = Word::new(end, "law before the corner", Beside::AboveLeft);
+        let law = Label::new(end, "law before the corner", Beside::AboveLeft);
         let sides = [Beside::Right, Beside::Left];
         ("position, impact before the corner", &coming[1], "past the cam, undone", law, sides)
     } else {
         let end = after[1].first().copied().unwrap_or(BREAK);
-        let law = Word::new(end, "law after the corner", Beside::BelowRight);
+        let law = Label::new(end, "law after the corner", Beside::BelowRight);
         let sides = [Beside::Left, Beside::Right];
         ("position, impact after the corner", &going[1], "back in time", law, sides)
     };
     let words = [
-        Word::new([0.0, range[1] - 0.5 * room], "Π_D", at_impact),
-        Word::new([0.0, minus + 0.25 * (plus - minus)], "P_D", at_section),
-        Word::new([0.0, minus], "x_d^−", at_section),
-        Word::new([0.0, plus], "x_d^+", at_section),
+        Label::new([0.0, range[1] - 0.5 * room], "Π_D", at_impact),
+        Label::new([0.0, minus + 0.25 * (plus - minus)], "P_D", at_section),
+        Label::new([0.0, minus], "x_d^−", at_section),
+        Label::new([0.0, plus], "x_d^+", at_section),
         // Between the flights before and after the impact, where the cam's law is not drawn.
-        Word::new([hit[0], hit[1] + 0.06 * (high - low)], "x^−, x^+", Beside::Above),
+        Label::new([hit[0], hit[1] + 0.06 * (high - low)], "x^−, x^+", Beside::Above),
         law,
-        Word::new([hit[0], range[0] + 0.5 * room], "−t_i", at_impact),
+        Label::new([hit[0], range[0] + 0.5 * room], "−t_i", at_impact),
     ];
     let (red, jump) = (Colour::Vermilion, [[0.0, minus], [0.0, plus]]);
     let series = vec![
@@ -76,5 +76,5 @@ fn mapping(shown: &Composition, near: &Neighbour) -> Panel {
         Series::points("", red, Marker::Disc, [jump[0], hit, jump[1]]),
         Series::words(words),
     ];
-    Panel::new(Axis::new(name, "m").over(range), 0.42, series)
+    Panel::new(FigureAxis::new(name, "m").over(range), 0.42, series)
 }

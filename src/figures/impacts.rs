@@ -1,12 +1,12 @@
 //! Diagrams over speeds: cam angles of impacts, or follower positions at the section.
 
 use crate::draw::layout::widened;
-use crate::draw::{Axis, Colour, Data, Density, Figure, Panel, Series, Stroke};
+use crate::draw::{Colour, Data, Density, Figure, FigureAxis, Panel, Series, Stroke};
 use crate::figures::cam::{CornerMark, corner_marks};
-use crate::figures::{Effort, Entry, SPEED, Slow, Subject, drawn, position};
+use crate::figures::{Effort, Entry, FigureContext, SPEED, Slow, drawn, position};
 use crate::orbit::Parameter;
 use crate::study::survey::{
-    Axis as Over, Beginning, Following, Placed, Places, Section, Start, Survey, Sweep, SweepError, Values,
+    Axis as Over, Beginning, Placed, Places, Section, Start, Survey, Sweep, SweepError, SweepStart, Values,
 };
 
 /// Impacts above the speed at which the follower begins to leave the cam.
@@ -67,8 +67,8 @@ pub(crate) fn cloud(range: [f64; 2], impacts: &[[f64; 2]]) -> Density {
 }
 
 /// Axis of impact phases.
-pub(crate) fn impact_angles() -> Axis {
-    Axis::degrees("cam angle at impact φ")
+pub(crate) fn impact_angles() -> FigureAxis {
+    FigureAxis::degrees("cam angle at impact φ")
 }
 
 /// Range of impact phases, degrees, of the points, slightly widened, and at most the whole cam.
@@ -77,25 +77,31 @@ pub(crate) fn shown_impacts(points: &Density) -> Option<[f64; 2]> {
     Some([low.max(0.0), high.min(360.0)])
 }
 
-fn figure(title: &str, points: Density, axis: Axis, shown: Option<[f64; 2]>, exponents: Option<&[[f64; 2]]>) -> Figure {
+fn figure(
+    title: &str,
+    points: Density,
+    axis: FigureAxis,
+    shown: Option<[f64; 2]>,
+    exponents: Option<&[[f64; 2]]>,
+) -> Figure {
     let [rpm, all] = points.ranges();
     let forgets = exponents.is_some_and(|points| points.iter().any(|[_, exponent]| *exponent == f64::NEG_INFINITY));
     let cloud = Series::new("", Colour::Blue, Data::Density(points));
     let mut panels = vec![Panel::new(axis.over(shown.unwrap_or(all)), 0.52, vec![cloud])];
     panels.extend(exponents.map(|points| {
         let line = Series::line("", Colour::Vermilion, Stroke::Thin, points.iter().copied());
-        Panel::new(Axis::new("Lyapunov exponent λ", "per revolution"), 0.2, vec![line]).with_zero()
+        Panel::new(FigureAxis::new("Lyapunov exponent λ", "per revolution"), 0.2, vec![line]).with_zero()
     }));
     let note = if forgets { FORGETS.into() } else { String::new() };
-    Figure { note, ..Figure::new(title, Axis::new(SPEED[0], SPEED[1]).over(rpm), panels) }
+    Figure { note, ..Figure::new(title, FigureAxis::new(SPEED[0], SPEED[1]).over(rpm), panels) }
 }
 
-impl Subject {
+impl FigureContext {
     fn sweep(
         &self,
         range: [f64; 2],
         section: Section,
-        following: Following,
+        following: SweepStart,
         effort: Effort,
     ) -> Result<Vec<[f64; 2]>, String> {
         let [low, high] = range;
@@ -119,7 +125,7 @@ impl Subject {
 
     /// Impacts above detachment: speed, rpm, and cam angle, rad.
     pub fn slow_impacts(&self, range: [f64; 2]) -> Result<Vec<[f64; 2]>, String> {
-        self.sweep(range, Section::Impacts, Following::Nothing, self.slow_effort)
+        self.sweep(range, Section::Impacts, SweepStart::Nothing, self.slow_effort)
     }
 
     /// Points on which runs with rising and with falling speed settle around the corner impact: speed, rpm, and cam angle of
@@ -127,7 +133,7 @@ impl Subject {
     pub fn fast_runs(&self, range: [f64; 2], at_section: bool) -> Result<Vec<[f64; 2]>, String> {
         let section = if at_section { Section::Strobe(self.found()?.at.section_angle()) } else { Section::Impacts };
         let run = |following| self.sweep(range, section, following, self.fast_effort);
-        let (rising, falling) = rayon::join(|| run(Following::Up), || run(Following::Down));
+        let (rising, falling) = rayon::join(|| run(SweepStart::Up), || run(SweepStart::Down));
         let mut both = rising?;
         both.extend(falling?);
         Ok(both)

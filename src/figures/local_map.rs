@@ -5,13 +5,13 @@
 
 use std::f64::consts::TAU;
 
-use crate::border_collision::long_run::End;
+use crate::border_collision::long_run::LocalLongRun;
 use crate::border_collision::outcome::LocalOutcome;
-use crate::border_collision::validity::Compared;
+use crate::border_collision::validity::ComparedMotion;
 use crate::cam::apart;
-use crate::draw::{Axis, BREAK, Beside, Colour, Figure, Mark, Panel, Series, Stroke, Word};
+use crate::draw::{BREAK, Beside, Colour, Figure, FigureAxis, Label, Mark, Panel, Series, Stroke};
 use crate::figures::section::Crossings;
-use crate::figures::{Entry, Subject, by_stability, drawn};
+use crate::figures::{Entry, FigureContext, by_stability, drawn};
 use crate::orbit::branch::{Branch, Following};
 use crate::orbit::{Parameter, PeriodicOrbit, Search, Stability, search};
 use crate::show::words;
@@ -73,7 +73,7 @@ pub struct NextToCorner {
     pub machine: Vec<Crossings>,
 }
 
-impl Subject {
+impl FigureContext {
     /// Computes the local map's diagram, or says why there is none.
     pub fn next_to_corner(&self) -> Result<NextToCorner, String> {
         let found = self.found()?;
@@ -94,10 +94,11 @@ impl Subject {
         });
         let rays: Vec<Ray> = rays.filter(|ray| ray.sign != 0.0).collect();
         let leaves = |outcome: &&LocalOutcome| {
-            outcome.mu != 0.0 && outcome.fates.iter().all(|fate| matches!(fate.end, End::Escapes(_)))
+            outcome.mu != 0.0 && outcome.fates.iter().all(|fate| matches!(fate.end, LocalLongRun::Escapes(_)))
         };
         let left = found.outcomes.iter().filter(leaves).map(|outcome| outcome.mu).collect();
-        let fixed = found.ranges.iter().filter(|range| range.order == 1 && range.compared != Compared::OneRevolution);
+        let fixed =
+            found.ranges.iter().filter(|range| range.order == 1 && range.compared != ComparedMotion::OneRevolution);
         let held = fixed.map(|range| range.period_change.abs()).filter(|change| *change > 0.0);
         let least = held.fold(f64::INFINITY, f64::min);
         let reach = if least.is_finite() { BEYOND * least } else { 1e-3 * at.period };
@@ -158,7 +159,7 @@ fn figure(title: &str, shown: &NextToCorner) -> Figure {
         panels.push(panel(shown, [ends[0].min(ends[1]), ends[0].max(ends[1])], "the same, enlarged", false));
     }
     let [left, middle, right] = [-shown.reach, 0.0, shown.reach].map(|change| 60.0 / (shown.period + change));
-    let x = Axis::new("change of the period δT; faster to the left", unit).over([-reach, reach]);
+    let x = FigureAxis::new("change of the period δT; faster to the left", unit).over([-reach, reach]);
     Figure {
         marks: vec![Mark { at: 0.0, label: format!("{middle:.4} rpm") }],
         note: format!("At the left end the cam turns at {left:.4} rpm, at the right end at {right:.4}."),
@@ -190,17 +191,17 @@ fn panel(shown: &NextToCorner, range: [f64; 2], name: &str, with_names: bool) ->
         let at = [0.5 * sign * shown.reach * per_second, 0.5 * (range[0] + range[1])];
         let left = shown.left.contains(&sign);
         let text = if left { "no orbit: motions leave" } else { "no orbit of period one or two" };
-        Word::new(at, text, Beside::Above)
+        Label::new(at, text, Beside::Above)
     });
     let fixed = shown.rays.iter().filter(|ray| ray.positions.len() == 1).filter_map(|ray| {
         let (name, along) =
             if ray.word == "L" { ("x^− before the corner", 0.5) } else { ("x^+ after the corner", 0.85) };
         let along = along * shown.reach;
         let at = [ray.sign * along * per_second, ray.positions.first()? * along];
-        (range[0] < at[1] && at[1] < range[1]).then(|| Word::new(at, name, free_side(shown, at, range)))
+        (range[0] < at[1] && at[1] < range[1]).then(|| Label::new(at, name, free_side(shown, at, range)))
     });
     series.extend(Series::words(gone.chain(fixed)).if_any());
-    Panel::new(Axis::new(name, "m").over(range), 0.3, series).with_zero()
+    Panel::new(FigureAxis::new(name, "m").over(range), 0.3, series).with_zero()
 }
 
 /// The side of a ray, at one of its points, with more room to the next line or to the edge of the panel.

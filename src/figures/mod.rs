@@ -24,7 +24,7 @@ mod trace;
 
 use serde::Serialize;
 
-use crate::draw::{self, Axis, Colour, Figure, Series, Stroke};
+use crate::draw::{self, Colour, Figure, FigureAxis, Series, Stroke};
 use crate::model::Units;
 use crate::orbit::Stability;
 use crate::show::command::command;
@@ -45,9 +45,9 @@ pub use phase_plane::phase_plane;
 pub use section::Crossings;
 pub use speeds::{impacts_by_speed, speeds_figure};
 pub(crate) use subject::NO_STUDY;
-pub use subject::{Effort, Fast, Shown, Slow, Subject};
+pub use subject::{Effort, Fast, FigureContext, ShownSpeeds, Slow};
 pub use through_corner::through_corner;
-pub use trace::{Run, time_trace, with_force};
+pub use trace::{TracedRun, time_trace, with_force};
 
 /// All figures of the report, in the paper's order.
 pub(crate) const FIGURES: [Entry; 15] = [
@@ -79,14 +79,14 @@ pub(crate) struct Entry {
     pub(crate) id: &'static str,
     /// Corresponding figure of the paper; empty for none.
     place: &'static str,
-    title: fn(&Subject) -> String,
+    title: fn(&FigureContext) -> String,
     /// Draws the figure under a title, or says why there is none.
-    draw: fn(&Subject, &str) -> Result<Drawn, String>,
+    draw: fn(&FigureContext, &str) -> Result<Captioned, String>,
 }
 
 /// One figure of the report.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Plate {
+pub struct RenderedFigure {
     /// Name in commands.
     pub id: &'static str,
     /// Corresponding figure of the paper; empty for none.
@@ -96,23 +96,23 @@ pub struct Plate {
     /// Command that draws this figure.
     pub command: String,
     /// The figure, or the reason why there is none.
-    pub drawn: Result<Drawn, String>,
+    pub drawn: Result<Captioned, String>,
 }
 
 /// A figure with its caption.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Drawn {
+pub struct Captioned {
     /// The figure.
     pub figure: Figure,
     /// Explanation of the figure, in one to three sentences.
     pub caption: String,
 }
 
-pub(crate) fn drawn(figure: Figure, caption: impl Into<String>) -> Result<Drawn, String> {
-    Ok(Drawn { figure, caption: caption.into() })
+pub(crate) fn drawn(figure: Figure, caption: impl Into<String>) -> Result<Captioned, String> {
+    Ok(Captioned { figure, caption: caption.into() })
 }
 
-document!(Plate as plate {
+document!(RenderedFigure as plate {
     id: plate.id,
     place: plate.place,
     title: plate.title,
@@ -134,12 +134,12 @@ pub struct Listed {
 }
 
 /// Lists the figures of a model, in order.
-pub fn listed(subject: &Subject) -> Vec<Listed> {
+pub fn listed(subject: &FigureContext) -> Vec<Listed> {
     FIGURES.iter().map(|entry| Listed { id: entry.id, place: entry.place, title: (entry.title)(subject) }).collect()
 }
 
 /// Draws every figure; `progress` gets the number done and the total.
-pub fn plates(subject: &Subject, progress: &mut dyn FnMut(usize, usize)) -> Vec<Plate> {
+pub fn plates(subject: &FigureContext, progress: &mut dyn FnMut(usize, usize)) -> Vec<RenderedFigure> {
     let plates = FIGURES.iter().enumerate().map(|(index, entry)| {
         progress(index, FIGURES.len());
         entry.plate(subject)
@@ -150,19 +150,20 @@ pub fn plates(subject: &Subject, progress: &mut dyn FnMut(usize, usize)) -> Vec<
 }
 
 /// Draws the figure of this name; `None` if the table has no such name.
-pub fn plate(subject: &Subject, id: &str) -> Option<Plate> {
+pub fn plate(subject: &FigureContext, id: &str) -> Option<RenderedFigure> {
     FIGURES.iter().find(|entry| entry.id == id).map(|entry| entry.plate(subject))
 }
 
 impl Entry {
-    pub(crate) fn plate(&self, subject: &Subject) -> Plate {
+    pub(crate) fn plate(&self, subject: &FigureContext) -> RenderedFigure {
         let title = (self.title)(subject);
         let units = &subject.model.units;
-        let in_units = |drawn: Drawn| Drawn { figure: drawn.figure.in_units(|unit| units.spelled(unit)), ..drawn };
+        let in_units =
+            |drawn: Captioned| Captioned { figure: drawn.figure.in_units(|unit| units.spelled(unit)), ..drawn };
         let drawn = (self.draw)(subject, &title).map(in_units);
         let speeds = subject.rpm.map_or(String::new(), |[low, high]| format!(" --rpm {low}:{high}"));
         let command = command("figure", &subject.model, &format!("{}{speeds} --out {}.svg", self.id, self.id));
-        Plate { id: self.id, place: self.place, title, command, drawn }
+        RenderedFigure { id: self.id, place: self.place, title, command, drawn }
     }
 }
 
@@ -172,7 +173,7 @@ const SPEED: [&str; 2] = ["cam speed ω", "rpm"];
 /// Horizontal axis of a survey: its number or the decimal logarithm of that, with the positions of values.
 #[derive(Clone, Debug)]
 pub struct Across {
-    axis: Axis,
+    axis: FigureAxis,
     spacing: Spacing,
 }
 
@@ -185,9 +186,10 @@ impl Across {
     /// Axis of the named number, in this unit, from one value to another.
     pub(crate) fn named(name: &str, unit: &str, spacing: Spacing, ends: [f64; 2]) -> Self {
         let label = if name == "rpm" { SPEED[0] } else { name.rsplit('.').next().unwrap_or(name) };
-        let axis = Axis::new(label, unit).over(ends.map(|end| spacing.place(end)));
-        let ticks = if spacing == Spacing::Logarithmic { draw::Spacing::Logarithmic } else { draw::Spacing::Decimal };
-        Self { axis: Axis { spacing: ticks, ..axis }, spacing }
+        let axis = FigureAxis::new(label, unit).over(ends.map(|end| spacing.place(end)));
+        let ticks =
+            if spacing == Spacing::Logarithmic { draw::TickSpacing::Logarithmic } else { draw::TickSpacing::Decimal };
+        Self { axis: FigureAxis { spacing: ticks, ..axis }, spacing }
     }
 
     /// Axis of a survey, in the units of a model.
@@ -202,12 +204,12 @@ impl Across {
 
     /// Puts this axis under a figure, keeping the figure's range.
     pub fn under(&self, figure: Figure) -> Figure {
-        let axis = Axis { range: figure.x.range, ..self.axis() };
+        let axis = FigureAxis { range: figure.x.range, ..self.axis() };
         Figure { x: axis, ..figure }
     }
 
     /// The axis as drawn; if it has a single value, with room on both sides.
-    pub(crate) fn axis(&self) -> Axis {
+    pub(crate) fn axis(&self) -> FigureAxis {
         match self.axis.range {
             Some([low, high]) if low == high => self.axis.clone().over([0.99 * low, 1.01 * low]),
             _ => self.axis.clone(),
@@ -216,8 +218,8 @@ impl Across {
 }
 
 /// Axis of positions at the section.
-fn position() -> Axis {
-    Axis::new("follower position q at the section", "m")
+fn position() -> FigureAxis {
+    FigureAxis::new("follower position q at the section", "m")
 }
 
 /// Lines for each stability that occurs: stable solid, unstable dashed, neutral dotted.

@@ -1,9 +1,9 @@
 //! Phase plane: the gap of a motion against its velocity.
 
-use crate::draw::{Axis, Colour, Figure, Mark, Panel, Series, Stroke};
-use crate::figures::trace::{Run, SLOW_TURNS};
+use crate::draw::{Colour, Figure, FigureAxis, Mark, Panel, Series, Stroke};
+use crate::figures::trace::{SLOW_TURNS, TracedRun};
 use crate::figures::{Entry, drawn};
-use crate::section::Sample;
+use crate::section::TraceSample;
 use crate::simulate::EventKind;
 
 /// The report's figure of the phase plane.
@@ -29,9 +29,9 @@ pub(crate) const SLOW_PHASE_PLANE: Entry = Entry {
 };
 
 /// Draws the gap against its velocity.
-pub fn phase_plane(title: &str, run: &Run) -> Figure {
-    let point = |sample: &Sample| [sample.gap, sample.state.velocity - sample.cam_velocity];
+pub fn phase_plane(title: &str, run: &TracedRun) -> Figure {
+    let point = |sample: &TraceSample| [sample.gap, sample.state.velocity - sample.cam_velocity];
     let line = Series::line("", Colour::Blue, Stroke::Thin, run.samples.iter().map(point));
-    let panel = Panel::new(Axis::new("gap velocity q' − c'", "m/s"), 0.6, vec![line]).with_zero();
-    Figure { marks: vec![Mark::zero()], ..Figure::new(title, Axis::new("gap q − c", "m"), vec![panel]) }
+    let panel = Panel::new(FigureAxis::new("gap velocity q' − c'", "m/s"), 0.6, vec![line]).with_zero();
+    Figure { marks: vec![Mark::zero()], ..Figure::new(title, FigureAxis::new("gap q − c", "m"), vec![panel]) }
 }

@@ -2,9 +2,9 @@
 //! the states of one long run at the section.
 
 use crate::draw::layout::widened;
-use crate::draw::{Axis, BREAK, Cloud, Colour, Data, Density, Figure, Marker, Panel, Series, extent};
+use crate::draw::{BREAK, Cloud, Colour, Data, Density, Figure, FigureAxis, Marker, Panel, Series, extent};
 use crate::figures::trace::TRANSIENT;
-use crate::figures::{Entry, Fast, SPEED, Subject, by_stability, drawn, position};
+use crate::figures::{Entry, Fast, FigureContext, SPEED, by_stability, drawn, position};
 use crate::flight::State;
 use crate::orbit::branch::{Branch, BranchPoint};
 use crate::orbit::{Course, Cycle, Stability};
@@ -82,7 +82,7 @@ fn section_diagram(title: &str, runs: Density, branches: &[Crossings], corner: [
     }));
     series.push(Series::points("corner impact", Colour::Ink, Marker::Ring, [corner]));
     let panel = Panel::new(position().over(all), 0.52, series);
-    Figure::new(title, Axis::new(SPEED[0], SPEED[1]).over(rpm), vec![panel])
+    Figure::new(title, FigureAxis::new(SPEED[0], SPEED[1]).over(rpm), vec![panel])
 }
 
 /// States of a long run at the section, with the former position of an orbit that no longer exists if it lies among them.
@@ -97,10 +97,10 @@ fn attractor(title: &str, states: &[State], gone: State) -> Figure {
     if inside {
         series.push(Series::points("x* of the corner impact", Colour::Vermilion, Marker::Disc, [at]));
     }
-    Figure::new(title, position().over(x), vec![Panel::new(Axis::new("velocity q'", "m/s").over(y), 0.6, series)])
+    Figure::new(title, position().over(x), vec![Panel::new(FigureAxis::new("velocity q'", "m/s").over(y), 0.6, series)])
 }
 
-impl Subject {
+impl FigureContext {
     /// States, once a revolution at the section of the corner impact's map, on which a start at rest on the cam settles.
     pub fn section_states(&self, rpm: f64, revolutions: usize) -> Result<Vec<State>, String> {
         let machine = self.machine(rpm);

@@ -1,7 +1,9 @@
 //! Attractors over speeds: cam angles of their impacts, ranges of speed, and shares of the starts that end on them.
 
 use crate::draw::layout::{TEXT, WIDTH, width};
-use crate::draw::{Axis, BREAK, Beside, Colour, Data, Density, Figure, Marker, Panel, Series, Spacing, Stroke, Word};
+use crate::draw::{
+    BREAK, Beside, Colour, Data, Density, Figure, FigureAxis, Label, Marker, Panel, Series, Stroke, TickSpacing,
+};
 use crate::figures::Across;
 use crate::figures::cam::CornerMark;
 use crate::figures::impacts::{WHOLE_CAM, impact_angles};
@@ -89,7 +91,7 @@ pub fn speeds_figure(found: &SpeedSurvey, corners: &[CornerMark], across: f64) -
         Series::line("", colour(index), stroke, points).called(&attractor.id)
     });
     let shares = shade(SHARES[1]).into_iter().chain(shares).collect();
-    let shares = Panel::new(Axis::new("share of starts", "%").over(SHARES), 0.14, shares);
+    let shares = Panel::new(FigureAxis::new("share of starts", "%").over(SHARES), 0.14, shares);
     let title = format!("{}: attractors from {}", found.model, found.over.range(found.range));
     let axis = over.axis();
     let placed = placed(found, &colours, across);
@@ -209,11 +211,11 @@ fn bars(over: &Across, (placed, lanes): (Vec<Placed<'_>>, usize)) -> Panel {
         Series::points("", *colour, marker(attractor, *colour), [middle])
     });
     let names = placed.iter().filter_map(|(attractor, _, lane, beside)| {
-        Some(Word::new([bar(over, attractor)[0], place(*lane)], &attractor.id, (*beside)?))
+        Some(Label::new([bar(over, attractor)[0], place(*lane)], &attractor.id, (*beside)?))
     });
     let series = bars.chain(marks).chain(Series::words(names).if_any()).collect();
     // Room for the names above the first lane, in a narrow figure, too.
     let range = [0.5 + place(lanes), 1.3];
-    let axis = Axis { spacing: Spacing::Nothing, ..Axis::new("attractor", "").over(range) };
+    let axis = FigureAxis { spacing: TickSpacing::Nothing, ..FigureAxis::new("attractor", "").over(range) };
     Panel::new(axis, 0.05 + 0.03 * (range[1] - range[0]), series)
 }

@@ -1,4 +1,4 @@
-//! Subject of the figures: a model, its corner impact if it has one, and the speeds shown.
+//! FigureContext of the figures: a model, its corner impact if it has one, and the speeds shown.
 
 use std::sync::OnceLock;
 
@@ -15,7 +15,7 @@ use crate::study::verify::{External, Verification, verify};
 
 /// A model and the results shown for it.
 #[derive(Clone, Debug)]
-pub struct Subject {
+pub struct FigureContext {
     /// The model.
     pub model: Model,
     /// Cam of the model.
@@ -25,7 +25,7 @@ pub struct Subject {
     /// Result of `verify`, or the reason for its failure.
     pub findings: Result<Verification, String>,
     /// Speeds in the figures.
-    pub shown: Shown,
+    pub shown: ShownSpeeds,
     /// Range of speeds that the user chose, rpm.
     pub(crate) rpm: Option<[f64; 2]>,
     /// Effort of the sweep above detachment: `Effort::SLOW`.
@@ -56,7 +56,7 @@ impl Effort {
 
 /// Speeds shown, rpm, or the reasons why there are none.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Shown {
+pub struct ShownSpeeds {
     /// Speeds with chattering.
     pub slow: Result<Slow, String>,
     /// Speeds around the corner impact.
@@ -83,7 +83,7 @@ pub struct Fast {
     pub beyond: f64,
 }
 
-impl Shown {
+impl ShownSpeeds {
     /// The paper's speeds.
     pub(crate) const PAPERS: (Slow, Fast) = (
         Slow { chattering: 183.0, range: [115.0, 200.0], interrupted: 175.0 },
@@ -132,14 +132,14 @@ fn rounded(rpm: f64) -> f64 {
     if round.is_finite() { round } else { rpm }
 }
 
-impl Subject {
+impl FigureContext {
     /// Verifies a model without external programs and chooses the speeds: this range, rpm, or the model's own.
     pub fn new(model: &Model, rpm: Option<[f64; 2]>) -> Result<Self, ModelError> {
         let findings = verify(model, External::LeftOut).map_err(|error| error.to_string());
         Self::with(model, findings, rpm)
     }
 
-    /// Subject from a model and the result of `verify`, or the reason for its failure.
+    /// FigureContext from a model and the result of `verify`, or the reason for its failure.
     pub(crate) fn with(
         model: &Model,
         findings: Result<Verification, String>,
@@ -149,12 +149,12 @@ impl Subject {
         let paper = model.is_the_papers()?;
         let [slowest, fastest] = usual_range(model)?;
         let slow = if let Some(chosen) = rpm {
-            Ok(Shown::chosen(chosen))
+            Ok(ShownSpeeds::chosen(chosen))
         } else if paper {
-            Ok(Shown::PAPERS.0)
+            Ok(ShownSpeeds::PAPERS.0)
         } else {
             let leaves = Contact::new(&cam, model.follower).separation().speed();
-            (slowest < leaves && leaves <= fastest).then(|| Shown::slow(leaves)).ok_or_else(|| {
+            (slowest < leaves && leaves <= fastest).then(|| ShownSpeeds::slow(leaves)).ok_or_else(|| {
                 format!(
                     "from {slowest} to {fastest} rpm there is no speed at which the follower begins to leave the cam: it leaves it at \
                      each, or at none"
@@ -162,13 +162,13 @@ impl Subject {
             })
         };
         let fast = match &findings {
-            Ok(_) if paper => Ok(Shown::PAPERS.1),
+            Ok(_) if paper => Ok(ShownSpeeds::PAPERS.1),
             Ok(found) => {
                 let kind = found.classification.as_ref().ok();
                 let rises = kind.is_some_and(|kind| {
                     kind.scenario == Scenario::NonsmoothFold && kind.plus.exists_for == Speeds::Slower
                 });
-                Ok(Shown::fast(&found.at, !rises))
+                Ok(ShownSpeeds::fast(&found.at, !rises))
             }
             Err(_) if model.study.is_none() => Err(NO_STUDY.into()),
             Err(why) => Err(why.clone()),
@@ -184,7 +184,7 @@ impl Subject {
             // The paper's statements about its speeds do not apply to other speeds.
             is_paper: paper && rpm.is_none(),
             findings,
-            shown: Shown { slow, fast },
+            shown: ShownSpeeds { slow, fast },
             rpm,
             slow_effort: Effort::SLOW,
             fast_effort: Effort::FAST,

@@ -34,17 +34,17 @@ pub struct Moment {
     pub rpm: f64,
     /// Every orbit of one impact a revolution. At the corner impact the single orbit appears twice: with the law before the corner
     /// and with the law after it.
-    pub orbits: Vec<Shown>,
+    pub orbits: Vec<ShownOrbit>,
     /// Attractor of the run with falling speed.
-    pub slowing: Run,
+    pub slowing: SettledRun,
     /// Attractor of the run with rising speed.
-    pub speeding: Run,
+    pub speeding: SettledRun,
 }
 
 /// Position of an orbit's impact relative to the corner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Place {
+pub enum ImpactSide {
     /// On the segment that ends at the corner.
     Before,
     /// On the segment that starts at the corner.
@@ -53,14 +53,14 @@ pub enum Place {
     Elsewhere,
 }
 
-named!(Place);
+named!(ImpactSide);
 
 /// An orbit at one speed, with its impact.
 #[derive(Clone, Debug, Serialize)]
 #[expect(missing_docs, reason = "names carry what a number is, and its unit")]
-pub struct Shown {
+pub struct ShownOrbit {
     /// Position of the impact relative to the corner.
-    pub place: Place,
+    pub place: ImpactSide,
     pub stable: bool,
     pub stability: Stability,
     /// Cam angle of the impact.
@@ -77,8 +77,8 @@ pub struct Shown {
     pub path: Vec<[f64; 2]>,
 }
 
-impl Shown {
-    fn new(place: Place, impact: &Event, corner: f64, orbit: &PeriodicOrbit, path: Vec<[f64; 2]>) -> Self {
+impl ShownOrbit {
+    fn new(place: ImpactSide, impact: &Event, corner: f64, orbit: &PeriodicOrbit, path: Vec<[f64; 2]>) -> Self {
         let (angle_deg, multipliers) = (impact.cam_angle.to_degrees(), orbit.multipliers());
         Self {
             place,
@@ -98,7 +98,7 @@ impl Shown {
 
 /// Attractor of a run.
 #[derive(Clone, Debug, Serialize)]
-pub struct Run {
+pub struct SettledRun {
     /// Cam angles of its impacts, rounded to a tenth of a degree, without repetition.
     pub impacts_deg: Vec<f64>,
     /// Description in words.
@@ -107,7 +107,7 @@ pub struct Run {
     pub paths: Vec<Vec<[f64; 2]>>,
 }
 
-impl Run {
+impl SettledRun {
     /// Most impact positions that are listed one by one.
     const TOLD: usize = 4;
 
@@ -146,7 +146,7 @@ pub fn through_corner(
     }
     let machine = Machine::new(cam.clone(), &model.follower, at.angular_velocity());
     let (speeds, at_corner) = speeds(model, at);
-    let orbits: Result<Vec<Vec<Shown>>, SimulateError> = speeds
+    let orbits: Result<Vec<Vec<ShownOrbit>>, SimulateError> = speeds
         .par_iter()
         .enumerate()
         .map(|(index, rpm)| {
@@ -187,37 +187,37 @@ fn sides(machine: &Machine, at: &CornerImpact) -> [usize; 2] {
     [machine.cam().before(at.corner.segment), at.corner.segment]
 }
 
-fn orbits(machine: &Machine, at: &CornerImpact) -> Result<Vec<Shown>, SimulateError> {
+fn orbits(machine: &Machine, at: &CornerImpact) -> Result<Vec<ShownOrbit>, SimulateError> {
     let [before, after] = sides(machine, at);
     let found = search(machine, &Search { revolutions: 1, impacts: Some(1) })?;
     let shown = |orbit: &PeriodicOrbit| {
         let impact = *orbit.impacts().next()?;
         let Course::Impacts(cycle) = &orbit.course else { return None };
         let place = match impact.segment {
-            segment if segment == before => Place::Before,
-            segment if segment == after => Place::After,
-            _ => Place::Elsewhere,
+            segment if segment == before => ImpactSide::Before,
+            segment if segment == after => ImpactSide::After,
+            _ => ImpactSide::Elsewhere,
         };
-        Some(Shown::new(place, &impact, at.corner.angle, orbit, path(machine, cycle)))
+        Some(ShownOrbit::new(place, &impact, at.corner.angle, orbit, path(machine, cycle)))
     };
     Ok(found.iter().filter_map(shown).collect())
 }
 
 /// Orbit through the corner, with the law on either side of it.
-fn on_corner(machine: &Machine, at: &CornerImpact) -> Vec<Shown> {
+fn on_corner(machine: &Machine, at: &CornerImpact) -> Vec<ShownOrbit> {
     let lifts = [at.corner.minus, at.corner.plus];
-    let names = [Place::Before, Place::After];
-    let shown = |((segment, lift), place): ((usize, Lift), Place)| {
+    let names = [ImpactSide::Before, ImpactSide::After];
+    let shown = |((segment, lift), place): ((usize, Lift), ImpactSide)| {
         let mut cycle = at.cycle.clone();
         let impact = &mut cycle.impacts[at.impact];
         impact.segment = segment;
         // A segment that ends at 2 pi has the corner at its end.
-        if place == Place::Before && segment > at.corner.segment {
+        if place == ImpactSide::Before && segment > at.corner.segment {
             impact.cam_angle = machine.cam().segments()[segment].end;
         }
         let orbit = PeriodicOrbit::of_cycle(machine, cycle, at.residual);
         let impact = Event { cam_angle: at.corner.angle, position: lift.value, ..orbit.events[0] };
-        Shown::new(place, &impact, at.corner.angle, &orbit, path(machine, &at.cycle))
+        ShownOrbit::new(place, &impact, at.corner.angle, &orbit, path(machine, &at.cycle))
     };
     sides(machine, at).into_iter().zip(lifts).zip(names).map(shown).collect()
 }
@@ -237,7 +237,11 @@ fn path(machine: &Machine, cycle: &Cycle) -> Vec<[f64; 2]> {
 }
 
 /// Attractors at each of `speeds`; each run starts from the final state of the previous one. Draws the given number of revolutions.
-fn runs<'a>(machine: &Machine, speeds: impl Iterator<Item = &'a f64>, drawn: u64) -> Result<Vec<Run>, SimulateError> {
+fn runs<'a>(
+    machine: &Machine,
+    speeds: impl Iterator<Item = &'a f64>,
+    drawn: u64,
+) -> Result<Vec<SettledRun>, SimulateError> {
     let mut motion: Option<Motion> = None;
     let mut runs = Vec::new();
     for rpm in speeds {
@@ -253,7 +257,7 @@ fn runs<'a>(machine: &Machine, speeds: impl Iterator<Item = &'a f64>, drawn: u64
                 impacts.push(event.cam_angle);
             }
         })?;
-        runs.push(Run::new(&impacts, RECORDED, paths));
+        runs.push(SettledRun::new(&impacts, RECORDED, paths));
         motion = Some(run);
     }
     Ok(runs)

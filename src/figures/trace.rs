@@ -2,11 +2,11 @@
 
 use std::f64::consts::TAU;
 
-use crate::draw::{Axis, Colour, Data, Figure, Marker, Panel, Series, Stroke, extent};
+use crate::draw::{Colour, Data, Figure, FigureAxis, Marker, Panel, Series, Stroke, extent};
 use crate::figures::cam::corner_marks;
-use crate::figures::{Drawn, Entry, Subject, drawn};
+use crate::figures::{Captioned, Entry, FigureContext, drawn};
 use crate::model::Unit;
-use crate::section::{self, Sample};
+use crate::section::{self, TraceSample};
 use crate::simulate::{Event, EventKind, Machine, Motion, SimulateError};
 
 /// Trace at a speed at which the paper's follower chatters.
@@ -84,16 +84,16 @@ pub(crate) const TRANSIENT: u64 = 300;
 
 /// Part of a motion at one speed.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Run {
+pub struct TracedRun {
     /// Speed, rpm.
     pub rpm: f64,
     /// Samples, evenly spaced in angle, and twice at every event.
-    pub samples: Vec<Sample>,
+    pub samples: Vec<TraceSample>,
     /// The events.
     pub events: Vec<Event>,
 }
 
-impl Run {
+impl TracedRun {
     /// Samples of each revolution in a picture: every tenth of a degree, so that short hops are curves too.
     pub const DRAWN: u32 = 3600;
     /// Samples of each revolution in a table.
@@ -116,30 +116,30 @@ impl Run {
     }
 }
 
-impl Subject {
+impl FigureContext {
     /// `revolutions`, from cam angle 0 on, of the attractor on which a start at rest on the cam settles; or the reason for a failure.
-    pub fn settled(&self, rpm: f64, revolutions: u64) -> Result<Run, String> {
+    pub fn settled(&self, rpm: f64, revolutions: u64) -> Result<TracedRun, String> {
         let machine = self.machine(rpm);
         let run = || {
             let mut motion = machine.start_on_cam(0.0, 0.0)?;
             machine.revolve(&mut motion, TRANSIENT)?;
             let mut motion = machine.resume(&motion)?;
             motion.revolution = 0;
-            Run::new(&machine, motion, revolutions, Run::DRAWN)
+            TracedRun::new(&machine, motion, revolutions, TracedRun::DRAWN)
         };
-        Ok(Run { rpm, ..run().map_err(|error| format!("at {rpm} rpm: {error}"))? })
+        Ok(TracedRun { rpm, ..run().map_err(|error| format!("at {rpm} rpm: {error}"))? })
     }
 
     /// One revolution, from the section on, of the orbit with its impact at the corner.
-    pub fn corner_orbit(&self) -> Result<Run, String> {
+    pub fn corner_orbit(&self) -> Result<TracedRun, String> {
         let at = &self.found()?.at;
         let machine = self.machine(at.speed_rpm());
-        let run = || Run::new(&machine, machine.start(at.section_angle(), at.state)?, 1, Run::DRAWN);
-        Ok(Run { rpm: at.speed_rpm(), ..run().map_err(|error| error.to_string())? })
+        let run = || TracedRun::new(&machine, machine.start(at.section_angle(), at.state)?, 1, TracedRun::DRAWN);
+        Ok(TracedRun { rpm: at.speed_rpm(), ..run().map_err(|error| error.to_string())? })
     }
 }
 
-fn corner_orbit(subject: &Subject, title: &str) -> Result<Drawn, String> {
+fn corner_orbit(subject: &FigureContext, title: &str) -> Result<Captioned, String> {
     let corner = subject.found()?.at.corner.angle;
     let marks = corner_marks(&subject.cam);
     let mark = marks.iter().find(|mark| mark.angle_rad == corner);
@@ -162,7 +162,7 @@ fn corner_orbit(subject: &Subject, title: &str) -> Result<Drawn, String> {
 }
 
 /// Describes the events of a slow motion in a sentence.
-fn in_words(run: &Run) -> String {
+fn in_words(run: &TracedRun) -> String {
     let times = |kind| match run.count(kind) {
         1 => "once".to_owned(),
         count => format!("{count} times"),
@@ -175,23 +175,23 @@ fn in_words(run: &Run) -> String {
 }
 
 /// Adds a panel with the force between follower and cam below the trace; `mass` is in kg.
-pub fn with_force(mut figure: Figure, run: &Run, mass: f64, unit: &Unit) -> Figure {
+pub fn with_force(mut figure: Figure, run: &TracedRun, mass: f64, unit: &Unit) -> Figure {
     let first = run.samples.first().map_or(0.0, |sample| sample.turned);
     let points = run.samples.iter().map(|sample| [(sample.turned - first) / TAU, unit.told(mass * sample.pressing)]);
     let line = Series::line("", Colour::Blue, Stroke::Solid, points);
-    figure.panels.push(Panel::new(Axis::new("contact force", unit.name()), 0.2, vec![line]).with_zero());
+    figure.panels.push(Panel::new(FigureAxis::new("contact force", unit.name()), 0.2, vec![line]).with_zero());
     figure
 }
 
 /// Follower and cam over revolutions, with impacts and contact marked, and the gap in a panel below.
-pub fn time_trace(title: &str, run: &Run) -> Figure {
+pub fn time_trace(title: &str, run: &TracedRun) -> Figure {
     let first = run.samples.first().map_or(0.0, |sample| sample.turned);
-    let line = |value: fn(&Sample) -> f64| {
+    let line = |value: fn(&TraceSample) -> f64| {
         run.samples.iter().map(move |sample| [(sample.turned - first) / TAU, value(sample)])
     };
     let impacts = || run.events.iter().filter(|event| event.kind == EventKind::Impact);
     // Contact and impacts, on the line of the follower or of the gap.
-    let marks = |value: fn(&Sample) -> f64, height: fn(&Event) -> f64, [contact, impact]: [&str; 2]| {
+    let marks = |value: fn(&TraceSample) -> f64, height: fn(&Event) -> f64, [contact, impact]: [&str; 2]| {
         let riding = run.samples.iter().zip(line(value));
         let riding = riding.map(|(sample, at)| if sample.contact { at } else { [f64::NAN; 2] });
         let hits = impacts().map(|event| [event.turned_since(first) / TAU, height(event)]);
@@ -208,9 +208,9 @@ pub fn time_trace(title: &str, run: &Run) -> Figure {
     let mut gap = vec![Series::line("", Colour::Blue, Stroke::Solid, line(|sample| sample.gap))];
     gap.extend(marks(|sample| sample.gap, |_| 0.0, ["", ""]));
     let panels = vec![
-        Panel::new(Axis::new("position", "m"), 0.34, positions),
-        Panel::new(Axis::new("gap q − c", "m"), 0.2, gap).with_zero(),
+        Panel::new(FigureAxis::new("position", "m"), 0.34, positions),
+        Panel::new(FigureAxis::new("gap q − c", "m"), 0.2, gap).with_zero(),
     ];
     let ends = extent(line(|_| 0.0).map(|[x, _]| x).filter(|x| x.is_finite()));
-    Figure::new(title, Axis::new("revolutions of the cam", "").over(ends), panels)
+    Figure::new(title, FigureAxis::new("revolutions of the cam", "").over(ends), panels)
 }

@@ -4,9 +4,9 @@
 //! Sine and cosine are alternating series, summed in doubles and widened by what rounding and the terms left out can make of them.
 //! What has no bound, or is no number, is everything: no comparison then holds, so nothing is concluded from it.
 
-pub mod centred;
+pub mod dual;
+pub mod mean_value_form;
 pub mod roots;
-pub mod varied;
 
 use std::f64::consts::FRAC_PI_2;
 use std::ops::{Add, Div, Mul, Neg, Sub};

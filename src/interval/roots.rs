@@ -43,11 +43,11 @@ pub fn falls_to_zero(guess: f64, of: impl Fn(Interval) -> [Interval; 2]) -> Opti
 }
 
 /// A box: an interval for each unknown.
-pub type Place<const N: usize> = [Interval; N];
+pub type IntervalBox<const N: usize> = [Interval; N];
 
 /// What equations are over a box: the values of N functions, and their derivatives by each unknown.
 #[derive(Clone, Copy, Debug)]
-pub struct Over<const N: usize> {
+pub struct BoxValues<const N: usize> {
     /// What must be 0.
     pub values: [Interval; N],
     /// Row by row.
@@ -60,9 +60,9 @@ pub struct Over<const N: usize> {
 #[derive(Clone, Debug, Default)]
 pub struct Isolated<const N: usize> {
     /// Boxes that hold one root each, as narrow as rounding allows.
-    pub roots: Vec<Place<N>>,
+    pub roots: Vec<IntervalBox<N>>,
     /// Boxes that halving again would tell no more of: nothing is known of them. All other roots are in `roots`.
-    pub undecided: Vec<Place<N>>,
+    pub undecided: Vec<IntervalBox<N>>,
     /// How many boxes were looked at.
     pub boxes: usize,
 }
@@ -70,13 +70,17 @@ pub struct Isolated<const N: usize> {
 /// Isolates all roots in `place`, in at most `most` boxes.
 ///
 /// `over` tells the values and derivatives over a box, also somewhat outside of `place`.
-pub fn isolate<const N: usize>(place: Place<N>, most: usize, over: impl Fn(&Place<N>) -> Over<N>) -> Isolated<N> {
+pub fn isolate<const N: usize>(
+    place: IntervalBox<N>,
+    most: usize,
+    over: impl Fn(&IntervalBox<N>) -> BoxValues<N>,
+) -> Isolated<N> {
     let narrowest = place.map(|side| {
         (tolerance::NARROWEST_BOX.value * side.width()).max(tolerance::ROOT_WIDTH.value * side.magnitude())
     });
     let mut found = Isolated { roots: Vec::new(), undecided: Vec::new(), boxes: 0 };
     // Each root with a box in which there is no other.
-    let mut alone: Vec<(Place<N>, Place<N>)> = Vec::new();
+    let mut alone: Vec<(IntervalBox<N>, IntervalBox<N>)> = Vec::new();
     let mut left = vec![place];
     while let Some(here) = left.pop() {
         found.boxes += 1;
@@ -137,14 +141,14 @@ enum Look<const N: usize> {
     /// It holds no root.
     Nothing,
     /// Its roots, if any, are in this box.
-    Within(Place<N>),
+    Within(IntervalBox<N>),
     /// Its derivative may be singular.
     Unknown,
     /// All values in it are 0 but for what rounding makes of one of them: no part of it would tell more.
     Rounding,
 }
 
-fn look<const N: usize>(here: &Place<N>, over: &impl Fn(&Place<N>) -> Over<N>) -> Look<N> {
+fn look<const N: usize>(here: &IntervalBox<N>, over: &impl Fn(&IntervalBox<N>) -> BoxValues<N>) -> Look<N> {
     let whole = over(here);
     if !whole.is_wanted || whole.values.iter().any(|value| !value.holds_zero()) {
         return Look::Nothing;
@@ -166,7 +170,7 @@ fn look<const N: usize>(here: &Place<N>, over: &impl Fn(&Place<N>) -> Over<N>) -
 }
 
 /// Krawczyk's operator; none where the derivative in the middle has no inverse.
-fn image<const N: usize>(here: &Place<N>, whole: &Over<N>, middle: &Over<N>) -> Option<Place<N>> {
+fn image<const N: usize>(here: &IntervalBox<N>, whole: &BoxValues<N>, middle: &BoxValues<N>) -> Option<IntervalBox<N>> {
     let derivative = SMatrix::<f64, N, N>::from_fn(|row, column| whole.derivatives[row][column].middle());
     let inverse = derivative.try_inverse().filter(|inverse| inverse.iter().all(|entry| entry.is_finite()))?;
     let contracted = |row: usize, column: usize| {
@@ -182,12 +186,15 @@ fn image<const N: usize>(here: &Place<N>, whole: &Over<N>, middle: &Over<N>) -> 
     }))
 }
 
-fn step<const N: usize>(here: &Place<N>, over: &impl Fn(&Place<N>) -> Over<N>) -> Option<Place<N>> {
+fn step<const N: usize>(
+    here: &IntervalBox<N>,
+    over: &impl Fn(&IntervalBox<N>) -> BoxValues<N>,
+) -> Option<IntervalBox<N>> {
     image(here, &over(here), &over(&here.map(|side| side.middle().into())))
 }
 
 /// A box about both, with room on each side for a root on the border.
-fn around<const N: usize>(here: &Place<N>, image: &Place<N>) -> Place<N> {
+fn around<const N: usize>(here: &IntervalBox<N>, image: &IntervalBox<N>) -> IntervalBox<N> {
     std::array::from_fn(|side| {
         let room = 0.25 * here[side].width();
         let most = Interval::new(here[side].low() - room, here[side].high() + room);
@@ -197,7 +204,10 @@ fn around<const N: usize>(here: &Place<N>, image: &Place<N>) -> Place<N> {
 }
 
 /// The box of the one root in `here`, narrowed until rounding keeps it from getting narrower.
-fn closed_in<const N: usize>(mut here: Place<N>, over: &impl Fn(&Place<N>) -> Over<N>) -> Place<N> {
+fn closed_in<const N: usize>(
+    mut here: IntervalBox<N>,
+    over: &impl Fn(&IntervalBox<N>) -> BoxValues<N>,
+) -> IntervalBox<N> {
     /// Once it is narrow each step squares what is left.
     const STEPS: usize = 100;
     for _ in 0..STEPS {
@@ -211,11 +221,11 @@ fn closed_in<const N: usize>(mut here: Place<N>, over: &impl Fn(&Place<N>) -> Ov
     here
 }
 
-fn is_inside<const N: usize>(one: &Place<N>, other: &Place<N>) -> bool {
+fn is_inside<const N: usize>(one: &IntervalBox<N>, other: &IntervalBox<N>) -> bool {
     one.iter().zip(other).all(|(one, other)| one.is_inside(*other))
 }
 
-fn common<const N: usize>(one: &Place<N>, other: &Place<N>) -> Option<Place<N>> {
+fn common<const N: usize>(one: &IntervalBox<N>, other: &IntervalBox<N>) -> Option<IntervalBox<N>> {
     let mut both = *one;
     for (side, other) in both.iter_mut().zip(other) {
         *side = side.common(*other)?;

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::fields::{Field, Value};
-use super::{CamProfile, Model, ModelError, Numeral, Spline, TableProfile, Tolerance, nearest};
+use super::{CamProfile, Model, ModelError, Numeral, SmoothingTolerance, Spline, TableProfile, nearest};
 
 impl Model {
     /// Dotted path of the number of follower or cam that a user calls `name`: the full path, or a path's end that no other
@@ -85,7 +85,7 @@ impl Model {
             cam = sharp;
         }
         if let CamProfile::Table(TableProfile { spline: Spline::Smoothing(smoothing), .. }) = cam {
-            (smoothing.tolerance, smoothing.are_near) = (Tolerance::Weighted(weight), are_near);
+            (smoothing.tolerance, smoothing.are_near) = (SmoothingTolerance::Weighted(weight), are_near);
         }
         Ok(model)
     }

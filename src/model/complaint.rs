@@ -4,7 +4,7 @@ use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
 
-use crate::foreign;
+use crate::untrusted;
 
 /// A complaint about a model file: where, what was found, what is allowed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -76,12 +76,12 @@ impl ModelError {
 
 impl fmt::Display for ModelError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}", foreign::visible(&self.file))?;
+        write!(f, "{}", untrusted::visible(&self.file))?;
         if let Some(line) = self.line {
             write!(f, ":{line}")?;
         }
-        let [field, value] = [&self.field, &self.value].map(|part| part.as_deref().map(foreign::value));
-        let allowed = foreign::sentence(&self.allowed);
+        let [field, value] = [&self.field, &self.value].map(|part| part.as_deref().map(untrusted::value));
+        let allowed = untrusted::sentence(&self.allowed);
         match (field, value) {
             (Some(field), Some(value)) => write!(f, ": {field} = {value}: {allowed}")?,
             (Some(field), None) => write!(f, ": {field} {allowed}")?,

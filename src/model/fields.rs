@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use super::numeral::Numeral;
 use super::{ModelError, nearest};
-use crate::foreign;
+use crate::untrusted;
 
 /// A range of finite numbers.
 #[derive(Clone, Copy)]
@@ -255,7 +255,7 @@ impl Fields {
             };
             let fields = self.fields.iter().filter(inside);
             let present: Vec<_> =
-                fields.map(|(name, _)| foreign::value(name.rsplit('.').next().unwrap_or(name))).collect();
+                fields.map(|(name, _)| untrusted::value(name.rsplit('.').next().unwrap_or(name))).collect();
             let found =
                 if present.is_empty() { String::new() } else { format!("; found there: {}", present.join(", ")) };
             self.mistyped(path).unwrap_or_else(|| self.reject(path, "is missing")).found(&found)
@@ -279,7 +279,7 @@ impl Fields {
         let stray = stray.iter().map(String::as_str).filter(|name| !name.contains(['.', '[']) && !is_name(name));
         let written = stray.filter(|word| nearest(word, [meant]).is_some()).min()?;
         let field = self.fields.get(&in_table(at, written))?;
-        let (is_table, written) = (shown.starts_with('['), foreign::value(written));
+        let (is_table, written) = (shown.starts_with('['), untrusted::value(written));
         let written = if is_table { format!("[{written}]") } else { written.into_owned() };
         let place = field.line.map_or_else(|| "it".into(), |line| format!("line {line}"));
         Some(ModelError {

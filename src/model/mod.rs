@@ -30,11 +30,11 @@ pub(crate) use profile::CORNER_ROUNDING;
 pub(crate) use profile::{
     ArcsProfile, MOST_COEFFICIENTS, MotionSegment, PolynomialSegment, ProgramProfile, RectifiedSineProfile,
 };
-pub use profile::{CamProfile, HarmonicProfile, Motion};
-pub(crate) use rows::Row;
-pub use rows::{Layout, Separator};
+pub use profile::{CamProfile, HarmonicProfile, StandardMotion};
+pub(crate) use rows::TableRow;
+pub use rows::{Separator, TableLayout};
 pub use table::Reading;
-pub(crate) use table::{MOST_PROVED_ROWS, Smoothing, Spline, TableProfile, Tolerance};
+pub(crate) use table::{MOST_PROVED_ROWS, Smoothing, SmoothingTolerance, Spline, TableProfile};
 pub use units::{Converted, Unit, Units};
 
 /// The model whose numbers the paper prints, built in so that the binary needs no other file.

@@ -135,7 +135,7 @@ pub struct ProgramProfile {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct MotionSegment {
     /// Shape of the lift curve between the two ends.
-    pub motion: Motion,
+    pub motion: StandardMotion,
     /// Cam angle of the motion, degrees, positive.
     pub span_deg: f64,
     /// Change of the lift, m; negative is a return, 0 a dwell.
@@ -145,7 +145,7 @@ pub struct MotionSegment {
 /// The standard motions of cam design, between ends at rest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Motion {
+pub enum StandardMotion {
     /// Constant lift.
     Dwell,
     /// Constant acceleration, then the same deceleration.
@@ -164,7 +164,7 @@ pub enum Motion {
     Poly4567,
 }
 
-impl Motion {
+impl StandardMotion {
     /// Every motion, with its name in the field `motion`.
     pub const NAMES: [(&'static str, Self); 8] = [
         ("dwell", Self::Dwell),
@@ -265,14 +265,14 @@ fn program(fields: &mut Fields) -> Result<CamProfile, ModelError> {
 
 fn motion_segment(fields: &mut Fields, index: usize) -> Result<MotionSegment, ModelError> {
     let path = |name: &str| format!("cam.segment[{index}].{name}");
-    let motion = fields.choice(&path("motion"), &Motion::NAMES)?;
+    let motion = fields.choice(&path("motion"), &StandardMotion::NAMES)?;
     let span_deg = fields.number(&path("span_deg"), Allowed::above(0.0, 360.0))?;
     fields.may_hold(&path("rise"));
     let rise = match motion {
-        Motion::Dwell if !fields.has(&path("rise")) => 0.0,
+        StandardMotion::Dwell if !fields.has(&path("rise")) => 0.0,
         _ => fields.number(&path("rise"), Allowed::FINITE)?,
     };
-    if motion == Motion::Dwell && rise != 0.0 {
+    if motion == StandardMotion::Dwell && rise != 0.0 {
         return Err(fields.reject(&path("rise"), "must be 0: a dwell does not rise"));
     }
     Ok(MotionSegment { motion, span_deg, rise })

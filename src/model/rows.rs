@@ -8,7 +8,7 @@ use super::ModelError;
 use super::units::{LENGTHS, Unit};
 
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Row {
+pub struct TableRow {
     /// Cam angle, degrees.
     pub angle_deg: f64,
     /// Lift, m.
@@ -43,7 +43,7 @@ pub enum Separator {
 
 /// Layout of a text.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Layout {
+pub struct TableLayout {
     /// Separator of the columns.
     pub separator: Separator,
     /// Whether numbers have a decimal comma.
@@ -174,14 +174,14 @@ impl Table<'_> {
     }
 
     /// Angle and lift of the row in a line, as written except for the decimal point.
-    pub(super) fn cells(&self, layout: &Layout, line: usize) -> Option<[String; 2]> {
+    pub(super) fn cells(&self, layout: &TableLayout, line: usize) -> Option<[String; 2]> {
         let (text, _) = without_comment(self.text.lines().nth(line.checked_sub(1)?)?);
         let cells = layout.separator.columns(text)?;
         Some(cells.map(|cell| if layout.decimal_comma { cell.replace(',', ".") } else { cell.to_owned() }))
     }
 
     /// Reads the rows of the text and its layout.
-    pub(super) fn rows(&self) -> Result<(Vec<Row>, Layout), ModelError> {
+    pub(super) fn rows(&self) -> Result<(Vec<TableRow>, TableLayout), ModelError> {
         let lines = || self.text.lines().enumerate().map(|(index, line)| (index + 1, line.trim()));
         let filled =
             || lines().map(|(line, text)| (line, without_comment(text).0)).filter(|(_, text)| !text.is_empty());
@@ -206,7 +206,7 @@ impl Table<'_> {
         {
             self.known_unit(first_line, cell, column)?;
         }
-        let mut layout = Layout {
+        let mut layout = TableLayout {
             separator,
             decimal_comma: false,
             comments,
@@ -214,7 +214,7 @@ impl Table<'_> {
             radians: named.and_then(|named| named.0),
             length: named.and_then(|named| named.1),
         };
-        let mut rows: Vec<Row> = Vec::new();
+        let mut rows: Vec<TableRow> = Vec::new();
         let mut point = None;
         for (line, text) in filled().skip(usize::from(has_header)) {
             let Some(cells) = separator.columns(text) else {
@@ -241,7 +241,7 @@ impl Table<'_> {
             if rows.len() == MOST_ROWS {
                 return Err(self.complain(Some(line), format!("more than {MOST_ROWS} rows")));
             }
-            rows.push(Row { angle_deg, lift, line });
+            rows.push(TableRow { angle_deg, lift, line });
         }
         Ok((rows, layout))
     }

@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use super::ModelError;
 use super::fields::{Allowed, Fields, Pair, Value};
-use super::rows::{Layout, MOST_ROWS, Row, Table};
+use super::rows::{MOST_ROWS, Table, TableLayout, TableRow};
 use super::toml;
 use super::units::{LENGTHS, Unit, Units};
 use crate::file;
@@ -24,7 +24,7 @@ pub struct TableProfile {
     /// Kind of the spline.
     pub spline: Spline,
     /// Rows in order of angle, one for each angle in `[0, 360)`; shared, because a table may be long.
-    pub rows: Arc<[Row]>,
+    pub rows: Arc<[TableRow]>,
     /// How the rows were interpreted.
     pub reading: Arc<Reading>,
 }
@@ -87,7 +87,7 @@ impl Spline {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Smoothing {
     /// Largest distance from a row.
-    pub tolerance: Tolerance,
+    pub tolerance: SmoothingTolerance,
     /// Angles at which the second derivative may jump, degrees, ascending; `None` where they are to be found.
     pub corners_deg: Option<Vec<f64>>,
     /// Dwells, from and to, degrees, ascending by their start; `None` where they are to be found.
@@ -99,7 +99,7 @@ pub struct Smoothing {
 /// Largest distance of a smoothing spline from a row.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Tolerance {
+pub enum SmoothingTolerance {
     /// Estimated from the rows themselves.
     #[default]
     Auto,
@@ -127,7 +127,7 @@ pub struct Reading {
     pub angle_unit: &'static str,
     /// The layout of its text; none where the model has the rows itself.
     #[serde(flatten)]
-    pub layout: Option<Layout>,
+    pub layout: Option<TableLayout>,
     /// Number of rows kept.
     pub rows: usize,
     /// Angle of the first row as written, degrees.
@@ -180,7 +180,7 @@ pub(super) fn read(fields: &mut Fields) -> Result<TableProfile, ModelError> {
         let row = |(index, ([angle_deg, lift], line)): (usize, Pair)| {
             let line = line.unwrap_or(index + 1);
             if angle_deg.is_finite() && lift.is_finite() {
-                return Ok(Row { angle_deg, lift, line });
+                return Ok(TableRow { angle_deg, lift, line });
             }
             let words = "must be a finite angle and a finite lift".into();
             Err(table.reject(line, "cam.rows", &format!("[{angle_deg}, {lift}]"), words))
@@ -221,8 +221,8 @@ fn smoothing(fields: &mut Fields, step: Option<f64>, in_model: &Unit) -> Result<
     let path = "cam.tolerance";
     fields.may_hold(path);
     let tolerance = match fields.fields.get(path).map(|field| &field.value) {
-        None => Tolerance::Auto,
-        Some(Value::Text(_)) => fields.choice(path, &[("auto", Tolerance::Auto)])?,
+        None => SmoothingTolerance::Auto,
+        Some(Value::Text(_)) => fields.choice(path, &[("auto", SmoothingTolerance::Auto)])?,
         Some(_) => {
             let within = fields.number(path, Allowed::POSITIVE)?;
             // Half of a decimal step has one digit more; allow for its rounding.
@@ -231,7 +231,7 @@ fn smoothing(fields: &mut Fields, step: Option<f64>, in_model: &Unit) -> Result<
                     format!("must be at least {}, half of the step {step} that the lifts are rounded to", 0.5 * step);
                 return Err(fields.reject(path, words));
             }
-            Tolerance::Within(in_model.inside(within))
+            SmoothingTolerance::Within(in_model.inside(within))
         }
     };
     let path = "cam.dwells_deg";
@@ -287,14 +287,14 @@ fn smoothing(fields: &mut Fields, step: Option<f64>, in_model: &Unit) -> Result<
 
 /// Step of the coarsest decimal grid, 1, 2 or 5 times a power of ten, that all numbers lie on. `None` if they have as many
 /// digits as a double, or are all 0.
-fn grid(numbers: &[Row]) -> Option<f64> {
+fn grid(numbers: &[TableRow]) -> Option<f64> {
     /// Upper limit of whole numbers of which a double has every digit.
     const DIGITS: f64 = 1e15;
     // The shortest digits that read back as the same double are the written ones, except for zeros at the end.
-    let decimals = |row: &Row| row.lift.to_string().split_once('.').map_or(0, |(_, behind)| behind.len());
+    let decimals = |row: &TableRow| row.lift.to_string().split_once('.').map_or(0, |(_, behind)| behind.len());
     let decimals = numbers.iter().map(decimals).max().unwrap_or_default();
     let power = 10.0_f64.powi(i32::try_from(decimals).ok()?);
-    let whole = |row: &Row| (row.lift * power).round().abs();
+    let whole = |row: &TableRow| (row.lift * power).round().abs();
     if !numbers.iter().all(|row| whole(row) < DIGITS) {
         return None;
     }
@@ -320,8 +320,8 @@ impl Table<'_> {
         mut self,
         fields: &mut Fields,
         (file, spline): (Option<String>, Kind),
-        mut rows: Vec<Row>,
-        layout: Option<Layout>,
+        mut rows: Vec<TableRow>,
+        layout: Option<TableLayout>,
     ) -> Result<TableProfile, ModelError> {
         let named = layout.as_ref();
         let angle =
@@ -376,7 +376,7 @@ impl Table<'_> {
     }
 
     /// Orders the rows of one turn from 0 to below 360, from any first angle. Returns whether the last row repeated the first.
-    fn turned(&self, rows: &mut Vec<Row>) -> Result<bool, ModelError> {
+    fn turned(&self, rows: &mut Vec<TableRow>) -> Result<bool, ModelError> {
         /// Smallest fall of the angle that begins a new turn, degrees.
         const BACK: f64 = 180.0;
         let mut turns = 0.0;
@@ -420,7 +420,7 @@ impl Table<'_> {
         Ok(last.is_some())
     }
 
-    fn place(&self, row: &Row) -> String {
+    fn place(&self, row: &TableRow) -> String {
         format!("{} {}", if self.has_lines { "line" } else { "row" }, row.line)
     }
 
@@ -436,7 +436,7 @@ impl Table<'_> {
     }
 
     /// Refuses a row that is not above the one before it; each comes with its angle as written, degrees.
-    fn in_order(&self, rows: [(&Row, f64); 2], begins_turn: bool) -> Result<(), ModelError> {
+    fn in_order(&self, rows: [(&TableRow, f64); 2], begins_turn: bool) -> Result<(), ModelError> {
         let [(before, above), (row, written)] = rows;
         // Angles that are equal in radians count as one.
         if row.angle_deg.to_radians() > before.angle_deg.to_radians() {
@@ -450,7 +450,7 @@ impl Table<'_> {
     }
 
     /// Checks that a last row one turn after the first has the same lift.
-    fn closes(&self, rows: &[Row], first: &Row, last: &Row) -> Result<(), ModelError> {
+    fn closes(&self, rows: &[TableRow], first: &TableRow, last: &TableRow) -> Result<(), ModelError> {
         let largest = rows.iter().fold(0.0_f64, |largest, row| largest.max(row.lift.abs()));
         if (last.lift - first.lift).abs() > tolerance::CAM_CLOSURE.value * largest {
             let words = format!(
@@ -465,7 +465,7 @@ impl Table<'_> {
     }
 
     /// Refuses a gap where rows are missing.
-    fn even(&self, rows: &[Row]) -> Result<(), ModelError> {
+    fn even(&self, rows: &[TableRow]) -> Result<(), ModelError> {
         /// Smallest gap that is refused for any number of rows, degrees.
         const HALF: f64 = 180.0;
         /// Gap, degrees, above which the rows cover only a part of the turn.

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::fields::{Fields, Value};
-use super::{Model, TableProfile, Tolerance};
+use super::{Model, SmoothingTolerance, TableProfile};
 
 impl Model {
     /// Text of a self-contained model file: the model's name, every number in digits that read back as the same double,
@@ -27,7 +27,8 @@ impl Fields {
         for path in ["cam.file", "cam.unit", "cam.angle_unit"] {
             self.fields.remove(path);
         }
-        if let Some(Tolerance::Within(within)) = table.spline.smoothing().map(|smoothing| smoothing.tolerance) {
+        if let Some(SmoothingTolerance::Within(within)) = table.spline.smoothing().map(|smoothing| smoothing.tolerance)
+        {
             self.put("cam.tolerance", Value::Number(within));
         }
         let rows = table.rows.iter().zip(lifts).map(|(row, lift)| ([row.angle_deg, lift], None));

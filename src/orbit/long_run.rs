@@ -10,7 +10,7 @@ use serde::Serialize;
 use super::PeriodicOrbit;
 use crate::elementary;
 use crate::estimate::{ErrorIs, Estimate};
-use crate::simulate::Met;
+use crate::simulate::ImpactTally;
 use crate::simulate::Record;
 use crate::tolerance;
 
@@ -86,7 +86,7 @@ pub struct Recorded {
     /// How much of it there was over the first half of the record and over the second: not by revolution, but in all.
     pub halves: [f64; 2],
     /// The impacts.
-    pub met: Met,
+    pub met: ImpactTally,
     /// Revolutions, all together.
     pub revolutions: u64,
     /// The number of runs that were recorded.
@@ -106,7 +106,7 @@ impl Recorded {
     pub fn together(all: &[Self]) -> Self {
         let growth = Estimate::mean(&all.iter().map(|one| one.growth).collect::<Vec<_>>());
         let half = |half: usize| all.iter().map(|one| one.halves[half]).sum::<f64>() / all.len() as f64;
-        let met = all.iter().fold(Met::default(), |all, one| all.with(one.met));
+        let met = all.iter().fold(ImpactTally::default(), |all, one| all.with(one.met));
         let sum = |number: fn(&Self) -> u64| all.iter().map(number).sum();
         let (revolutions, runs) = (sum(|one| one.revolutions), sum(|one| one.runs));
         let rested = all.iter().any(|one| one.rested);

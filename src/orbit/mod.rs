@@ -39,7 +39,7 @@ use nalgebra::Matrix2;
 use crate::cam::apart;
 use crate::elementary;
 use crate::flight::State;
-use crate::known::Known;
+use crate::known::Evidence;
 use crate::simulate::{Event, EventKind, Machine, Motion, SimulateError};
 use crate::tolerance;
 pub use complete::Undecided;
@@ -70,7 +70,7 @@ pub struct PeriodicOrbit {
     /// What kind of motion it is.
     pub course: Course,
     /// Whether it is proved that there is an orbit, or computed.
-    pub known: Known,
+    pub known: Evidence,
 }
 
 // Impacts apart from sticks and releases; the multipliers instead of the matrix.
@@ -81,7 +81,7 @@ document!(PeriodicOrbit as orbit {
     contact: orbit.rests().map(Rest).collect::<Vec<_>>(),
     state: [orbit.state.position, orbit.state.velocity],
     multipliers: orbit.multipliers(),
-    multipliers_known: Known::Computed,
+    multipliers_known: Evidence::Computed,
     multipliers_error: orbit.judgement.error,
     stability: orbit.judgement.stability,
     stability_known: orbit.judgement.known,
@@ -134,7 +134,7 @@ impl PeriodicOrbit {
         let events = cycle.events(machine);
         let judgement = Judgement::of_cycle(machine, &cycle, residual, &matrix);
         let (revolutions, course) = (cycle.revolutions, Course::Impacts(cycle));
-        Self { revolutions, events, state, matrix, judgement, residual, course, known: Known::Computed }
+        Self { revolutions, events, state, matrix, judgement, residual, course, known: Evidence::Computed }
     }
 
     /// The impacts of one period.

@@ -10,7 +10,7 @@ use super::cycle::lift_size;
 use super::multipliers::{Eigenvalue, eigenvalues};
 use super::{Course, Cycle, Judgement, PeriodicOrbit, Stability, sticking};
 use crate::flight::State;
-use crate::known::Known;
+use crate::known::Evidence;
 use crate::simulate::{Event, EventKind, Machine, Motion, SimulateError};
 use crate::tolerance;
 
@@ -115,7 +115,7 @@ pub(super) fn at_rest(machine: &Machine, state: State) -> Option<PeriodicOrbit> 
     let state = State { position: state.position + above, velocity: 0.0 };
     let matrix = flight.propagator(TAU / machine.angular_velocity());
     let residual = flight.acceleration(state).abs() / machine.angular_velocity().powi(2) / lift_size(machine);
-    let (events, course, known) = (Vec::new(), Course::Free, Known::Computed);
+    let (events, course, known) = (Vec::new(), Course::Free, Evidence::Computed);
     let judgement = Judgement::of_flight(machine, &matrix);
     let orbit = PeriodicOrbit { revolutions: 1, events, state, matrix, judgement, residual, course, known };
     state.position.is_finite().then_some(orbit)

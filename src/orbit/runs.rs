@@ -14,7 +14,7 @@ use crate::elementary;
 use crate::flight::State;
 use crate::progress::Unwatched;
 use crate::simulate::Record;
-use crate::simulate::{Event, EventKind, Goal, Machine, Met, Motion, SimulateError};
+use crate::simulate::{Event, EventKind, Goal, ImpactTally, Machine, Motion, SimulateError};
 use crate::tolerance;
 
 /// What a run comes to within so many revolutions.
@@ -115,11 +115,16 @@ impl<'a> LongRuns<'a> {
     /// An orbit counts where the run repeats nearly, Newton's method leads from there to a stable one, and the run's distance
     /// from that shrinks as its multipliers say: a chaotic run now and then passes by a stable orbit outside of its basin.
     pub fn run(&self, motion: &mut Motion, revolutions: u64) -> Result<RunOutcome, SimulateError> {
-        self.counted(motion, revolutions, &mut Met::default())
+        self.counted(motion, revolutions, &mut ImpactTally::default())
     }
 
     /// The same, with the impacts on the way added to others.
-    fn counted(&self, motion: &mut Motion, revolutions: u64, met: &mut Met) -> Result<RunOutcome, SimulateError> {
+    fn counted(
+        &self,
+        motion: &mut Motion,
+        revolutions: u64,
+        met: &mut ImpactTally,
+    ) -> Result<RunOutcome, SimulateError> {
         /// Revolutions before the first look for an orbit that is not known: what most starts near one need.
         const FIRST: u64 = 50;
         /// Revolutions from one look for a known orbit to the next.
@@ -196,7 +201,7 @@ impl<'a> LongRuns<'a> {
     }
 
     /// Runs `motion` to where the cam lets go of it, rad, if it does so before the goal, and counts the impacts on the way.
-    fn to_release(&self, motion: &mut Motion, goal: Goal, met: &mut Met) -> Result<Option<f64>, SimulateError> {
+    fn to_release(&self, motion: &mut Motion, goal: Goal, met: &mut ImpactTally) -> Result<Option<f64>, SimulateError> {
         let flow = self.machine.advance(motion, goal, &mut |event: &Event| {
             met.take(event);
             if event.kind == EventKind::Release { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
@@ -227,7 +232,7 @@ impl<'a> LongRuns<'a> {
         // As many periods as leave a tenth, or as can be waited for.
         let periods = (elementary::ln(0.1_f64) / elementary::ln(modulus)).ceil().clamp(1.0, MOST);
         let goal = motion.after(periods as u64 * orbit.revolutions);
-        if self.to_release(&mut motion, goal, &mut Met::default())?.is_some() {
+        if self.to_release(&mut motion, goal, &mut ImpactTally::default())?.is_some() {
             return Ok(false);
         }
         let shrunk = 0.5 * (1.0 + elementary::powf(modulus, periods)) * first;
@@ -243,14 +248,14 @@ impl<'a> LongRuns<'a> {
         known: impl Fn(f64) -> Option<AfterRelease>,
     ) -> Result<(AfterRelease, u64), SimulateError> {
         // Each release with the revolutions and what was met from it to the next.
-        let mut releases: Vec<(f64, u64, Met)> = Vec::new();
+        let mut releases: Vec<(f64, u64, ImpactTally)> = Vec::new();
         let (mut release, mut followed) = (cam_angle, 0);
         loop {
             if let Some(after) = known(release) {
                 return Ok((after, followed));
             }
             let begun = self.released(release)?;
-            let (mut motion, mut met) = (begun, Met::default());
+            let (mut motion, mut met) = (begun, ImpactTally::default());
             let run = self.counted(&mut motion, rest, &mut met)?;
             let turned = motion.revolution - begun.revolution;
             followed += turned;
@@ -308,7 +313,7 @@ impl<'a> LongRuns<'a> {
         let mut motion = self.machine.start_on_cam(cam_angle, 0.0)?;
         if motion.contact {
             let goal = motion.after(1);
-            self.to_release(&mut motion, goal, &mut Met::default())?;
+            self.to_release(&mut motion, goal, &mut ImpactTally::default())?;
         }
         Ok(motion)
     }

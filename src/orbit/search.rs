@@ -11,7 +11,7 @@ use super::near::{MOST_IMPACTS, close, free, near_run, period};
 use super::{Course, Cycle, Judgement, PeriodicOrbit};
 use crate::flight::State;
 use crate::interval::Interval;
-use crate::known::{Complete, Known};
+use crate::known::{Complete, Evidence};
 use crate::progress::Watch;
 use crate::simulate::{EventKind, Machine, SimulateError};
 use crate::tolerance;
@@ -119,17 +119,17 @@ impl<'a> Found<'a> {
                 {
                     let judgement = proved.map_or(orbit.judgement, |stability| Judgement {
                         stability,
-                        known: Known::Proved,
+                        known: Evidence::Proved,
                         ..orbit.judgement
                     });
-                    self.searched.orbits.push(PeriodicOrbit { known: Known::Proved, judgement, ..orbit });
+                    self.searched.orbits.push(PeriodicOrbit { known: Evidence::Proved, judgement, ..orbit });
                     continue;
                 }
                 orbit => orbit.into_iter().for_each(|orbit| self.keep(orbit)),
             }
             undecided.push(angles);
         }
-        let known = if undecided.is_empty() { Known::Proved } else { Known::Sampled };
+        let known = if undecided.is_empty() { Evidence::Proved } else { Evidence::Sampled };
         let ends = |angles: Vec<Interval>| angles.iter().map(|angle| [angle.low(), angle.high()]).collect();
         let ranges = joined(undecided).into_iter().map(|angles| Undecided { cam_angles: ends(angles) });
         self.searched.undecided.extend(ranges);

@@ -20,7 +20,7 @@ use crate::elementary;
 use crate::flight::Flight;
 use crate::impact::{ImpactRates, rebound};
 use crate::interval::Interval;
-use crate::known::Known;
+use crate::known::Evidence;
 use crate::simulate::Machine;
 use crate::tolerance;
 
@@ -69,7 +69,7 @@ pub struct Judgement {
     /// The verdict.
     pub stability: Stability,
     /// Proved where the verdict holds for every number of the enclosures that the orbit is proved to be in, else computed.
-    pub known: Known,
+    pub known: Evidence,
     /// A bound on the distance of each computed multiplier from the true one, to first order in the errors of the matrix; not a number
     /// where there are no multipliers.
     pub error: f64,
@@ -173,7 +173,7 @@ impl Judgement {
         let room = error + tolerance::ULP.value * (1.0 + size + determinant);
         let decided = Stability::of_trace([size - room, size + room], [1.0 + determinant; 2], loses);
         let error = multipliers_error(matrix, (middle, error), determinant);
-        Self { stability: decided.unwrap_or(Stability::Neutral), known: Known::Computed, error }
+        Self { stability: decided.unwrap_or(Stability::Neutral), known: Evidence::Computed, error }
     }
 
     /// The verdict on a cycle that closes within `residual` of its size, and whose matrix at angle 0 was computed as `matrix`.
@@ -214,7 +214,7 @@ impl Judgement {
     pub(super) fn of_rest(machine: &Machine) -> Self {
         let stability = if loses(machine) { Stability::Stable } else { Stability::Neutral };
         let error = if machine.restitution() < 1.0 { 0.0 } else { f64::NAN };
-        Self { stability, known: Known::Computed, error }
+        Self { stability, known: Evidence::Computed, error }
     }
 
     /// The verdict that holds wherever in `places` the impacts of a cycle are; none where it is not the same for all of them.

@@ -6,7 +6,7 @@ use nalgebra::Matrix2;
 
 use super::{Course, Judgement, PeriodicOrbit};
 use crate::flight::State;
-use crate::known::Known;
+use crate::known::Evidence;
 use crate::simulate::{Event, EventKind, Machine, SimulateError};
 
 /// The orbit of `revolutions` that sticks to the cam at `anchor`, rad, in `[0, 2 pi)`; `None` where the follower that is
@@ -37,7 +37,7 @@ pub fn through(machine: &Machine, anchor: f64, revolutions: u64) -> Result<Optio
         judgement: Judgement::of_rest(machine),
         residual: closing / super::cycle::lift_size(machine),
         course: Course::Sticking(anchor),
-        known: Known::Computed,
+        known: Evidence::Computed,
     }))
 }
 

@@ -2,7 +2,7 @@
 
 use crate::border_collision::event_curve::EventPoint;
 use crate::border_collision::{EventCurve, RoundedCorner};
-use crate::orbit::branch::{Border, Branch, BranchPoint, Kind, Special};
+use crate::orbit::branch::{Branch, BranchPoint, Special, SpecialKind, UndecidedGraze};
 use crate::show::words;
 use crate::tolerance;
 
@@ -29,31 +29,34 @@ pub(crate) fn branch(branch: &Branch, parameter: &str, index: usize) -> String {
     lines.join("\n")
 }
 
-fn passed(point: &BranchPoint, kind: Kind) -> String {
+fn passed(point: &BranchPoint, kind: SpecialKind) -> String {
     match kind {
-        Kind::Fold => "fold: a multiplier is 1".into(),
-        Kind::Branching => "branching: a multiplier is 1, and another branch crosses".into(),
-        Kind::Flip => "flip: a multiplier is -1".into(),
-        Kind::Corner { impact, jump_order, .. } => {
+        SpecialKind::Fold => "fold: a multiplier is 1".into(),
+        SpecialKind::Branching => "branching: a multiplier is 1, and another branch crosses".into(),
+        SpecialKind::Flip => "flip: a multiplier is -1".into(),
+        SpecialKind::Corner { impact, jump_order, .. } => {
             let angle = point.orbit.impacts().nth(impact).map_or(f64::NAN, |impact| impact.cam_angle.to_degrees());
             format!("corner impact: impact {} at {angle:.4} deg, jump of order {jump_order}", impact + 1)
         }
-        Kind::Graze { before, after, first, .. } => {
+        SpecialKind::Graze { before, after, first, .. } => {
             let beyond = first.map(words::first_touch).unwrap_or_default();
             format!("graze: from {before} to {after} impacts{beyond}")
         }
-        Kind::Type { .. } | Kind::Cusp | Kind::DegenerateGraze | Kind::Class(_) | Kind::Place | Kind::Turn => {
-            on_curve(kind)
-        }
-        Kind::Chatter => "chatter: the follower ceases to stick to the cam".into(),
-        Kind::Detachment => "detachment: the follower leaves the cam for the first time".into(),
+        SpecialKind::Type { .. }
+        | SpecialKind::Cusp
+        | SpecialKind::DegenerateGraze
+        | SpecialKind::Class(_)
+        | SpecialKind::Place
+        | SpecialKind::Turn => on_curve(kind),
+        SpecialKind::Chatter => "chatter: the follower ceases to stick to the cam".into(),
+        SpecialKind::Detachment => "detachment: the follower leaves the cam for the first time".into(),
     }
 }
 
 /// Quantity that changes along a curve.
-fn on_curve(kind: Kind) -> String {
+fn on_curve(kind: SpecialKind) -> String {
     match kind {
-        Kind::Type { after_corner, multiplier } => {
+        SpecialKind::Type { after_corner, multiplier } => {
             let side = match after_corner {
                 Some(true) => "with the law after the corner",
                 Some(false) => "with the law before the corner",
@@ -61,17 +64,21 @@ fn on_curve(kind: Kind) -> String {
             };
             format!("a multiplier {side} is {multiplier}")
         }
-        Kind::Cusp => "cusp: two folds meet".into(),
-        Kind::Class(Border::Eigenvalue(value)) => format!("a multiplier of the orbit without impacts is {value:.4}"),
-        Kind::Class(Border::Resonance(passages)) => {
+        SpecialKind::Cusp => "cusp: two folds meet".into(),
+        SpecialKind::Class(UndecidedGraze::Eigenvalue(value)) => {
+            format!("a multiplier of the orbit without impacts is {value:.4}")
+        }
+        SpecialKind::Class(UndecidedGraze::Resonance(passages)) => {
             let passages = words::many(passages, "passage");
             format!("resonance: {passages} of the cam's top after an impact the follower is at its equilibrium again")
         }
-        Kind::DegenerateGraze => "degenerate graze: follower and cam have one acceleration where they touch".into(),
-        Kind::Place => "the follower leaves the cam at two places at once".into(),
-        Kind::Turn => "the curve turns round".into(),
-        Kind::Corner { impact, .. } => format!("impact {} of the orbit is at a corner", impact + 1),
-        Kind::Graze { before, after, .. } => format!("a flight touches: from {before} to {after} impacts"),
+        SpecialKind::DegenerateGraze => {
+            "degenerate graze: follower and cam have one acceleration where they touch".into()
+        }
+        SpecialKind::Place => "the follower leaves the cam at two places at once".into(),
+        SpecialKind::Turn => "the curve turns round".into(),
+        SpecialKind::Corner { impact, .. } => format!("impact {} of the orbit is at a corner", impact + 1),
+        SpecialKind::Graze { before, after, .. } => format!("a flight touches: from {before} to {after} impacts"),
         _ => "where the events were looked for".into(),
     }
 }
@@ -90,18 +97,18 @@ pub(crate) fn curve(
     let what = words::events(curve.kind);
     let of_what = match curve.kind {
         // If an event could not be followed at all, its cam angle is unknown.
-        Kind::Graze { .. } if !angle.is_finite() => format!("from {impacts} to {} impacts", impacts + 1),
+        SpecialKind::Graze { .. } if !angle.is_finite() => format!("from {impacts} to {} impacts", impacts + 1),
         _ if !angle.is_finite() => format!("of {impacts} impact(s) in {} revolution(s)", here.revolutions),
-        Kind::Corner { impact, jump_order, .. } => {
+        SpecialKind::Corner { impact, jump_order, .. } => {
             format!("impact {} of {impacts} at {angle:.4} deg, jump of order {jump_order}", impact + 1)
         }
-        Kind::Graze { after, first: Some(touch), .. } => {
+        SpecialKind::Graze { after, first: Some(touch), .. } => {
             let side = words::touch_side(touch.larger);
             format!("from 0 to {after} impacts {side}, at {angle:.4} deg")
         }
-        Kind::Graze { .. } => format!("from {impacts} to {} impacts, at {angle:.4} deg", impacts + 1),
-        Kind::Detachment => format!("at {angle:.4} deg"),
-        Kind::Chatter => format!("where the cam lets go at {angle:.4} deg"),
+        SpecialKind::Graze { .. } => format!("from {impacts} to {} impacts, at {angle:.4} deg", impacts + 1),
+        SpecialKind::Detachment => format!("at {angle:.4} deg"),
+        SpecialKind::Chatter => format!("where the cam lets go at {angle:.4} deg"),
         _ => format!("of {impacts} impact(s) in {} revolution(s)", here.revolutions),
     };
     let mut lines = vec![
@@ -133,8 +140,10 @@ pub(crate) fn curve(
 fn rounding(curve: &EventCurve, sharp: &[(f64, RoundedCorner)]) -> Option<String> {
     let least = curve.points.iter().min_by(|one, two| one.value.total_cmp(&two.value))?;
     let off = |rpm: f64| (least.rpm - rpm).abs();
-    let (rpm, RoundedCorner { rpm_per_degree, degrees }) =
-        sharp.iter().filter(|_| curve.kind == Kind::Fold).min_by(|one, two| off(one.0).total_cmp(&off(two.0)))?;
+    let (rpm, RoundedCorner { rpm_per_degree, degrees }) = sharp
+        .iter()
+        .filter(|_| curve.kind == SpecialKind::Fold)
+        .min_by(|one, two| off(one.0).total_cmp(&off(two.0)))?;
     let followed = (least.rpm - rpm) / least.value;
     let within = tolerance::ROUNDED_AWAY.value;
     Some(format!(

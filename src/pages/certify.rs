@@ -3,7 +3,7 @@
 use crate::ball::Ball;
 use crate::orbit::Stability;
 use crate::pages::some_of;
-use crate::show::block::{Block, Column, Mark, Span, Table, Words, words};
+use crate::show::block::{Block, Column, Span, Table, TextMark, Words, words};
 use crate::show::digits::Digits;
 use crate::show::{Paged, words};
 use crate::study::certify::{
@@ -48,7 +48,7 @@ impl Paged for ProvedOrbits {
                 ("impact".into(), words)
             };
             let (impacts, kind) = (words::many(orbit.impacts.len() as u64, "impact"), orbit.kind.to_string());
-            page.push(Block::paragraph(words![format!("{impacts}, "), (Mark::Strong, kind.as_str())]));
+            page.push(Block::paragraph(words![format!("{impacts}, "), (TextMark::Strong, kind.as_str())]));
             page.push(Block::Entries(9, orbit.impacts.iter().map(start).collect()));
         }
         for count in [1, 2] {
@@ -91,7 +91,7 @@ impl Paged for ProvedCounts {
                 Some(all) => kinds(all),
                 None => "not decided".into(),
             };
-            page.push(Block::paragraph(words![(Mark::Strong, words::spoken(&event.kind.to_string()).as_str())]));
+            page.push(Block::paragraph(words![(TextMark::Strong, words::spoken(&event.kind.to_string()).as_str())]));
             page.push(Block::Entries(
                 9,
                 vec![
@@ -206,7 +206,7 @@ fn certificate(of: &Certificate) -> Vec<Block> {
     );
     for condition in &of.conditions {
         let sign = if condition.sign > 0 { "above 0" } else { "below 0" };
-        conditions.row([condition.name.as_str().into(), words![&condition.value.mid], (Mark::Good, sign).into()]);
+        conditions.row([condition.name.as_str().into(), words![&condition.value.mid], (TextMark::Good, sign).into()]);
     }
     let near = |side: &ProvedSide| {
         // Proofs exclude eigenvalues on the unit circle.
@@ -245,7 +245,7 @@ fn certificate(of: &Certificate) -> Vec<Block> {
         Block::Paragraph(
             2,
             words![
-                (Mark::Strong, of.verdict.to_string().as_str()),
+                (TextMark::Strong, of.verdict.to_string().as_str()),
                 format!(
                     ": {}. Next to omega* the machine has the fixed point with the impact before the corner {}, and the one with the \
                      impact after it {}. {how_far}{others}",

@@ -1,9 +1,9 @@
 //! The page of `chaos`: the theorem first, then its basis, then the places where nothing is proved.
 
 use crate::covering::prove::Refused;
-use crate::covering::region::{Escape, Region};
+use crate::covering::region::{OpenRegion, Region};
 use crate::elementary;
-use crate::show::block::{Block, Column, Mark, Table, words};
+use crate::show::block::{Block, Column, Table, TextMark, words};
 use crate::show::digits::Digits;
 use crate::show::{Paged, words};
 use crate::study::chaos::{Chaos, Open, Theorem};
@@ -14,7 +14,7 @@ impl Paged for Chaos {
         let [low, high] = self.rpm;
         let speeds = if low < high { format!("{low} to {high} rpm") } else { format!("{low} rpm") };
         let mut page =
-            vec![Block::Line((Mark::Heading, format!("{} at {speeds}", self.model).as_str()).into()), Block::Gap];
+            vec![Block::Line((TextMark::Heading, format!("{} at {speeds}", self.model).as_str()).into()), Block::Gap];
         page.push(Block::paragraph(statement(self)));
         match self.theorems.as_slice() {
             [] => page.push(Block::Gap),
@@ -128,7 +128,7 @@ fn outwards([low, high]: [f64; 2]) -> [f64; 2] {
 }
 
 /// Explains why no trapping region was proved, and after how many cells.
-fn escaped(escapes: &[Escape], rpm: f64) -> String {
+fn escaped(escapes: &[OpenRegion], rpm: f64) -> String {
     let each = escapes.iter().map(|escape| {
         let [angle, velocity] = escape.at;
         let why = match escape.flight {

@@ -1,11 +1,11 @@
 //! The pages of `claims`: one for a terminal, and one under `docs/`.
 
 use crate::explain::{ExplainError, Links};
-use crate::known::Known;
+use crate::known::Evidence;
 use crate::pages::explain::behind;
 use crate::paper::{Claims, Held};
 use crate::published::Verdict;
-use crate::show::block::{Block, Column, Mark, Section, Span, Table, Words, words};
+use crate::show::block::{Block, Column, PageSection, Span, Table, TextMark, Words, words};
 use crate::show::words::{self, mark, verdict_word};
 
 /// The page for a terminal.
@@ -13,13 +13,13 @@ pub(crate) fn terminal(found: &Claims) -> Vec<Block> {
     let title = format!("What the paper states, held against {}", found.model);
     let about = format!("All of it is about {}.", found.source);
     let mut blocks =
-        vec![Block::Paragraph(0, (Mark::Heading, title.as_str()).into()), Block::Paragraph(0, about.into())];
+        vec![Block::Paragraph(0, (TextMark::Heading, title.as_str()).into()), Block::Paragraph(0, about.into())];
     for (verdict, held) in found.groups().filter(|(_, held)| !held.is_empty()) {
         let name = verdict_word(verdict).to_uppercase();
         let count = format!(" ({})", count(found, verdict, held.len()));
         blocks.extend([Block::Gap, Block::Paragraph(0, words![(mark(verdict), name.as_str()), count])]);
         for claim in held {
-            let otherwise = (Mark::Bad, "OTHERWISE THAN THE LEDGER SAYS");
+            let otherwise = (TextMark::Bad, "OTHERWISE THAN THE LEDGER SAYS");
             let mut head = words![format!("{} [{}]", claim.id, claim.place)];
             if !claim.as_found {
                 head.push(words![": ", otherwise]);
@@ -31,9 +31,9 @@ pub(crate) fn terminal(found: &Claims) -> Vec<Block> {
         }
     }
     let agreement = if found.agrees {
-        (Mark::Good, "Every check comes to the ledger's verdict.")
+        (TextMark::Good, "Every check comes to the ledger's verdict.")
     } else {
-        (Mark::Bad, "A CHECK DISAGREES WITH THE LEDGER.")
+        (TextMark::Bad, "A CHECK DISAGREES WITH THE LEDGER.")
     };
     blocks.extend([Block::Gap, Block::Paragraph(0, agreement.into())]);
     blocks
@@ -54,10 +54,10 @@ fn by_slip(claim: &Held) -> Option<String> {
 }
 
 /// The page under `docs/`: its introduction and its sections.
-pub fn document(found: &Claims) -> Result<(Vec<Block>, Vec<Section>), ExplainError> {
+pub fn document(found: &Claims) -> Result<(Vec<Block>, Vec<PageSection>), ExplainError> {
     let links = Links::read()?;
     let behind_claims = links.of_claims();
-    let term = |name| (Mark::Strong, name);
+    let term = |name| (TextMark::Strong, name);
     let about = words![
         "Written by ",
         Span::Code("make claims".into()),
@@ -107,15 +107,15 @@ pub fn document(found: &Claims) -> Result<(Vec<Block>, Vec<Section>), ExplainErr
             table.row(cells);
         }
         let title = words![capitalized(verdict_word(verdict)), format!(" ({})", count(found, verdict, held.len()))];
-        Section { id: "", title, blocks: vec![Block::Table(table)] }
+        PageSection { id: "", title, blocks: vec![Block::Table(table)] }
     });
     let lead = vec![title, Block::paragraph(about), Block::paragraph(counts)];
     Ok((lead, [by_knowledge(found), slips(found)].into_iter().chain(sections).collect()))
 }
 
 /// Number of statements for each verdict and each kind of knowledge.
-fn by_knowledge(found: &Claims) -> Section {
-    let ways = [Known::Proved, Known::Computed, Known::Sampled, Known::Read];
+fn by_knowledge(found: &Claims) -> PageSection {
+    let ways = [Evidence::Proved, Evidence::Computed, Evidence::Sampled, Evidence::Read];
     let heads = ["".to_owned()].into_iter().chain(ways.map(|known| known.to_string()));
     let mut table = Table::new("", heads.map(|head| Column::left(head, 0, 0)).collect::<Vec<_>>());
     for (verdict, held) in found.groups() {
@@ -127,11 +127,15 @@ fn by_knowledge(found: &Claims) -> Section {
          what is behind one.",
         [],
     );
-    Section { id: "", title: "How each is known".into(), blocks: vec![Block::Table(table), Block::paragraph(filter)] }
+    PageSection {
+        id: "",
+        title: "How each is known".into(),
+        blocks: vec![Block::Table(table), Block::paragraph(filter)],
+    }
 }
 
 /// Each error, with the statements that it makes wrong.
-fn slips(found: &Claims) -> Section {
+fn slips(found: &Claims) -> PageSection {
     let heads = ["made in", "verdict", "where", "right instead", "wrong by it as well"];
     let mut table = Table::new("", heads.map(|head| Column::left(head, 0, 0)));
     for (maker, others) in found.slips() {
@@ -142,7 +146,7 @@ fn slips(found: &Claims) -> Section {
         table.row(row.map(Words::from));
     }
     let title = format!("Slips ({})", found.slips().count());
-    Section { id: "", title: title.into(), blocks: vec![Block::Table(table)] }
+    PageSection { id: "", title: title.into(), blocks: vec![Block::Table(table)] }
 }
 
 fn capitalized(word: &str) -> String {

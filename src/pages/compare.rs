@@ -3,25 +3,25 @@
 use serde_json::Value;
 
 use crate::show::Paged;
-use crate::show::block::{Block, Column, Mark, Span, Table, Words, words};
+use crate::show::block::{Block, Column, Span, Table, TextMark, Words, words};
 use crate::show::digits::Digits;
-use crate::study::compare::{Change, Comparison};
+use crate::study::compare::{Change, ModelComparison};
 
 /// Ratio of a difference to its error above which only a bound is shown.
 const MANY: f64 = 1e6;
 /// Most names in a list.
 const LONGEST: usize = 40;
 
-impl Paged for Comparison {
+impl Paged for ModelComparison {
     fn blocks(&self) -> Vec<Block> {
         let [a, b] = [&self.verdict.a, &self.verdict.b].map(ToString::to_string);
         let is_word = |change: &&Change| change.difference.is_none() && change.a.is_some() && change.b.is_some();
         let others = self.changes.iter().filter(is_word).count();
         let verdict = match self.verdict_changed() {
             false if others > 0 => words!["the same: ", a, format!("; but {others} findings are of another kind")],
-            false => words!["the same: ", (Mark::Good, a.as_str())],
+            false => words!["the same: ", (TextMark::Good, a.as_str())],
             true => {
-                words![(Mark::Bad, "changed"), Span::Break, "first:  ", a, Span::Break, "second: ", b]
+                words![(TextMark::Bad, "changed"), Span::Break, "first:  ", a, Span::Break, "second: ", b]
             }
         };
         let entries =
@@ -72,7 +72,7 @@ fn told(value: Option<&Value>) -> Words {
     }
 }
 
-fn fields(found: &Comparison) -> Vec<Block> {
+fn fields(found: &ModelComparison) -> Vec<Block> {
     if found.fields.is_empty() {
         return vec![Block::Gap, Block::paragraph("The fields of both models are the same.")];
     }

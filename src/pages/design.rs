@@ -1,17 +1,17 @@
 //! The page of `design`: the answer in sentences first, then speeds, limits and required changes.
 
-use crate::known::Known;
+use crate::known::Evidence;
 use crate::measured::Measured;
 use crate::pages::source;
 use crate::pages::speeds::measured_speed;
 use crate::show::Paged;
-use crate::show::block::{Block, Column, Mark, Span, Table, Words, words};
+use crate::show::block::{Block, Column, Span, Table, TextMark, Words, words};
 use crate::show::digits::{Digits, with_error};
 use crate::show::page::text;
 use crate::show::words::noise_unknown;
 use crate::study::design::contact::Separation;
 use crate::study::design::needs::Answer;
-use crate::study::design::{Design, Pair, Trade};
+use crate::study::design::{Design, RequiredPair, Trade};
 
 /// A column of numbers with a gap before it.
 fn number(head: impl Into<Words>) -> Column {
@@ -186,7 +186,7 @@ fn limits(found: &Design) -> Vec<Block> {
             Some(at) => {
                 words![
                     limit,
-                    Span::Marked(Mark::Bad, "passed".into()),
+                    Span::Marked(TextMark::Bad, "passed".into()),
                     " at ",
                     (at.across(), Digits::Significant(4)),
                     if found.over.is_none() {
@@ -198,7 +198,12 @@ fn limits(found: &Design) -> Vec<Block> {
                 ]
             }
             None => {
-                words![limit, Span::Marked(Mark::Good, "kept".into()), format!(" at each of the {values} above"), open]
+                words![
+                    limit,
+                    Span::Marked(TextMark::Good, "kept".into()),
+                    format!(" at each of the {values} above"),
+                    open
+                ]
             }
         }
     };
@@ -224,7 +229,7 @@ fn needs(found: &Design) -> Vec<Block> {
         let mut table = Table::new(&of_need[0].need, columns);
         for answer in of_need {
             let Answer { lever, now, unit, note, known, .. } = answer;
-            let digits = if *known == Known::Computed { Digits::Significant(9) } else { Digits::Significant(3) };
+            let digits = if *known == Evidence::Computed { Digits::Significant(9) } else { Digits::Significant(3) };
             let bound = if answer.is_upper_bound { "at most" } else { "at least" };
             // If any value will do, there is no uncertainty, and the note says so.
             let unknown = if is_open && answer.error.is_none() && note.is_empty() { " ± ?" } else { "" };
@@ -301,10 +306,10 @@ fn with_open(value: f64, error: Option<f64>, digits: Digits) -> Words {
 
 fn trade(trade: &Trade) -> [Block; 2] {
     let Trade { need, parameter, unit, against, against_unit, pairs, known } = trade;
-    let digits = if *known == Known::Computed { SIX } else { Digits::Significant(3) };
+    let digits = if *known == Evidence::Computed { SIX } else { Digits::Significant(3) };
     let columns = [number(format!("{against} {against_unit}")), number(format!("{parameter} {unit}"))];
     let mut table = Table::new(need, columns);
-    for Pair { given, found, error, other, other_error, again } in pairs {
+    for RequiredPair { given, found, error, other, other_error, again } in pairs {
         let found = found.map(|value| with_open(value, *error, digits));
         let mut cell = match (found, other.map(|value| with_open(value, *other_error, digits))) {
             (None, _) => "none".into(),

@@ -4,7 +4,7 @@ use serde_json::Value;
 
 use crate::explain::Explanation;
 use crate::show::Paged;
-use crate::show::block::{Block, Column, Mark, Span, Table, Words, words};
+use crate::show::block::{Block, Column, Span, Table, TextMark, Words, words};
 use crate::show::digits::Digits;
 use crate::show::words;
 
@@ -49,7 +49,7 @@ pub(crate) fn explained(it: &Explanation) -> Vec<Block> {
         let routes = Words::joined(it.skipped.iter().map(|skipped| Words::from(words::spoken(&skipped.route))), ", ");
         say("not run", words![routes, " (`verify` says why)"]);
     }
-    say("known", words![(Mark::Strong, it.known.to_string().as_str())]);
+    say("known", words![(TextMark::Strong, it.known.to_string().as_str())]);
     if !it.hypotheses.is_empty() {
         say("assumes", it.hypotheses.join("; ").into());
     }

@@ -1,8 +1,8 @@
 //! The page section on the local map: how generic it is, its own predictions, and its range of validity.
 
 use crate::border_collision::feigin::{Speeds, speeds_at};
-use crate::border_collision::local_map::PeriodicOrbit;
-use crate::border_collision::validity::{Compared, Range};
+use crate::border_collision::local_map::MapOrbit;
+use crate::border_collision::validity::{ComparedMotion, Range};
 use nalgebra::Vector2;
 
 use crate::border_collision::{LocalOutcome, RobustChaos, RoundedCorner};
@@ -131,7 +131,7 @@ fn theorem(chaos: &RobustChaos) -> Words {
 }
 
 /// Symbol sequences of some orbits.
-fn listed(orbits: &[&PeriodicOrbit]) -> String {
+fn listed(orbits: &[&MapOrbit]) -> String {
     let some = orbits.iter().take(SHOWN).map(|orbit| orbit.word.to_string()).collect::<Vec<_>>().join(", ");
     match orbits.len() {
         0 => "none".into(),
@@ -142,7 +142,8 @@ fn listed(orbits: &[&PeriodicOrbit]) -> String {
 
 /// Selected ranges of validity, by the compared prediction.
 fn held(found: &Verification, asked: impl Fn(&Range) -> bool + Copy) -> impl Iterator<Item = (Words, Words)> {
-    let all = [Compared::OneRevolution, Compared::FixedPointMinus, Compared::FixedPointPlus].into_iter();
+    let all =
+        [ComparedMotion::OneRevolution, ComparedMotion::FixedPointMinus, ComparedMotion::FixedPointPlus].into_iter();
     all.flat_map(move |compared| {
         let ranges = found.ranges.iter().filter(move |range| asked(range) && range.compared == compared);
         ranges.enumerate().map(move |(index, range)| {

@@ -9,7 +9,7 @@ use crate::measured::Measured;
 use crate::orbit::branch::GRID_RATIO;
 use crate::pages::speeds::measured_speed;
 use crate::show::Paged;
-use crate::show::block::{Block, Column, Mark, Table, Words, words};
+use crate::show::block::{Block, Column, Table, TextMark, Words, words};
 use crate::show::digits::Digits;
 use crate::show::words;
 use crate::study::locate::{Happens, Located, LocatedImpact};
@@ -74,7 +74,7 @@ fn table(found: &[LocatedImpact]) -> Table {
             (at.velocity_before, Digits::Significant(8)).into(),
             (at.velocity_after, Digits::Significant(8)).into(),
             words::verdict_with(&format!("{}{side}", impact.local.scenario()), impact.danger.as_ref()).into(),
-            Words::from((if impact.agrees { Mark::Good } else { Mark::Bad }, verdict(impact))),
+            Words::from((if impact.agrees { TextMark::Good } else { TextMark::Bad }, verdict(impact))),
         ]);
     }
     table

@@ -1,14 +1,14 @@
 //! The page of `orbit`: each periodic orbit, its multipliers, and its impacts on the cam.
 
-use crate::known::{Complete, Known};
+use crate::known::{Complete, Evidence};
 use crate::measured::Measured;
 
 use crate::orbit::{Course, Eigenvalue, PeriodicOrbit, Stability, Undecided};
 use crate::pages::some_of;
-use crate::show::block::{Block, Mark, Span, Words, words};
+use crate::show::block::{Block, Span, TextMark, Words, words};
 use crate::show::digits::{Digits, with_error};
 use crate::show::{Paged, words};
-use crate::study::orbit::{OrbitError, Orbits};
+use crate::study::orbit::{OrbitUncertainty, Orbits};
 
 impl Paged for Orbits {
     fn blocks(&self) -> Vec<Block> {
@@ -18,7 +18,7 @@ impl Paged for Orbits {
             count => format!("{count} periodic orbits"),
         };
         let title = format!("{} at {} rpm: {count} found", self.model, self.speed_rpm);
-        let mut page = vec![Block::Line((Mark::Heading, title.as_str()).into())];
+        let mut page = vec![Block::Line((TextMark::Heading, title.as_str()).into())];
         for (index, orbit) in self.orbits.iter().enumerate() {
             let error = self.errors.get(index).copied().flatten();
             page.extend(one(index + 1, orbit, error.as_ref()));
@@ -39,7 +39,7 @@ impl Paged for Orbits {
 fn complete(of: &Complete) -> Block {
     let (impacts, turns) = (words::many(of.impacts as u64, "impact"), words::many(of.revolutions, "revolution"));
     let others = match of.known {
-        Known::Proved => "there are no others, which is proved",
+        Evidence::Proved => "there are no others, which is proved",
         _ => "there may be others where it is not decided",
     };
     Block::paragraph(format!("Orbits of {impacts} in {turns}: {others}."))
@@ -52,8 +52,8 @@ fn undecided(at: &Undecided) -> Words {
 
 /// States what is proved about the orbits, and what is only computed.
 fn how_known(orbits: &[PeriodicOrbit]) -> Option<Block> {
-    let proved = orbits.iter().filter(|orbit| orbit.known == Known::Proved).count();
-    let judged = orbits.iter().filter(|orbit| orbit.judgement.known == Known::Proved).count();
+    let proved = orbits.iter().filter(|orbit| orbit.known == Evidence::Proved).count();
+    let judged = orbits.iter().filter(|orbit| orbit.judgement.known == Evidence::Proved).count();
     (proved > 0).then(|| {
         Block::paragraph(format!(
             "Existence is proved of {proved} of these orbits, stability or instability of {judged}. All digits are computed, those of \
@@ -63,7 +63,7 @@ fn how_known(orbits: &[PeriodicOrbit]) -> Option<Block> {
 }
 
 /// Uncertainty of an orbit's numbers, and its cause.
-fn left_open(cam: &Measured, error: Option<&OrbitError>) -> Block {
+fn left_open(cam: &Measured, error: Option<&OrbitUncertainty>) -> Block {
     let why = words::accuracy(cam);
     let Some(error) = error else {
         return Block::paragraph(format!(
@@ -99,7 +99,7 @@ fn known(places: usize, error: Option<f64>) -> Digits {
     }
 }
 
-fn one(number: usize, orbit: &PeriodicOrbit, error: Option<&OrbitError>) -> Vec<Block> {
+fn one(number: usize, orbit: &PeriodicOrbit, error: Option<&OrbitUncertainty>) -> Vec<Block> {
     /// Most impacts that are shown of an orbit.
     const SHOWN: usize = 8;
     let impacts = orbit.impacts().count();
@@ -112,12 +112,12 @@ fn one(number: usize, orbit: &PeriodicOrbit, error: Option<&OrbitError>) -> Vec<
     let largest = orbit.multipliers().map(Eigenvalue::modulus).into_iter().fold(0.0, f64::max);
     let stability = orbit.judgement.stability;
     let stable = match stability {
-        Stability::Neutral => (Mark::Doubtful, words::stability(stability)),
+        Stability::Neutral => (TextMark::Doubtful, words::stability(stability)),
         _ if error.is_some_and(|error| (largest - 1.0).abs() <= error.multiplier) => {
-            (Mark::Doubtful, "stable or unstable, which the cam leaves open")
+            (TextMark::Doubtful, "stable or unstable, which the cam leaves open")
         }
-        Stability::Stable => (Mark::Good, words::stability(stability)),
-        Stability::Unstable => (Mark::Doubtful, words::stability(stability)),
+        Stability::Stable => (TextMark::Good, words::stability(stability)),
+        Stability::Unstable => (TextMark::Doubtful, words::stability(stability)),
     };
     let ten = known(10, Some(error.map_or(orbit.judgement.error, |error| error.multiplier)));
     let [one, two] = orbit.multipliers().map(|multiplier| Span::Complex([multiplier.re, multiplier.im], ten));

@@ -4,12 +4,12 @@ use crate::show::block::{Block, Span, Words, words as sentence};
 use crate::show::digits::Digits;
 use crate::show::{Paged, words};
 use crate::study::diagram::Swept;
-use crate::study::simulate::{End, Lyapunov, Run};
+use crate::study::simulate::{Lyapunov, Run, RunEnd};
 
 impl Paged for Run {
     fn blocks(&self) -> Vec<Block> {
         let Self { model, rpm, revolutions, impacts, sticks, releases, wall_s, .. } = self;
-        let End { cam_angle_rad, position_m, velocity_m_s, contact } = self.end;
+        let RunEnd { cam_angle_rad, position_m, velocity_m_s, contact } = self.end;
         let nine = |value| Digits::Fixed(9).text(value);
         let (degrees, q, v) = (cam_angle_rad.to_degrees(), nine(position_m), nine(velocity_m_s));
         let place = if contact { ", on the cam" } else { "" };

@@ -4,7 +4,7 @@ use crate::elementary;
 use crate::measured::Measured;
 use crate::orbit::long_run::Budget;
 use crate::show::Paged;
-use crate::show::block::{Block, Column, Mark, Table, Words, words};
+use crate::show::block::{Block, Column, Table, TextMark, Words, words};
 use crate::show::digits::{Digits, with_error};
 use crate::show::words;
 use crate::study::attractors::Transition;
@@ -13,7 +13,7 @@ use crate::study::survey::{Sample, Spacing};
 
 impl Paged for SpeedSurvey {
     fn blocks(&self) -> Vec<Block> {
-        let heading = |text: String| Block::Line((Mark::Heading, text.as_str()).into());
+        let heading = |text: String| Block::Line((TextMark::Heading, text.as_str()).into());
         let mut page = vec![heading(format!("{}, {}", self.model, self.over.range(self.range))), Block::Gap];
         let leaves = if self.over.is_speed() { "  leaves the cam first at  " } else { "  on the cam or off from   " };
         page.push(Block::Line(words![leaves, detachment(self)]));

@@ -2,13 +2,13 @@
 //!
 //! An equation's id names its proof, a number's id its quantity: only the others have a row here.
 
-use super::context::{Context, Decision, Found, Residuals, decide};
+use super::context::{CheckResult, Context, Decision, Residuals, decide};
 use super::drawings::*;
 use super::dynamics::*;
 use super::jump_order::order_of_the_jump;
 use super::statements::*;
 use crate::agreement::Quantity;
-use crate::known::Known::{self, Computed, Sampled};
+use crate::known::Evidence::{self, Computed, Sampled};
 use crate::published::Verdict;
 
 const MODEL: &str = "it says what is computed with; that flights and impacts of this program obey it is for its tests";
@@ -38,9 +38,9 @@ pub enum Check<'a> {
     /// A printed number, by its quantity.
     Number(&'a str),
     /// A computation on any model.
-    Any(Known, fn(&Context<'_>) -> Decision),
+    Any(Evidence, fn(&Context<'_>) -> Decision),
     /// A computation on the paper's model.
-    Paper(Known, fn(&Context<'_>) -> Decision),
+    Paper(Evidence, fn(&Context<'_>) -> Decision),
     /// Somebody who read it: what was found, and why.
     Read(Verdict, &'a str),
 }
@@ -158,20 +158,20 @@ impl Check<'_> {
     }
 
     /// Decides the statement. What no check comes to is known by reading alone.
-    pub(crate) fn run(self, context: &Context<'_>) -> Found {
+    pub(crate) fn run(self, context: &Context<'_>) -> CheckResult {
         let (known, decision) = match self {
             _ if self.is_about_the_papers_model() && !context.is_paper => {
-                (Known::Read, Err("about the paper's follower and cam; this model has others".into()))
+                (Evidence::Read, Err("about the paper's follower and cam; this model has others".into()))
             }
-            Self::Read(verdict, why) => (Known::Read, Ok((verdict, why.into()))),
-            Self::Equation(label) => (Known::Proved, equation(context, label)),
-            Self::Proofs(verdict, statements, so) => (Known::Proved, proofs(context, verdict, statements, so)),
+            Self::Read(verdict, why) => (Evidence::Read, Ok((verdict, why.into()))),
+            Self::Equation(label) => (Evidence::Proved, equation(context, label)),
+            Self::Proofs(verdict, statements, so) => (Evidence::Proved, proofs(context, verdict, statements, so)),
             Self::Number(quantity) => (Computed, number(context, quantity)),
             Self::Any(known, check) | Self::Paper(known, check) => (known, check(context)),
         };
         match decision {
-            Ok((verdict, evidence)) => Found { verdict, known, evidence },
-            Err(why) => Found { verdict: Verdict::Open, known: Known::Read, evidence: why.to_string() },
+            Ok((verdict, evidence)) => CheckResult { verdict, known, evidence },
+            Err(why) => CheckResult { verdict: Verdict::Open, known: Evidence::Read, evidence: why.to_string() },
         }
     }
 }

@@ -6,7 +6,7 @@ use std::error::Error;
 use serde::Deserialize;
 
 use crate::cam::Cam;
-use crate::known::Known;
+use crate::known::Evidence;
 use crate::model::Model;
 use crate::published::{PrintedNumber, Verdict};
 use crate::study::verify::Verification;
@@ -122,11 +122,11 @@ impl<'a> Context<'a> {
 
 /// What a check found.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Found {
+pub struct CheckResult {
     /// Its verdict.
     pub verdict: Verdict,
     /// How that is known.
-    pub known: Known,
+    pub known: Evidence,
     /// The numbers that it rests on.
     pub evidence: String,
 }

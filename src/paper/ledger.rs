@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::checks;
-use super::context::{Context, Found, LedgerError};
-use crate::known::Known;
+use super::context::{CheckResult, Context, LedgerError};
+use crate::known::Evidence;
 use crate::progress::Watch;
 use crate::published::Verdict;
 
@@ -51,7 +51,7 @@ pub struct Held {
     #[serde(skip)]
     pub listed: Verdict,
     /// How the verdict is known.
-    pub known: Known,
+    pub known: Evidence,
     /// The numbers that the verdict rests on.
     pub evidence: String,
     /// What is right instead, where the check finds it wrong.
@@ -110,7 +110,7 @@ impl Claims {
         let one = |(done, claim): (usize, Claim)| {
             watch.at(&claim.id, done as u64, total);
             let check = checks::find(&claim.id).ok_or_else(|| LedgerError::Unchecked(claim.id.clone()))?;
-            let Found { verdict, known, evidence } = check.run(context);
+            let CheckResult { verdict, known, evidence } = check.run(context);
             let elsewhere = !context.is_paper && check.is_about_the_papers_model() && verdict == Verdict::Open;
             let as_found = verdict == claim.verdict || elsewhere;
             let correct = claim.correct.filter(|_| verdict.has_correction());

@@ -12,5 +12,5 @@ pub mod jump_order;
 pub mod ledger;
 mod statements;
 
-pub use context::{Context, Found, LedgerError, proofs};
+pub use context::{CheckResult, Context, LedgerError, proofs};
 pub use ledger::{Claim, Claims, Held};

@@ -9,14 +9,14 @@ use crate::agreement::by_quantity;
 use crate::cam::{Cam, Jet, Side};
 use crate::draw::layout::WIDTH;
 use crate::figures::{
-    Drawn, NO_STUDY, Plate, Subject, corner_marks, design_figure, impacts_by_speed, plates, speeds_figure,
-    through_corner,
+    Captioned, FigureContext, NO_STUDY, RenderedFigure, corner_marks, design_figure, impacts_by_speed, plates,
+    speeds_figure, through_corner,
 };
-use crate::measured::{Likely, Measured};
+use crate::measured::{Measured, PlausibleCams};
 use crate::model::{Model, ModelError, Units};
 use crate::paper::{Claims, Context, LedgerError};
 use crate::progress::Watch;
-use crate::report::quantities::{Quantity, quantities};
+use crate::report::quantities::{ReportQuantity, quantities};
 use crate::report::through::ThroughCorner;
 use crate::show::command::command;
 use crate::show::words;
@@ -26,7 +26,7 @@ use crate::study::design::contact::{Contact, Separation};
 use crate::study::design::{Asked, Design, design, known};
 use crate::study::speeds::{SpeedSurvey, speeds, usual_range};
 use crate::study::survey::{Over, Spacing};
-use crate::study::verify::{External, Tally, Verification, verify_watched};
+use crate::study::verify::{ComparisonTally, External, Verification, verify_watched};
 
 /// A report on one model; serializes to the document `corner-impact/report/1`.
 #[derive(Clone, Debug)]
@@ -56,15 +56,15 @@ pub struct Report {
     /// Motions at other speeds, or the reason why they are unknown.
     pub speeds: Result<SpeedSurvey, String>,
     /// Impact phases over these speeds: the picture of the answer.
-    pub overview: Option<Plate>,
+    pub overview: Option<RenderedFigure>,
     /// Loads on cam and follower over the range; `None` if a run cannot continue.
     pub design: Option<Design>,
     /// Figure of these loads.
-    pub loads: Option<Plate>,
+    pub loads: Option<RenderedFigure>,
     /// Figure of the overview with every attractor and its share of the starts.
-    pub attractors: Option<Plate>,
+    pub attractors: Option<RenderedFigure>,
     /// The figures, in the paper's order.
-    pub plates: Vec<Plate>,
+    pub plates: Vec<RenderedFigure>,
     /// Commands that reproduce the report, each with its purpose.
     pub commands: Vec<(String, &'static str)>,
 }
@@ -173,7 +173,7 @@ pub struct ModelSheet {
     /// Model file as given.
     pub file: String,
     /// All numbers of the model.
-    pub quantities: Vec<Quantity>,
+    pub quantities: Vec<ReportQuantity>,
     /// Segments and corners of the cam.
     pub cam: CamSheet,
 }
@@ -236,7 +236,7 @@ impl Report {
         let loads = design.as_ref().map(|found| loads(model, found, range));
         part(LOADS, THROUGH).at("the orbits on both sides of the corner impact", 0, 1);
         let through = verification.as_ref().map_err(String::clone).and_then(|found| through(model, &cam, found));
-        let subject = Subject::with(model, verification.clone(), rpm)?;
+        let subject = FigureContext::with(model, verification.clone(), rpm)?;
         let drawing = part(THROUGH, 1.0);
         let plates = plates(&subject, &mut |done, total| drawing.at("the figures", done as u64, total as u64));
         let agrees = verification.as_ref().map_or(true, |found| found.agrees)
@@ -250,7 +250,7 @@ impl Report {
         };
         let commands = commands(model, range, verification.is_ok());
         let contact = Contact::new(&cam, model.follower);
-        let likely = Likely::of(model)?;
+        let likely = PlausibleCams::of(model)?;
         let separation = known(contact.separation(), likely.as_ref());
         let (margin, units) = (margin(&contact, &model.units), model.units.clone());
         Ok(Self {
@@ -276,7 +276,7 @@ impl Report {
     }
 
     /// Counts of comparisons and printed numbers by their result; empty without a corner impact.
-    pub(crate) fn tally(&self) -> Tally {
+    pub(crate) fn tally(&self) -> ComparisonTally {
         self.verification.as_ref().map(Verification::tally).unwrap_or_default()
     }
 
@@ -293,7 +293,7 @@ impl Report {
 }
 
 /// Figure of impact phases over speeds.
-fn overview(model: &Model, cam: &Cam, found: &SpeedSurvey) -> Plate {
+fn overview(model: &Model, cam: &Cam, found: &SpeedSurvey) -> RenderedFigure {
     let figure = impacts_by_speed(found, &corner_marks(cam));
     let title = figure.title.clone();
     let [low, high] = found.range;
@@ -302,11 +302,11 @@ fn overview(model: &Model, cam: &Cam, found: &SpeedSurvey) -> Plate {
         model.name
     );
     let command = command("speeds", model, &format!("--rpm {low}:{high} --out impacts.svg"));
-    Plate { id: "overview", place: "", title, command, drawn: Ok(Drawn { figure, caption }) }
+    RenderedFigure { id: "overview", place: "", title, command, drawn: Ok(Captioned { figure, caption }) }
 }
 
 /// Figure of the loads on cam and follower.
-fn loads(model: &Model, found: &Design, [low, high]: [f64; 2]) -> Plate {
+fn loads(model: &Model, found: &Design, [low, high]: [f64; 2]) -> RenderedFigure {
     let figure = design_figure(found).in_units(|unit| model.units.spelled(unit));
     let title = figure.title.clone();
     let caption = format!(
@@ -315,11 +315,11 @@ fn loads(model: &Model, found: &Design, [low, high]: [f64; 2]) -> Plate {
         model.name
     );
     let command = command("design", model, &format!("--rpm {low}:{high} --out loads.svg"));
-    Plate { id: "loads", place: "", title, command, drawn: Ok(Drawn { figure, caption }) }
+    RenderedFigure { id: "loads", place: "", title, command, drawn: Ok(Captioned { figure, caption }) }
 }
 
 /// Figure of the attractors of runs.
-fn attractors(model: &Model, cam: &Cam, found: &SpeedSurvey) -> Plate {
+fn attractors(model: &Model, cam: &Cam, found: &SpeedSurvey) -> RenderedFigure {
     let figure = speeds_figure(found, &corner_marks(cam), WIDTH);
     let title = figure.title.clone();
     let caption = "What runs end on against the speed: where its impacts are on the cam, a bar for each attractor, and the share of \
@@ -327,7 +327,7 @@ fn attractors(model: &Model, cam: &Cam, found: &SpeedSurvey) -> Plate {
         .to_owned();
     let [low, high] = found.range;
     let command = command("speeds", model, &format!("--rpm {low}:{high} --out attractors.svg"));
-    Plate { id: "attractors", place: "", title, command, drawn: Ok(Drawn { figure, caption }) }
+    RenderedFigure { id: "attractors", place: "", title, command, drawn: Ok(Captioned { figure, caption }) }
 }
 
 /// Motion on either side of the corner impact, or the reason why there is none.

@@ -7,7 +7,7 @@ use crate::model::{CORNER_ROUNDING, Model, Units};
 
 /// A number of a model.
 #[derive(Clone, Debug, Serialize)]
-pub struct Quantity {
+pub struct ReportQuantity {
     /// Path in the model file; empty for a derived number.
     pub field: String,
     /// Symbol in the paper, if any.
@@ -20,7 +20,7 @@ pub struct Quantity {
     pub unit: String,
 }
 
-impl Quantity {
+impl ReportQuantity {
     /// Name of the number in `explain`.
     pub(crate) fn name(&self) -> &str {
         match (self.field.as_str(), self.symbol) {
@@ -31,7 +31,7 @@ impl Quantity {
     }
 }
 
-/// Known fields: path, symbol, meaning, unit.
+/// Evidence fields: path, symbol, meaning, unit.
 const KNOWN: [(&str, &str, &str, &str); 16] = [
     ("follower.mass", "m", "mass of the follower", "kg"),
     ("follower.damping", "b", "damping", "N s/m"),
@@ -52,20 +52,20 @@ const KNOWN: [(&str, &str, &str, &str); 16] = [
 ];
 
 /// All numbers of the model in the order of its file, then derived ones.
-pub(crate) fn quantities(model: &Model) -> Vec<Quantity> {
+pub(crate) fn quantities(model: &Model) -> Vec<ReportQuantity> {
     let place = |field: &str| KNOWN.iter().position(|(path, ..)| *path == field);
     let is_said = |(field, value): &(&str, f64)| *field != CORNER_ROUNDING || *value != 0.0;
     let mut numbers: Vec<(&str, f64)> = model.numbers().filter(is_said).collect();
-    // Known fields in the order of the table, then the others in the order of the file.
+    // Evidence fields in the order of the table, then the others in the order of the file.
     numbers.sort_by_key(|(field, _)| place(field).unwrap_or(KNOWN.len()));
-    let mut quantities: Vec<Quantity> =
+    let mut quantities: Vec<ReportQuantity> =
         numbers.into_iter().map(|(field, value)| written(&model.units, field, value)).collect();
     if let Some(study) = model.study {
         for (field, meaning, value) in [
             ("study.rpm_min", "lowest speed at which a corner impact is looked for", study.rpm_min),
             ("study.rpm_max", "highest speed at which a corner impact is looked for", study.rpm_max),
         ] {
-            quantities.push(Quantity {
+            quantities.push(ReportQuantity {
                 field: field.into(),
                 symbol: "",
                 meaning: meaning.into(),
@@ -75,7 +75,7 @@ pub(crate) fn quantities(model: &Model) -> Vec<Quantity> {
         }
     }
     let flight = Flight::new(&model.follower);
-    let follows = |symbol, meaning: &str, value, unit: &str| Quantity {
+    let follows = |symbol, meaning: &str, value, unit: &str| ReportQuantity {
         field: String::new(),
         symbol,
         meaning: meaning.into(),
@@ -87,12 +87,12 @@ pub(crate) fn quantities(model: &Model) -> Vec<Quantity> {
     quantities
 }
 
-fn written(units: &Units, field: &str, value: f64) -> Quantity {
+fn written(units: &Units, field: &str, value: f64) -> ReportQuantity {
     let of_follower =
         field.strip_prefix("follower.").and_then(|name| units.of_follower(name)).filter(|_| units.are_given);
     let told = |unit: &str| of_follower.map_or_else(|| units.spelled(unit), |unit| unit.name().to_owned());
     if let Some((_, symbol, meaning, unit)) = KNOWN.iter().find(|(path, ..)| *path == field) {
-        return Quantity { field: field.into(), symbol, meaning: (*meaning).into(), value, unit: told(unit) };
+        return ReportQuantity { field: field.into(), symbol, meaning: (*meaning).into(), value, unit: told(unit) };
     }
     let name = field.rsplit('.').next().unwrap_or(field);
     let unit = match name.split('[').next().unwrap_or(name) {
@@ -103,5 +103,5 @@ fn written(units: &Units, field: &str, value: f64) -> Quantity {
         _ => "",
     };
     let words = name.split('[').next().unwrap_or(name).trim_end_matches("_deg").replace('_', " ");
-    Quantity { field: field.into(), symbol: "", meaning: words, value, unit: told(unit) }
+    ReportQuantity { field: field.into(), symbol: "", meaning: words, value, unit: told(unit) }
 }

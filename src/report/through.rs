@@ -5,9 +5,9 @@ use serde::Serialize;
 
 use crate::cam::{Cam, Lift};
 use crate::draw::ticks::{ticks, unit};
-use crate::draw::{Spacing, extent};
+use crate::draw::{TickSpacing, extent};
 use crate::elementary;
-use crate::figures::through_corner::{Moment, Place, Shown, profile};
+use crate::figures::through_corner::{ImpactSide, Moment, ShownOrbit, profile};
 use crate::figures::{CornerMark, Outline, corner_marks};
 use crate::model::Units;
 
@@ -23,7 +23,7 @@ pub struct NotFinite {
 #[derive(Clone, Debug, Serialize)]
 pub struct ThroughCorner {
     /// Decimal places of its numbers.
-    pub places: Places,
+    pub places: DecimalPlaces,
     /// Letter of the corner, or its cam angle.
     pub corner: String,
     /// Cam angle of the corner, deg.
@@ -89,7 +89,7 @@ const MARGIN: f64 = 0.06;
 /// Decimal places of each quantity; they depend on the model, because its unit of length may be any.
 #[derive(Clone, Copy, Debug, Serialize)]
 #[expect(missing_docs, reason = "each is of the quantity that it is named after")]
-pub struct Places {
+pub struct DecimalPlaces {
     /// Enough places that neighbouring frames differ.
     pub speed: i32,
     /// Places that follow from the cam's travel.
@@ -100,7 +100,7 @@ pub struct Places {
     pub multiplier: i32,
 }
 
-impl Places {
+impl DecimalPlaces {
     fn new(moments: &[Moment], cam: &[(f64, Lift)]) -> Self {
         let span = |of: fn(&Lift) -> f64| {
             let [low, high] = extent(cam.iter().map(|(_, lift)| of(lift)));
@@ -139,7 +139,7 @@ impl Places {
     }
 
     /// Numbers of an orbit, each with its decimal places.
-    fn numbers<'a>(&self, orbit: &'a mut Shown) -> [(&'a mut f64, i32); 10] {
+    fn numbers<'a>(&self, orbit: &'a mut ShownOrbit) -> [(&'a mut f64, i32); 10] {
         let [one, other] = &mut orbit.multipliers;
         [
             (&mut orbit.angle_deg, ANGLE),
@@ -177,7 +177,7 @@ impl ThroughCorner {
     /// Fails if a number is not finite, because the page's data cannot represent it.
     pub fn new((mut frames, at_corner): (Vec<Moment>, usize), cam: &Cam, corner: f64) -> Result<Self, NotFinite> {
         let (corner_deg, profile, marks) = (corner.to_degrees(), profile(cam), corner_marks(cam));
-        let places = Places::new(&frames, &profile);
+        let places = DecimalPlaces::new(&frames, &profile);
         for moment in &mut frames {
             let rpm = moment.rpm;
             if !places.round(moment) {
@@ -223,7 +223,7 @@ impl ThroughCorner {
 }
 
 impl AxisEntry {
-    fn over([low, high]: [f64; 2], name: &str, spacing: Spacing, most: usize) -> Self {
+    fn over([low, high]: [f64; 2], name: &str, spacing: TickSpacing, most: usize) -> Self {
         let found = ticks([low, high], spacing, most, |_| true);
         Self {
             range: [low, high],
@@ -235,7 +235,7 @@ impl AxisEntry {
     fn around([low, high]: [f64; 2], name: &str, most: usize) -> Self {
         // A constant also gets room above and below.
         let wide = if high > low { high - low } else { high.abs().max(1.0) };
-        Self::over([low - MARGIN * wide, high + MARGIN * wide], name, Spacing::Decimal, most)
+        Self::over([low - MARGIN * wide, high + MARGIN * wide], name, TickSpacing::Decimal, most)
     }
 }
 
@@ -246,7 +246,7 @@ impl Axes {
         let of_runs = frames.iter().flat_map(|frame| frame.slowing.paths.iter().flatten());
         let lifts = cam.iter().map(|point| point[1]);
         let positions = extent(of_orbits.chain(of_runs).map(|point| point[1]).chain(lifts));
-        let beside = orbits().filter(|orbit| orbit.place != Place::Elsewhere);
+        let beside = orbits().filter(|orbit| orbit.place != ImpactSide::Elsewhere);
         let [first, last] = extent(beside.map(|orbit| corner_deg + orbit.from_corner_deg).chain([corner_deg]));
         // At least a few degrees, so that the corner is visible even if nothing moves across it.
         let reach = 0.12 * (last - first).max(20.0);
@@ -260,12 +260,12 @@ impl Axes {
         let plane = rounded(1.15 * widest, 2);
         let speeds = extent(frames.iter().map(|frame| frame.rpm));
         Self {
-            speed: AxisEntry::over(speeds, "rpm", Spacing::Decimal, 6),
-            angle: AxisEntry::over([0.0, 360.0], "deg", Spacing::Degrees, 5),
+            speed: AxisEntry::over(speeds, "rpm", TickSpacing::Decimal, 6),
+            angle: AxisEntry::over([0.0, 360.0], "deg", TickSpacing::Degrees, 5),
             position: AxisEntry::around(positions, "m", 6),
-            near: AxisEntry::over(near, "deg", Spacing::Degrees, 6),
+            near: AxisEntry::over(near, "deg", TickSpacing::Degrees, 6),
             acceleration: AxisEntry::around(accelerations, "m/rad²", 6),
-            plane: AxisEntry::over([-plane, plane], "", Spacing::Decimal, 5),
+            plane: AxisEntry::over([-plane, plane], "", TickSpacing::Decimal, 5),
         }
     }
 }

@@ -10,7 +10,7 @@ use crate::show::digits::Digits;
 
 /// Meaning of a stretch of text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Mark {
+pub enum TextMark {
     Heading,
     /// Important words of a sentence; a terminal leaves them plain.
     Strong,
@@ -45,7 +45,7 @@ pub enum Span {
     /// A unit, written in metres: `m/s`. The page shows it in the model's unit of length.
     Unit(&'static str),
     /// Emphasized words.
-    Marked(Mark, String),
+    Marked(TextMark, String),
     /// Words for an entry that `explain` has under this name.
     About(String, Words),
     /// A line break.
@@ -154,8 +154,8 @@ impl From<(f64, Digits)> for Words {
     }
 }
 
-impl From<(Mark, &str)> for Words {
-    fn from((mark, text): (Mark, &str)) -> Self {
+impl From<(TextMark, &str)> for Words {
+    fn from((mark, text): (TextMark, &str)) -> Self {
         Span::Marked(mark, text.into()).into()
     }
 }
@@ -248,7 +248,7 @@ pub(crate) fn in_units(blocks: Vec<Block>, units: &Units) -> Vec<Block> {
         }
         Block::Table(table) => {
             let columns = table.columns.into_iter().map(|column| Column { head: told(column.head), ..column });
-            let rows = table.rows.into_iter().map(|row| Row { cells: all(row.cells), ..row });
+            let rows = table.rows.into_iter().map(|row| PageRow { cells: all(row.cells), ..row });
             Block::Table(Table { columns: columns.collect(), rows: rows.collect(), ..table })
         }
         Block::List(items) => Block::List(all(items)),
@@ -263,7 +263,7 @@ pub(crate) fn in_units(blocks: Vec<Block>, units: &Units) -> Vec<Block> {
 
 /// A section of a page that can be linked to.
 #[derive(Clone, Debug)]
-pub struct Section {
+pub struct PageSection {
     /// URL fragment of the section.
     pub id: &'static str,
     pub title: Words,
@@ -307,7 +307,7 @@ impl Column {
 
 /// A row of a table.
 #[derive(Clone, Debug)]
-pub struct Row {
+pub struct PageRow {
     /// One cell for each column; the first is the head of the row.
     pub cells: Vec<Words>,
     /// Whether the row states a bad result.
@@ -316,10 +316,10 @@ pub struct Row {
 
 #[derive(Clone, Debug)]
 pub struct Table {
-    /// Subject of the table.
+    /// FigureContext of the table.
     pub label: String,
     pub columns: Vec<Column>,
-    pub rows: Vec<Row>,
+    pub rows: Vec<PageRow>,
     /// Number of last columns that are repeated, besides the first one, if a table that is too wide is split into several.
     /// `None` if it is written row by row instead.
     pub repeated: Option<usize>,
@@ -331,11 +331,11 @@ impl Table {
     }
 
     pub(crate) fn row(&mut self, cells: impl Into<Vec<Words>>) {
-        self.rows.push(Row { cells: cells.into(), is_bad: false });
+        self.rows.push(PageRow { cells: cells.into(), is_bad: false });
     }
 
     /// Appends a row and marks it as a bad result if `is_bad`.
     pub(crate) fn row_bad_where(&mut self, is_bad: bool, cells: impl Into<Vec<Words>>) {
-        self.rows.push(Row { cells: cells.into(), is_bad });
+        self.rows.push(PageRow { cells: cells.into(), is_bad });
     }
 }

@@ -10,16 +10,16 @@ use crate::estimate::Estimate;
 use crate::flight::State;
 use crate::model::Units;
 use crate::orbit::Eigenvalue;
-use crate::orbit::branch::{Branch, Kind};
+use crate::orbit::branch::{Branch, SpecialKind};
 use crate::orbit::long_run::LongRun;
-use crate::section::Sample;
+use crate::section::TraceSample;
 use crate::show::digits::Digits;
 use crate::simulate::{Event, Machine, Motion};
 use crate::study::basins::{Basin, Basins, BasinsOver};
 use crate::study::chart::{Chart, Charted, class};
 use crate::study::design::loads::Loads;
 use crate::study::speeds::{At, AttractorRow, SpeedSurvey};
-use crate::study::survey::{Axis, Beginning, Block, Found, Point, Row, Section, Seen, Sweep};
+use crate::study::survey::{Axis, Beginning, GridResults, Point, RecordBlock, RecordRow, Section, Seen, Sweep};
 
 /// Converts a table to the units of a model.
 pub(crate) fn told<'a>(table: &'a str, units: &Units) -> Cow<'a, str> {
@@ -80,9 +80,9 @@ pub(crate) fn strobe(line: &mut String, machine: &Machine, motion: &Motion) {
 pub(crate) const TRACE: &str = "time_s,cam_angle_rad,position_m,velocity_m_s,gap_m,contact_force_n\n";
 
 /// Samples of a run: time since `start_angle`, rad, and the contact force of the cam on a follower of `mass`, kg.
-pub(crate) fn trace(samples: &[Sample], start_angle: f64, angular_velocity: f64, mass: f64) -> String {
+pub(crate) fn trace(samples: &[TraceSample], start_angle: f64, angular_velocity: f64, mass: f64) -> String {
     let mut lines = String::new();
-    for Sample { turned, cam_angle, state: State { position, velocity }, gap, pressing, .. } in samples {
+    for TraceSample { turned, cam_angle, state: State { position, velocity }, gap, pressing, .. } in samples {
         let time = (turned - start_angle) / angular_velocity;
         let _ = writeln!(lines, "{time},{cam_angle},{position},{velocity},{gap},{}", mass * pressing);
     }
@@ -109,10 +109,10 @@ impl Lines {
     const FULL: usize = 1 << 15;
 }
 
-impl Block for Lines {
-    fn push(&mut self, row: &Row) {
+impl RecordBlock for Lines {
+    fn push(&mut self, row: &RecordRow) {
         let line = &mut self.0;
-        let Row { value, revolution, motion, seen, growth } = row;
+        let RecordRow { value, revolution, motion, seen, growth } = row;
         let _ = match seen {
             Seen::Event(event) => {
                 let Event { cam_angle, position, velocity_before, velocity_after, .. } = event;
@@ -211,7 +211,7 @@ pub(crate) fn chart(found: &Charted) -> String {
 }
 
 /// Table of the motions at each value, a line each.
-pub(crate) fn one_row(over: &Axis, points: &Found<Point>) -> String {
+pub(crate) fn one_row(over: &Axis, points: &GridResults<Point>) -> String {
     let mut lines = format!("{},{POINT}", over.parameter.name());
     for (value, point) in over.values.iter().zip(points) {
         let _ = write!(lines, "{value},");
@@ -271,8 +271,8 @@ pub(crate) fn branches(parameter: &str, branches: &[Branch]) -> String {
         let first = orbit.impacts().next().map(|first| (first.cam_angle, first.position, first.velocity_after));
         let (angle, position, velocity) = first.unwrap_or((0.0, orbit.state.position, orbit.state.velocity));
         let (order, class) = match special.map(|special| special.kind) {
-            Some(Kind::Corner { jump_order, .. }) => (Some(jump_order), None),
-            Some(Kind::Graze { first, .. }) => (None, first.map(|first| first.class)),
+            Some(SpecialKind::Corner { jump_order, .. }) => (Some(jump_order), None),
+            Some(SpecialKind::Graze { first, .. }) => (None, first.map(|first| first.class)),
             _ => (None, None),
         };
         let (order, low) = (cell(order), cell(special.map(|special| special.bracket[0])));
@@ -295,7 +295,7 @@ pub(crate) fn curves(parameter: &str, curves: &[EventCurve]) -> String {
     let points = curves.iter().zip(1..).flat_map(|(curve, index)| curve.points.iter().map(move |p| (curve, index, p)));
     for (curve, index, point) in points {
         let (rpm, value, angle, turns) = (point.rpm, point.value, point.cam_angle, point.revolutions);
-        let order = if let Kind::Corner { jump_order, .. } = curve.kind { Some(jump_order) } else { None };
+        let order = if let SpecialKind::Corner { jump_order, .. } = curve.kind { Some(jump_order) } else { None };
         let (count, order, happening) = (point.impacts, cell(order), cell(point.happening));
         let _ = write!(lines, "{rpm},{parameter},{value},{turns},{count},{angle},{order},{happening}");
         let each = |index: usize| point.multipliers.get(index).map(|value| [value.re, value.im]);

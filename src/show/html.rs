@@ -2,7 +2,7 @@
 
 use maud::{Markup, html};
 
-use crate::show::block::{Block, Column, Mark, Span, Symbol, Table, Words};
+use crate::show::block::{Block, Column, Span, Symbol, Table, TextMark, Words};
 use crate::show::digits::{Digits, typeset};
 use crate::show::formula::sentence;
 
@@ -105,11 +105,11 @@ fn span(span: &Span) -> Markup {
             },
             Span::Code(text) => code { (text) },
             Span::Unit(unit) => (unit),
-            Span::Marked(Mark::Strong | Mark::Heading, text) => strong { (text) },
-            Span::Marked(Mark::Good, text) => span.good { (text) },
-            Span::Marked(Mark::Bad, text) => span.bad { (text) },
-            Span::Marked(Mark::Doubtful, text) => span.doubtful { (text) },
-            Span::Marked(Mark::Open, text) => span.open { (text) },
+            Span::Marked(TextMark::Strong | TextMark::Heading, text) => strong { (text) },
+            Span::Marked(TextMark::Good, text) => span.good { (text) },
+            Span::Marked(TextMark::Bad, text) => span.bad { (text) },
+            Span::Marked(TextMark::Doubtful, text) => span.doubtful { (text) },
+            Span::Marked(TextMark::Open, text) => span.open { (text) },
             Span::About(what, inside) => span data-about=(what) { (words(inside)) },
             Span::Break => br;
         }

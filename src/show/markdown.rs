@@ -2,12 +2,12 @@
 
 use std::fmt::{self, Write};
 
-use crate::foreign;
-use crate::show::block::{Block, Section, Span, Table, Words};
+use crate::show::block::{Block, PageSection, Span, Table, Words};
 use crate::show::page;
+use crate::untrusted;
 
 /// Writes a page: its introduction and its sections.
-pub fn page(lead: &[Block], sections: &[Section]) -> Result<String, fmt::Error> {
+pub fn page(lead: &[Block], sections: &[PageSection]) -> Result<String, fmt::Error> {
     let mut out = String::new();
     blocks(&mut out, lead)?;
     for section in sections {
@@ -66,9 +66,9 @@ fn table(out: &mut String, table: &Table) -> fmt::Result {
 /// Words as Markdown; bars, stars and angle brackets of a text are escaped.
 fn text(words: &Words) -> String {
     let of = |span: &Span| match span {
-        Span::Code(text) => format!("`{}`", foreign::visible(text)),
+        Span::Code(text) => format!("`{}`", untrusted::visible(text)),
         Span::Unit(unit) => (*unit).to_owned(),
-        Span::Marked(_, text) => format!("*{}*", escaped(&foreign::visible(text))),
+        Span::Marked(_, text) => format!("*{}*", escaped(&untrusted::visible(text))),
         Span::Break => "<br>".into(),
         Span::About(_, words) => self::text(words),
         span => escaped(&page::text(&span.clone().into())),

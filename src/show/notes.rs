@@ -1,7 +1,7 @@
 //! Remarks on a model before any computation, a sentence each.
 
 use crate::cam::Stray;
-use crate::measured::{Openness, Remarks};
+use crate::measured::{CamUncertainty, Remarks};
 use crate::model::{Model, ModelError, TableProfile};
 use crate::show::digits::Digits;
 use crate::show::words::{accuracy, known_to, noise_unknown};
@@ -60,14 +60,14 @@ fn slips(profile: &TableProfile, strays: &[Stray]) -> Vec<String> {
 
 /// Uncertainty of the cam, for an answer without a ± of its own; `None` if the rows have no noise.
 pub fn as_drawn(model: &Model) -> Result<Option<String>, ModelError> {
-    let Some((open, profile)) = Openness::of(model)?.zip(model.table()) else { return Ok(None) };
+    let Some((open, profile)) = CamUncertainty::of(model)?.zip(model.table()) else { return Ok(None) };
     let (accuracy, open) = match open {
-        Openness::Told(cam) => {
+        CamUncertainty::Told(cam) => {
             let percent = Digits::Aligned(2).text(100.0 * cam.curvature_error / cam.largest_curvature);
             (accuracy(&cam), format!("to {percent} % of its largest value"))
         }
-        Openness::Unknown(why) => return Ok(Some(noise_unknown(&why))),
-        Openness::Noise(spread) => (known_to(&profile.reading, spread), "as far as `cam` tells".into()),
+        CamUncertainty::Unknown(why) => return Ok(Some(noise_unknown(&why))),
+        CamUncertainty::Noise(spread) => (known_to(&profile.reading, spread), "as far as `cam` tells".into()),
     };
     Ok(Some(format!(
         "{accuracy}, which leaves the cam's second derivative open {open}; what follows is of the cam as it is drawn through the rows, \

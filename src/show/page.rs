@@ -9,8 +9,8 @@ use std::fmt::{self, Write};
 use textwrap::core::display_width;
 use textwrap::{Options, WordSeparator, WordSplitter, WrapAlgorithm};
 
-use crate::foreign;
-use crate::show::block::{Block, Mark, Span, Table, Words};
+use crate::show::block::{Block, Span, Table, TextMark, Words};
+use crate::untrusted;
 
 /// Default width of a page, in columns.
 pub(crate) const WIDTH: usize = 100;
@@ -18,7 +18,7 @@ pub(crate) const WIDTH: usize = 100;
 /// Escape code that ends a mark.
 const RESET: &str = "\x1b[0m";
 
-impl Mark {
+impl TextMark {
     const ALL: [Self; 6] = [Self::Heading, Self::Strong, Self::Good, Self::Bad, Self::Doubtful, Self::Open];
 
     /// Escape codes that begin the mark: bold, and the terminal's own sixteen colours, which suit any background.
@@ -89,7 +89,7 @@ impl Page {
 
     /// Writes emphasized words with a line under them.
     fn underlined(&mut self, text: &str, rule: char) -> fmt::Result {
-        self.text.push_str(&Mark::Heading.around(text));
+        self.text.push_str(&TextMark::Heading.around(text));
         let length = display_width(text).min(self.width);
         writeln!(self, "\n{}", String::from(rule).repeat(length))
     }
@@ -140,7 +140,7 @@ impl Page {
     }
 
     pub(crate) fn plain(&self) -> String {
-        let codes = Mark::ALL.map(Mark::codes).into_iter().filter(|codes| !codes.is_empty());
+        let codes = TextMark::ALL.map(TextMark::codes).into_iter().filter(|codes| !codes.is_empty());
         codes.chain([RESET]).fold(self.text.clone(), |text, code| text.replace(code, ""))
     }
 
@@ -153,7 +153,7 @@ impl Page {
 /// Words as text for a terminal.
 pub(crate) fn text(words: &Words) -> String {
     let of = |span: &Span| match span {
-        Span::Text(text) | Span::Quoted(text) | Span::Code(text) => foreign::visible(text).into_owned(),
+        Span::Text(text) | Span::Quoted(text) | Span::Code(text) => untrusted::visible(text).into_owned(),
         Span::Unit(unit) => (*unit).to_owned(),
         Span::Number(value, digits) | Span::Against(value, _, digits) => digits.text(*value),
         Span::Complex([re, im], digits) if *im == 0.0 => digits.text(*re),
@@ -169,7 +169,7 @@ pub(crate) fn text(words: &Words) -> String {
             let entries = rows.iter().map(row).collect::<Vec<_>>().join(", ");
             if rows.iter().all(|row| row.len() == 1) { format!("({entries})") } else { format!("[{entries}]") }
         }
-        Span::Marked(mark, text) => mark.around(&foreign::visible(text)),
+        Span::Marked(mark, text) => mark.around(&untrusted::visible(text)),
         Span::About(_, words) => self::text(words),
         Span::Break => "\n".into(),
     };

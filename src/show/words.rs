@@ -8,20 +8,20 @@ use crate::agreement::Quantity;
 use crate::border_collision::conditions::Decides;
 use crate::border_collision::danger::{Danger, DangerKind, Divergence, LocalAttractor, Returns};
 use crate::border_collision::feigin::{Scenario, Speeds};
-use crate::border_collision::long_run::{Chaos, End};
-use crate::border_collision::validity::{Compared, Ends};
+use crate::border_collision::long_run::{LocalChaos, LocalLongRun};
+use crate::border_collision::validity::{ComparedMotion, Ends};
 use crate::cam::Side;
 use crate::corner::map::RouteName;
-use crate::covering::Unproved;
+use crate::covering::UnprovedFlight;
 use crate::covering::prove::Relation;
-use crate::known::Known;
+use crate::known::Evidence;
 use crate::measured::Measured;
 use crate::model::{Reading, Separator};
 use crate::orbit::Stability;
 use crate::orbit::branch::{self, Bifurcation, Doubt, FirstTouch, GrazeClass};
 use crate::orbit::long_run::{Kind, LongRun};
 use crate::published::Verdict;
-use crate::show::block::{Mark, Symbol, Words, words};
+use crate::show::block::{Symbol, TextMark, Words, words};
 use crate::show::digits::Digits;
 use crate::study::attractors::{Cause, Transition};
 use crate::study::speeds::AttractorRow;
@@ -60,7 +60,7 @@ pub(crate) fn sign(side: Side) -> &'static str {
 }
 
 /// Plural of an event's name.
-pub(crate) fn events(kind: branch::Kind) -> &'static str {
+pub(crate) fn events(kind: branch::SpecialKind) -> &'static str {
     kind.bifurcation().map_or("points", |event| match event {
         Bifurcation::Corner => "corner impacts",
         Bifurcation::Fold => "folds",
@@ -160,12 +160,12 @@ pub(crate) fn verdict(verdict: Verdict) -> Words {
 }
 
 /// Mark of a verdict in the ledger.
-pub(crate) fn mark(verdict: Verdict) -> Mark {
+pub(crate) fn mark(verdict: Verdict) -> TextMark {
     match verdict {
-        Verdict::Holds | Verdict::Definition => Mark::Good,
-        Verdict::Misprint | Verdict::InPart => Mark::Doubtful,
-        Verdict::Refuted => Mark::Bad,
-        Verdict::Open => Mark::Open,
+        Verdict::Holds | Verdict::Definition => TextMark::Good,
+        Verdict::Misprint | Verdict::InPart => TextMark::Doubtful,
+        Verdict::Refuted => TextMark::Bad,
+        Verdict::Open => TextMark::Open,
     }
 }
 
@@ -205,10 +205,10 @@ pub(crate) fn verdict_with(scenario: &str, danger: Option<&Danger>) -> String {
 pub(crate) fn danger(danger: &Danger) -> Words {
     match &danger.divergence {
         Some(Divergence { share, known, follows }) => {
-            let which = if *share == 1.0 && *known != Known::Sampled {
+            let which = if *share == 1.0 && *known != Evidence::Sampled {
                 "every motion of the local map diverges there".into()
             } else {
-                let least = if *known == Known::Sampled { "" } else { "at least " };
+                let least = if *known == Evidence::Sampled { "" } else { "at least " };
                 let percent = (1000.0 * share).floor() / 10.0;
                 format!("motions of the local map diverge there, from {least}{percent} % of the directions")
             };
@@ -268,11 +268,11 @@ pub(crate) fn relation(relation: Relation) -> &'static str {
 }
 
 /// Reason why nothing is proved about a flight.
-pub(crate) fn unproved(why: Unproved) -> &'static str {
+pub(crate) fn unproved(why: UnprovedFlight) -> &'static str {
     match why {
-        Unproved::NoImpact => "the follower may stay on the cam, or not come back to it for long",
-        Unproved::NotTransversal => "the next impact may be a graze",
-        Unproved::NotFirst => "the follower may meet the cam before",
+        UnprovedFlight::NoImpact => "the follower may stay on the cam, or not come back to it for long",
+        UnprovedFlight::NotTransversal => "the next impact may be a graze",
+        UnprovedFlight::NotFirst => "the follower may meet the cam before",
     }
 }
 
@@ -321,11 +321,11 @@ pub(crate) fn decides(decides: Decides) -> &'static str {
 }
 
 /// Quantity that a prediction of the local map is about.
-pub(crate) fn compared(compared: Compared) -> &'static str {
+pub(crate) fn compared(compared: ComparedMotion) -> &'static str {
     match compared {
-        Compared::OneRevolution => "a turn from x*",
-        Compared::FixedPointMinus => "fixed point minus",
-        Compared::FixedPointPlus => "fixed point plus",
+        ComparedMotion::OneRevolution => "a turn from x*",
+        ComparedMotion::FixedPointMinus => "fixed point minus",
+        ComparedMotion::FixedPointPlus => "fixed point plus",
     }
 }
 
@@ -339,18 +339,20 @@ pub(crate) fn ends(ends: Ends) -> &'static str {
 }
 
 /// Ending of the motions of the local map.
-pub(crate) fn end(end: &End) -> Words {
+pub(crate) fn end(end: &LocalLongRun) -> Words {
     let growth = |what: &str, value, error| {
         let four = Digits::Fixed(4);
         words![what, ", Lyapunov exponent ", (value, four), " +- ", (error, four), " a turn"]
     };
     match end {
-        End::Periodic(orbit) if end.fixed_on().is_some() => format!("on the fixed point {}", orbit.word).into(),
-        End::Periodic(orbit) => format!("on the orbit {}", orbit.word).into(),
-        End::Chaotic(Chaos { exponent, .. }) => growth("chaotic", exponent.value, exponent.error),
-        End::Undecided(exponent) => growth("bounded so far, undecided", exponent.value, exponent.error),
-        End::Corner => "to the corner impact".into(),
-        End::Escapes(_) => format!("without bound ({})", end.basis()).into(),
+        LocalLongRun::Periodic(orbit) if end.fixed_on().is_some() => {
+            format!("on the fixed point {}", orbit.word).into()
+        }
+        LocalLongRun::Periodic(orbit) => format!("on the orbit {}", orbit.word).into(),
+        LocalLongRun::Chaotic(LocalChaos { exponent, .. }) => growth("chaotic", exponent.value, exponent.error),
+        LocalLongRun::Undecided(exponent) => growth("bounded so far, undecided", exponent.value, exponent.error),
+        LocalLongRun::Corner => "to the corner impact".into(),
+        LocalLongRun::Escapes(_) => format!("without bound ({})", end.basis()).into(),
     }
 }
 

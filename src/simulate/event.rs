@@ -95,14 +95,14 @@ impl<F: FnMut(&Event) -> ControlFlow<()>> Observer for F {
 
 /// Impacts that occurred in a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Met {
+pub struct ImpactTally {
     /// Number of impacts.
     pub impacts: u64,
     /// Relative speed of follower and cam at the fastest impact, m/s.
     pub impact_speed: f64,
 }
 
-impl Met {
+impl ImpactTally {
     /// Combines the impacts of both.
     pub fn with(self, other: Self) -> Self {
         Self { impacts: self.impacts + other.impacts, impact_speed: self.impact_speed.max(other.impact_speed) }

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use nalgebra::{Matrix2, Vector2};
 
-use super::{Event, EventKind, Machine, Met, Motion, Observer, SimulateError, Variation};
+use super::{Event, EventKind, ImpactTally, Machine, Motion, Observer, SimulateError, Variation};
 use crate::elementary;
 use crate::estimate::Estimate;
 use crate::flight::{Flight, State};
@@ -17,7 +17,7 @@ use crate::flight::{Flight, State};
 /// the cam counts from its release on. Zero revolutions have zero growth.
 pub fn growth(machine: &Machine, mut motion: Motion, revolutions: u64) -> Result<f64, SimulateError> {
     let (mut sum, mut direction) = (0.0, ANY);
-    let met = &mut Met::default();
+    let met = &mut ImpactTally::default();
     stretches(machine, &mut motion, revolutions, (met, &mut direction), |stretch| sum += stretch)?;
     Ok(sum / revolutions.max(1) as f64)
 }
@@ -32,7 +32,7 @@ pub struct Record {
     /// Direction of the deviation, carried from one part of the record to the next.
     direction: Vector2<f64>,
     /// Impacts of whole revolutions.
-    pub met: Met,
+    pub met: ImpactTally,
     /// Number of revolutions.
     pub revolutions: u64,
 }
@@ -40,7 +40,7 @@ pub struct Record {
 impl Record {
     /// An empty record, whose growth will be taken in blocks of `per_block` revolutions.
     pub fn over(per_block: u64) -> Self {
-        Self { means: Means::over(per_block), direction: ANY, met: Met::default(), revolutions: 0 }
+        Self { means: Means::over(per_block), direction: ANY, met: ImpactTally::default(), revolutions: 0 }
     }
 
     /// Continues the record for `revolutions`, or until the follower sticks, from `motion`, which must be where the record ended.
@@ -82,7 +82,7 @@ impl Record {
 }
 
 /// Counts impacts besides the variation.
-struct Counting<'a, 'machine>(&'a mut Variation<'machine>, &'a mut Met);
+struct Counting<'a, 'machine>(&'a mut Variation<'machine>, &'a mut ImpactTally);
 
 impl Observer for Counting<'_, '_> {
     fn event(&mut self, event: &Event) -> ControlFlow<()> {
@@ -124,7 +124,7 @@ fn stretches(
     machine: &Machine,
     motion: &mut Motion,
     revolutions: u64,
-    (met, direction): (&mut Met, &mut Vector2<f64>),
+    (met, direction): (&mut ImpactTally, &mut Vector2<f64>),
     mut keep: impl FnMut(f64),
 ) -> Result<(), SimulateError> {
     let omega = machine.angular_velocity();

@@ -33,7 +33,7 @@ const SIZES: [usize; 4] = [1, 4, 16, 64];
 
 /// Consecutive segments without a chord so far.
 #[derive(Clone, Copy)]
-struct Stretch {
+struct SegmentSpan {
     start: f64,
     end: f64,
     /// Lift at either end, m.
@@ -51,13 +51,13 @@ impl Chords {
         if segments.len() < MANY {
             return Self::default();
         }
-        let of_one = |segment: &Segment| Stretch {
+        let of_one = |segment: &Segment| SegmentSpan {
             start: segment.start,
             end: segment.end,
             lift: [segment.start, segment.end].map(|angle| segment.law.lift(angle).value),
             curvature: segment.bounds.curvature[0],
         };
-        let mut stretches: Vec<Stretch> = segments.iter().map(of_one).collect();
+        let mut stretches: Vec<SegmentSpan> = segments.iter().map(of_one).collect();
         let mut from = vec![[Chord::NONE; SIZES.len()]; segments.len()];
         let mut size = 1;
         for (level, longer) in SIZES.into_iter().enumerate() {
@@ -81,7 +81,7 @@ impl Chord {
     const NONE: Self = Self { end: f64::INFINITY, lift: 0.0, slope: 0.0, rise: f64::INFINITY, square: 0.0 };
 }
 
-impl Stretch {
+impl SegmentSpan {
     fn and(self, next: &Self, kink: bool) -> Self {
         let curvature = if kink { f64::NEG_INFINITY } else { self.curvature.min(next.curvature) };
         Self { end: next.end, lift: [self.lift[0], next.lift[1]], curvature, ..self }

@@ -12,18 +12,18 @@
 //! | `window` | a stretch of flight over one segment: free, or its first contact |
 //! | `contact` | the first root of the gap in it, certified |
 //! | `leap` | a flight over many short segments at once |
-//! | `again` | a settled motion's next impact, one turn on: checked, not searched |
+//! | `repeat` | a settled motion's next impact, one turn on: checked, not searched |
 //! | `sticking` | infinitely many impacts, contact, release |
 //! | `variation` | the propagation of a small deviation |
 //! | `growth` | the growth rate of a small deviation |
 
-mod again;
 mod ahead;
 mod contact;
 mod event;
 mod growth;
 mod leap;
 mod motion;
+mod repeat;
 mod sticking;
 mod terrain;
 mod variation;
@@ -35,19 +35,19 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use crate::cam::{Cam, Lift};
+use crate::cancel;
 use crate::flight::{Flight, State};
 use crate::impact::relative_rebound;
 use crate::model::Follower;
-use crate::stop;
 use crate::tolerance;
-use again::Turn;
 use ahead::{Ahead, Passage};
-pub use event::{Event, EventKind, Met, Observer, SimulateError, Unobserved, Work};
+pub use event::{Event, EventKind, ImpactTally, Observer, SimulateError, Unobserved, Work};
 pub use growth::{Record, growth};
-use motion::{Chatter, Known, Stopped};
+use motion::{Chatter, LastLift, Stopped};
 pub use motion::{Goal, Motion};
+use repeat::Turn;
 pub use sticking::accumulation;
-use terrain::Terrain;
+use terrain::CamBounds;
 pub use variation::Variation;
 use window::Window;
 
@@ -58,7 +58,7 @@ const MOST_STEPS: u32 = 10_000_000;
 /// A cam, a follower over it, and the speed at which the cam turns.
 #[derive(Clone, Debug)]
 pub struct Machine {
-    terrain: Arc<Terrain>,
+    terrain: Arc<CamBounds>,
     flight: Flight,
     restitution: f64,
     angular_velocity: f64,
@@ -79,7 +79,7 @@ impl Machine {
     pub fn new(cam: Cam, follower: &Follower, angular_velocity: f64) -> Self {
         let flight = Flight::new(follower);
         Self {
-            terrain: Arc::new(Terrain::new(cam)),
+            terrain: Arc::new(CamBounds::new(cam)),
             flight,
             restitution: follower.restitution,
             angular_velocity,
@@ -94,7 +94,7 @@ impl Machine {
 
     /// Returns this follower at this speed over another cam.
     pub fn with_cam(&self, cam: Cam) -> Self {
-        Self { terrain: Arc::new(Terrain::new(cam)), ..self.clone() }
+        Self { terrain: Arc::new(CamBounds::new(cam)), ..self.clone() }
     }
 
     /// The lift profile.
@@ -147,7 +147,7 @@ impl Machine {
             expected: None,
             settled: false,
             last_impact: f64::NAN,
-            known: Known { segment, angle: cam_angle, lift },
+            known: LastLift { segment, angle: cam_angle, lift },
             chatter: Chatter::Anywhere,
             stopped: None,
             seen: None,
@@ -222,7 +222,7 @@ impl Machine {
         loop {
             // On the way in, and then from time to time.
             if steps.is_multiple_of(64) {
-                stop::heed();
+                cancel::check();
             }
             steps = steps.wrapping_add(1);
             let left = motion.left(&goal);

@@ -28,7 +28,7 @@ pub struct Motion {
     /// Whether the last two impacts were at the same place to within the step that `again` takes.
     pub(super) settled: bool,
     pub(super) last_impact: f64,
-    pub(super) known: Known,
+    pub(super) known: LastLift,
     pub(super) chatter: Chatter,
     /// Stretch from which the run continues, if it was stopped between two events.
     pub(super) stopped: Option<Stopped>,
@@ -107,7 +107,7 @@ impl Stopped {
 
 /// An angle, rad, and a segment's lift there, evaluated directly: the impacts of a settled motion are close to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Known {
+pub(super) struct LastLift {
     pub segment: usize,
     pub angle: f64,
     pub lift: Lift,

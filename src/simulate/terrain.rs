@@ -6,7 +6,7 @@ use crate::tolerance;
 
 /// A cam, with quantities used at every step that are computed once.
 #[derive(Clone, Debug)]
-pub(super) struct Terrain {
+pub(super) struct CamBounds {
     pub cam: Cam,
     /// Changes at the start of each segment.
     pub entries: Vec<Entry>,
@@ -36,7 +36,7 @@ pub(super) struct Entry {
     pub slope_jump: f64,
 }
 
-impl Terrain {
+impl CamBounds {
     pub fn new(cam: Cam) -> Self {
         let segments = cam.segments();
         let before = segments.last().into_iter().chain(segments);

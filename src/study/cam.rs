@@ -3,8 +3,8 @@
 use serde::Serialize;
 
 use crate::cam::{Cam, Corner, Jet, Segment};
-use crate::measured::{Likely, Measured};
-use crate::model::{CamProfile, Model, ModelError, Motion};
+use crate::measured::{Measured, PlausibleCams};
+use crate::model::{CamProfile, Model, ModelError, StandardMotion};
 
 /// Segments and corners of a model's cam; serializes to the document `corner-impact/cam/1`.
 #[derive(Clone, Debug, Serialize)]
@@ -82,7 +82,7 @@ fn motions(model: &Model, cam: &Cam) -> Vec<&'static str> {
                 end += motion.span_deg;
                 middle < end
             })?;
-            Motion::NAMES.iter().find(|(_, of)| *of == motion.motion).map(|(name, _)| *name)
+            StandardMotion::NAMES.iter().find(|(_, of)| *of == motion.motion).map(|(name, _)| *name)
         }),
         CamProfile::Arcs(_) if cam.segments().len() == ARCS.len() => names(&|index, _| ARCS.get(index).copied()),
         _ => names(&|_, _| None),
@@ -110,7 +110,7 @@ impl CamSheet {
             lift_m: [cam.lowest().value, -cam.least([-1.0, 0.0, 0.0, 0.0]).value],
             motions: motions(model, cam),
             largest: [1, 2, 3].map(|order| Largest::of(cam, order)),
-            measured: Likely::of(model)?.map(|likely| likely.measured),
+            measured: PlausibleCams::of(model)?.map(|likely| likely.measured),
             segments,
             highest_order,
             own_corners: corners.iter().copied().filter(is_own).collect(),

@@ -1,11 +1,11 @@
 //! Is there a set of chaotic motions, at a speed or at every speed of a range? Proved, or how far it came.
 
 use crate::cam::Cam;
-use crate::covering::find::{Proved, Short, Wanted, find};
+use crate::covering::find::{ProofScope, Proved, Short, find};
 use crate::covering::prove::{Covered, Refused, prove};
 use crate::covering::sample::{Line, impacts};
 use crate::covering::{HSet, known};
-use crate::known::Known;
+use crate::known::Evidence;
 use crate::model::Model;
 use crate::progress::Watch;
 use crate::study::trapping::{Trapping, trapping};
@@ -32,7 +32,7 @@ document!(Chaos as it {
     schema: "corner-impact/chaos/1",
     model: it.model,
     rpm: it.rpm,
-    known: Known::proved_if(it.proves_something()),
+    known: Evidence::proved_if(it.proves_something()),
     hypotheses: it.hypotheses,
     theorems: it.theorems,
     open: it.open,
@@ -116,8 +116,8 @@ fn sets(model: &Model, rpm: [f64; 2], watch: &dyn Watch) -> Result<Chaos, StudyE
     };
     let is_one = |[low, high]: [f64; 2]| high - low <= NARROWEST;
     let wanted = match is_one(rpm) {
-        true => Wanted { strips: 8, cones: true },
-        false => Wanted { strips: 3, cones: false },
+        true => ProofScope { strips: 8, cones: true },
+        false => ProofScope { strips: 3, cones: false },
     };
     let kept: Vec<HSet> = known(&model.name).into_iter().filter(|set| is_one(set.rpm) == is_one(rpm)).collect();
     let (mut from, mut width) = (rpm[0], WIDEST);

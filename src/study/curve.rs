@@ -5,7 +5,7 @@ use super::StudyError;
 use super::locate::{Happens, LocatedImpact, locate};
 use crate::border_collision::{EventCurve, RoundedCorner, rounded};
 use crate::model::{CORNER_ROUNDING, Model, Study};
-use crate::orbit::branch::{Bifurcation, Branch, Following, Kind, special_points, touches};
+use crate::orbit::branch::{Bifurcation, Branch, Following, SpecialKind, special_points, touches};
 use crate::orbit::{Parameter, Search};
 use crate::progress::Watch;
 
@@ -36,7 +36,7 @@ pub fn curves(
     // What has no event at its own value, as a sharp corner has no fold, is looked at where the range is nearest to it.
     let start = own.clamp(low, high);
     let model = &if start == own { model.clone() } else { model.with_number(path, start)? };
-    let is_wanted = |kind: Kind| kind.bifurcation().is_some_and(|event| events.contains(&event));
+    let is_wanted = |kind: SpecialKind| kind.bifurcation().is_some_and(|event| events.contains(&event));
     let points = special_points(model, rpm, wanted, is_wanted, watch)?.points;
     let of_event = |event: Bifurcation| {
         points

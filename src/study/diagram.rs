@@ -11,7 +11,8 @@ use crate::simulate::{Machine, Motion, SimulateError};
 use crate::study::attractors::AttractorsAtValue;
 use crate::study::design::loads::Loads;
 use crate::study::survey::{
-    Block, Following, Found, Places, Point, Sample, Section, Spacing, Start, Survey, Sweep, SweepError, Tally,
+    GridResults, Places, Point, RecordBlock, Sample, Section, Spacing, Start, Survey, Sweep, SweepError, SweepStart,
+    SweepTally,
 };
 
 /// A motion on each of the attractors of `machine`, as they are found without a look at other machines.
@@ -29,7 +30,7 @@ pub fn one_row(
     budget: Budget,
     threads: Option<usize>,
     watch: &dyn Watch,
-) -> Result<Found<Point>, SweepError> {
+) -> Result<GridResults<Point>, SweepError> {
     over.run(threads, watch, |_, machine| Point::from(machine, start, budget))
 }
 
@@ -66,7 +67,7 @@ pub struct Swept {
     pub model: String,
     /// Rows recorded, impacts among them, revolutions run.
     #[serde(flatten)]
-    pub tally: Tally,
+    pub tally: SweepTally,
     /// Revolutions that each run was followed for, recorded or not: what it comes to is not judged.
     pub followed: u64,
     /// Threads used.
@@ -77,7 +78,7 @@ pub struct Swept {
 
 impl Swept {
     /// Sweeps on `threads` threads, for `None` on one for each core; `take` gets what is found, in order.
-    pub fn new<B: Block, E: From<SweepError>>(
+    pub fn new<B: RecordBlock, E: From<SweepError>>(
         model: &str,
         sweep: &Sweep,
         threads: Option<usize>,
@@ -86,8 +87,8 @@ impl Swept {
     ) -> Result<Self, E> {
         let cores = || std::thread::available_parallelism().map_or(1, usize::from);
         let threads = match sweep.following {
-            Following::Nothing => threads.unwrap_or_else(cores).min(sweep.over.count()),
-            Following::Up | Following::Down => 1,
+            SweepStart::Nothing => threads.unwrap_or_else(cores).min(sweep.over.count()),
+            SweepStart::Up | SweepStart::Down => 1,
         };
         let clock = Instant::now();
         let tally = sweep.run(Some(threads), |index, block| {

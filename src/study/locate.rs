@@ -16,13 +16,13 @@ use crate::corner::map::RouteName;
 use crate::corner::range::{FoundCornerImpacts, RangeError, find_corner_impacts};
 use crate::corner::shots::{SHOT_RATIO, VELOCITIES};
 use crate::corner::{CornerImpact, CornerMap, variational};
-use crate::known::Known;
-use crate::measured::{Likely, Measured};
+use crate::known::Evidence;
+use crate::measured::{Measured, PlausibleCams};
 use crate::model::{Model, ModelError, Study};
 use crate::orbit::branch::{Event, GRID_RATIO};
 use crate::progress::{Pieces, Watch};
 use crate::simulate::Machine;
-use crate::study::compared::{self, Log, Skipped};
+use crate::study::routes::{self, Log, Skipped};
 use crate::study::{ModelLabel, hypotheses};
 
 /// The corner impacts of a range of speeds: the document `corner-impact/locate/1`.
@@ -105,7 +105,7 @@ pub struct LocatedImpact {
 }
 
 document!(LocatedImpact as it {
-    known: Known::Computed,
+    known: Evidence::Computed,
     found_by: it.at.ways,
     speed_rpm: it.at.speed_rpm(),
     error_rpm if_any: it.speed_error,
@@ -198,7 +198,7 @@ impl Serialize for Told<'_> {
 
 /// Why a range cannot be looked through.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum LocateError {
+pub enum LocateRangeError {
     /// The cam.
     #[error("{0}")]
     Model(#[from] ModelError),
@@ -208,19 +208,19 @@ pub enum LocateError {
 }
 
 /// Finds every corner impact of orbits of `revolutions` in `range`, and computes its map by every route of this program.
-pub fn locate(model: &Model, range: Study, revolutions: u64, watch: &dyn Watch) -> Result<Located, LocateError> {
+pub fn locate(model: &Model, range: Study, revolutions: u64, watch: &dyn Watch) -> Result<Located, LocateRangeError> {
     let cam = Cam::new(model)?;
     let looked_at = find_corner_impacts(model, &cam, range, revolutions, watch)?;
     let pieces = Pieces::new(watch, "the map of each corner impact, by every route", looked_at.found.len());
     let found: Vec<LocatedImpact> =
         looked_at.found.par_iter().map(|at| pieces.each(|| located(model, &cam, at))).collect();
-    let likely = if found.is_empty() { None } else { Likely::of(model)? };
+    let likely = if found.is_empty() { None } else { PlausibleCams::of(model)? };
     let mut found = found;
     if let Some(likely) = likely.as_ref().filter(|likely| likely.best.is_some()) {
         found.par_iter_mut().for_each(|found| found.speed_error = speed_error(model, &cam, likely, &found.at));
     }
     let agrees = found.iter().all(|located| located.agrees);
-    let is_proved = looked_at.complete.iter().any(|complete| complete.known == Known::Proved);
+    let is_proved = looked_at.complete.iter().any(|complete| complete.known == Evidence::Proved);
     Ok(Located {
         hypotheses: if is_proved { hypotheses(&cam) } else { Vec::new() },
         model: ModelLabel::of(model),
@@ -234,7 +234,7 @@ pub fn locate(model: &Model, range: Study, revolutions: u64, watch: &dyn Watch) 
 }
 
 /// How far a measured cam may have moved a corner impact, rpm.
-fn speed_error(model: &Model, cam: &Cam, likely: &Likely, at: &CornerImpact) -> Option<f64> {
+fn speed_error(model: &Model, cam: &Cam, likely: &PlausibleCams, at: &CornerImpact) -> Option<f64> {
     let machine = Machine::new(cam.clone(), &model.follower, at.angular_velocity());
     let at_end = at.cycle.impacts.get(at.impact)?.segment != at.corner.segment;
     let event = Event::of_corner(&machine, at.speed_rpm(), &at.cycle, at.impact, at_end);
@@ -244,14 +244,14 @@ fn speed_error(model: &Model, cam: &Cam, likely: &Likely, at: &CornerImpact) -> 
 /// A corner impact with its map by each route that its corner has.
 pub(super) fn located(model: &Model, cam: &Cam, at: &CornerImpact) -> LocatedImpact {
     let mut log = Log::default();
-    let (mut routes, sticking) = compared::routes(model, cam, at, &mut log);
+    let (mut routes, sticking) = routes::routes(model, cam, at, &mut log);
     // The route that knows every kind of orbit comes first: its map is told.
     routes.sort_by_key(|route| route.name != RouteName::Variational);
-    let comparisons = compared::comparisons(at, &routes, &mut log);
+    let comparisons = routes::comparisons(at, &routes, &mut log);
     let (map, border) = (variational::route(model, cam, at).map, variational::border(model, cam, at));
     let local = match at.corner.jump_order {
         1 => Happens::Gap,
-        2 => Happens::BorderCollision(compared::classified(&map, border, sticking)),
+        2 => Happens::BorderCollision(routes::classified(&map, border, sticking)),
         _ => Happens::Smooth,
     };
     let danger = match &local {

@@ -7,13 +7,13 @@ pub mod certify;
 pub mod chaos;
 pub mod chart;
 pub mod compare;
-pub mod compared;
 pub mod continuation;
 pub mod curve;
 pub mod design;
 pub mod diagram;
 pub mod locate;
 pub mod orbit;
+pub mod routes;
 pub mod simulate;
 pub mod speeds;
 pub mod survey;
@@ -61,7 +61,7 @@ pub enum StudyError {
     Family(#[from] FamilyError),
     /// Corner impacts cannot be looked for.
     #[error(transparent)]
-    Locate(#[from] locate::LocateError),
+    Locate(#[from] locate::LocateRangeError),
     /// Matrices in two units of length.
     #[error(
         "lengths are in \"{a}\" in the one and in \"{b}\" in the other model: state both in one unit ([units], length)"

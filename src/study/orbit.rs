@@ -6,8 +6,8 @@ use super::{StudyError, hypotheses, machine};
 use crate::cam::{Cam, apart};
 use crate::elementary;
 use crate::flight::State;
-use crate::known::{Complete, Known};
-use crate::measured::{Likely, Measured};
+use crate::known::{Complete, Evidence};
+use crate::measured::{Measured, PlausibleCams};
 use crate::model::Model;
 use crate::orbit::near::near;
 use crate::orbit::{PeriodicOrbit, Search, Searched, Undecided, search_all};
@@ -37,12 +37,12 @@ pub struct Orbits {
     pub measured: Option<Measured>,
     /// What that leaves open of each of the orbits; none of one that too few of the cams have that are as likely.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub errors: Vec<Option<OrbitError>>,
+    pub errors: Vec<Option<OrbitUncertainty>>,
 }
 
 /// How far an orbit's numbers may be off, as far as its cam is known.
 #[derive(Clone, Copy, Debug, Serialize)]
-pub struct OrbitError {
+pub struct OrbitUncertainty {
     /// Either multiplier, in the complex plane.
     pub multiplier: f64,
     /// Position and velocity of the state, m and m/s.
@@ -55,7 +55,7 @@ pub struct OrbitError {
 
 /// What is looked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Wanted {
+pub enum OrbitQuery {
     /// Whatever a search finds.
     All(Search),
     /// The orbit of so many revolutions that Newton's method finds from a state at cam angle 0.
@@ -63,23 +63,24 @@ pub enum Wanted {
 }
 
 /// Looks for the periodic orbits of a model at `speed_rpm`.
-pub fn orbits(model: &Model, speed_rpm: f64, wanted: Wanted, watch: &dyn Watch) -> Result<Orbits, StudyError> {
+pub fn orbits(model: &Model, speed_rpm: f64, wanted: OrbitQuery, watch: &dyn Watch) -> Result<Orbits, StudyError> {
     let machine = machine(model, speed_rpm)?;
     let Searched { orbits, complete, undecided } = match wanted {
-        Wanted::All(wanted) => search_all(&machine, &wanted, watch)?,
-        Wanted::Near(state, revolutions) => {
+        OrbitQuery::All(wanted) => search_all(&machine, &wanted, watch)?,
+        OrbitQuery::Near(state, revolutions) => {
             let orbits = near(&machine, 0.0, state, revolutions)?.into_iter().collect();
             Searched { orbits, complete: Vec::new(), undecided: Vec::new() }
         }
     };
-    let likely = if orbits.is_empty() { None } else { Likely::of(model)?.filter(|likely| likely.best.is_some()) };
+    let likely =
+        if orbits.is_empty() { None } else { PlausibleCams::of(model)?.filter(|likely| likely.best.is_some()) };
     let errors = match &likely {
         Some(likely) => orbits.iter().map(|orbit| error(likely, &machine, orbit)).collect(),
         None => Vec::new(),
     };
     let measured = likely.map(|likely| likely.measured);
     let mut known = orbits.iter().map(|orbit| orbit.known).chain(complete.iter().map(|complete| complete.known));
-    let hypotheses = if known.any(|known| known == Known::Proved) { hypotheses(machine.cam()) } else { Vec::new() };
+    let hypotheses = if known.any(|known| known == Evidence::Proved) { hypotheses(machine.cam()) } else { Vec::new() };
     let (schema, model) = ("corner-impact/orbit/1", model.name.clone());
     Ok(Orbits {
         schema,
@@ -96,7 +97,7 @@ pub fn orbits(model: &Model, speed_rpm: f64, wanted: Wanted, watch: &dyn Watch) 
 }
 
 /// How far an orbit of `machine` may be off: by where the same orbit is on the cams that are as likely.
-fn error(likely: &Likely, machine: &Machine, orbit: &PeriodicOrbit) -> Option<OrbitError> {
+fn error(likely: &PlausibleCams, machine: &Machine, orbit: &PeriodicOrbit) -> Option<OrbitUncertainty> {
     /// Multipliers and the state.
     const OF_ORBIT: usize = 6;
     /// An angle and the velocities before and after.
@@ -130,7 +131,7 @@ fn error(likely: &Likely, machine: &Machine, orbit: &PeriodicOrbit) -> Option<Or
         let of_one = |one: &[f64]| of.iter().map(|index| one[*index]).fold(0.0, f64::max);
         of_events.chunks(OF_EVENT).map(of_one).fold(0.0, f64::max)
     };
-    Some(OrbitError {
+    Some(OrbitUncertainty {
         multiplier: elementary::hypot(of_orbit[0], of_orbit[1]).max(elementary::hypot(of_orbit[2], of_orbit[3])),
         state: [of_orbit[4], of_orbit[5]],
         cam_angle_rad: most(&[0]),

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use serde::Serialize;
 
 use super::{StudyError, machine};
-use crate::known::Known;
+use crate::known::Evidence;
 use crate::model::Model;
 use crate::orbit::long_run::{Budget, Kind, LongRun};
 use crate::progress::Watch;
@@ -36,7 +36,7 @@ pub enum Until {
 
 /// What is asked of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Wanted {
+pub struct RunRequest {
     /// Its end.
     pub until: Until,
     /// Whether its events are shown.
@@ -76,7 +76,7 @@ pub struct Run {
     pub releases: u64,
     /// Where it ended.
     #[serde(rename = "final")]
-    pub end: End,
+    pub end: RunEnd,
     /// What the run comes to in the long run, if asked for.
     #[serde(skip_serializing_if = "Option::is_none", flatten)]
     pub long_run: Option<Lyapunov>,
@@ -106,7 +106,7 @@ pub struct Lyapunov {
     /// Those that it might have been.
     pub budget: Budget,
     /// How all this is known.
-    pub known: Known,
+    pub known: Evidence,
 }
 
 impl Lyapunov {
@@ -114,14 +114,14 @@ impl Lyapunov {
         let Judged { ending, followed, .. } = judged;
         let (growth, kind) = (ending.growth(), ending.kind());
         let lyapunov_standard_error = ending.of_growth().map(|_| growth.error).filter(|error| error.is_finite());
-        let (lyapunov_per_revolution, known) = (growth.value, Known::Sampled);
+        let (lyapunov_per_revolution, known) = (growth.value, Evidence::Sampled);
         Self { lyapunov_per_revolution, lyapunov_standard_error, kind, ending, followed, budget, known }
     }
 }
 
 /// The end of a run.
 #[derive(Clone, Copy, Debug, Serialize)]
-pub struct End {
+pub struct RunEnd {
     /// rad, in [0, 2 pi).
     pub cam_angle_rad: f64,
     /// m, in the cam's coordinates.
@@ -158,7 +158,7 @@ impl Simulation {
     /// Runs it; `see` is shown what is asked for as it comes.
     pub fn run<E: From<StudyError>>(
         &self,
-        wanted: Wanted,
+        wanted: RunRequest,
         watch: &dyn Watch,
         mut see: impl FnMut(Sight<'_>) -> Result<(), E>,
     ) -> Result<Run, E> {
@@ -236,7 +236,7 @@ impl Simulation {
             impacts,
             sticks,
             releases,
-            end: End {
+            end: RunEnd {
                 cam_angle_rad: motion.cam_angle,
                 position_m: motion.state.position,
                 velocity_m_s: motion.state.velocity,

@@ -12,8 +12,8 @@ use crate::corner::CornerImpact;
 use crate::corner::candidates::on_branch;
 use crate::elementary;
 use crate::estimate::Estimate;
-use crate::known::Known;
-use crate::measured::{Likely, Measured};
+use crate::known::Evidence;
+use crate::measured::{Measured, PlausibleCams};
 use crate::model::{Model, ModelError};
 use crate::orbit::branch::Event;
 use crate::orbit::cycle::own_speed;
@@ -21,14 +21,14 @@ use crate::orbit::long_run::{Budget, Kind, LongRun};
 use crate::progress::Watch;
 use crate::simulate::{EventKind, Machine, SimulateError, angular_velocity};
 use crate::study::attractors::{
-    Asked, AttractorFamily, Attractors, AttractorsAtValue, AttractorsError, Cause, Grid, GridValue, Resolution,
-    Transition, attractors,
+    AttractorFamily, Attractors, AttractorsAtValue, AttractorsError, Cause, GridValue, Resolution, StartsAndBudget,
+    Transition, ValueGrid, attractors,
 };
-use crate::study::compared;
 use crate::study::design::contact::{Contact, Separation};
 use crate::study::design::known;
 use crate::study::machine;
-use crate::study::survey::{Attractor, Over, Place, Sample, Spacing, Varied, Wandering};
+use crate::study::routes;
+use crate::study::survey::{Attractor, Over, Place, Sample, Spacing, VariedNumber, Wandering};
 use crate::tolerance;
 
 /// What a machine does over a range of speeds, or of values of another number: the document of `speeds --json`.
@@ -37,7 +37,7 @@ pub struct SpeedSurvey {
     /// The model's name.
     pub model: String,
     /// What varies.
-    pub over: Varied,
+    pub over: VariedNumber,
     /// The range; of the speed, rpm.
     pub range: [f64; 2],
     /// From one value to the next; of a logarithmic grid in decades.
@@ -64,7 +64,7 @@ pub struct SpeedSurvey {
     /// How many values of the range were run.
     pub run: usize,
     /// Values at which nothing, or not every start, could be run.
-    pub failed: Vec<Failed>,
+    pub failed: Vec<FailedValue>,
 }
 
 document!(SpeedSurvey as it {
@@ -73,7 +73,7 @@ document!(SpeedSurvey as it {
     rpm: it.over.rpm.map_or(it.range, |rpm| [rpm; 2]),
     over if_any: it.over.rpm.map(|_| &it.over.name),
     range if_any: it.over.rpm.map(|_| it.range),
-    known: Known::Sampled,
+    known: Evidence::Sampled,
     step_rpm if_any: it.over.is_speed().then_some(it.step),
     step if_any: it.over.rpm.map(|_| it.step),
     logarithmic if_any: (it.over.spacing == Spacing::Logarithmic).then_some(true),
@@ -237,7 +237,7 @@ document!(PassedDanger as it {
 
 /// A value at which nothing, or not every start, could be run.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Failed {
+pub struct FailedValue {
     /// Where.
     pub at: Place,
     /// How many starts could not be run; none are named where nothing could.
@@ -246,7 +246,7 @@ pub struct Failed {
     pub why: String,
 }
 
-document!(Failed as it { speed_rpm: it.at.rpm, value if_any: it.at.value, starts if_any: it.starts, why: it.why });
+document!(FailedValue as it { speed_rpm: it.at.rpm, value if_any: it.at.value, starts if_any: it.starts, why: it.why });
 
 /// -ln(0.05): the mean number of starts in a basin that is hit by one of them with 95 %.
 const HIT: f64 = 2.995_732_273_553_991;
@@ -369,7 +369,7 @@ pub fn speeds(
 ) -> Result<SpeedSurvey, AttractorsError> {
     let Attractors { grid, mut families, coexistence, separation, .. } = attractors(over, range, resolution, watch)?;
     watch.at("what the measured cam leaves open", 0, 0);
-    let likely = Likely::of(over.model)?;
+    let likely = PlausibleCams::of(over.model)?;
     let noisy = likely.as_ref().filter(|likely| likely.best.is_some());
     let separation = separation.map(|separation| known(separation, noisy));
     // By another number an event moves along with the cam: how far is not known.
@@ -420,7 +420,7 @@ pub fn speeds(
             Err(error) => (None, error.to_string()),
             Ok(here) => (Some(here.failed.len()), here.failed.first()?.1.to_string()),
         };
-        Some(Failed { at: over.place(at.value), starts, why })
+        Some(FailedValue { at: over.place(at.value), starts, why })
     };
     Ok(SpeedSurvey {
         model: over.model.name.clone(),
@@ -475,7 +475,7 @@ fn dangers(over: &Over<'_>, families: &[AttractorFamily], range: [f64; 2]) -> Ve
     found.sort_by(|(one, ..), (other, ..)| one.total_cmp(other));
     let danger = |(value, at, mut attractors): (f64, CornerImpact, Vec<String>)| {
         let (model, cam) = over.model(value).ok()?;
-        let danger = compared::danger(&model, &cam, &at)?;
+        let danger = routes::danger(&model, &cam, &at)?;
         attractors.dedup();
         Some(PassedDanger { attractors, at: over.place(value), cam_angle: at.corner.angle, danger })
     };
@@ -485,11 +485,11 @@ fn dangers(over: &Over<'_>, families: &[AttractorFamily], range: [f64; 2]) -> Ve
 /// How far a measured cam may have moved what an attractor begins or ends with, rpm: by the event's equations, or by runs where it is
 /// known by runs.
 fn error(
-    (machine, runs): (&Machine, Asked<'_>),
-    (likely, separation): (&Likely, Separation),
+    (machine, runs): (&Machine, StartsAndBudget<'_>),
+    (likely, separation): (&PlausibleCams, Separation),
     family: &AttractorFamily,
     side: usize,
-    grid: &Grid,
+    grid: &ValueGrid,
 ) -> Option<f64> {
     let end = family.ends[side].as_ref()?;
     let (rpm, speed) = (end.at.rpm, angular_velocity(end.at.rpm));

@@ -4,9 +4,9 @@ use serde::Serialize;
 
 use crate::cam::Cam;
 use crate::corner::locate;
-use crate::covering::region::{Escape, Region, parted, trap};
+use crate::covering::region::{OpenRegion, Region, parted, trap};
 use crate::covering::sample::impacts;
-use crate::covering::{Frame, HSet};
+use crate::covering::{HSet, HSetFrame};
 use crate::elementary;
 use crate::interval::Interval;
 use crate::model::Model;
@@ -19,7 +19,7 @@ pub struct Trapping {
     /// That next to the corner impact, where there is one, before that of all motions.
     pub regions: Vec<Trapped>,
     /// For each size of squares that none was found in.
-    pub escapes: Vec<Escape>,
+    pub escapes: Vec<OpenRegion>,
 }
 
 /// A region that traps.
@@ -76,7 +76,7 @@ pub(super) fn trapping(model: &Model, rpm: f64, set: Option<&HSet>, watch: &dyn 
     let start = set.map_or([0.0; 2], |set| [set.centre[0].to_radians(), set.centre[1]]);
     let run: Vec<[Interval; 2]> = impacts(&machine, start, SETTLING, SHOWN)?.into_iter().map(point).collect();
     let strips: Vec<[Interval; 2]> = set.map_or_else(Vec::new, |set| {
-        let frame = Frame::new(set);
+        let frame = HSetFrame::new(set);
         set.strips.iter().flat_map(|strip| frame.rectangles(set, strip)).collect()
     });
     for squares_per_degree in [1, 2] {

@@ -16,20 +16,20 @@ use crate::border_collision::{
     WithDanger, conditions, normal_form, rounded,
 };
 use crate::cam::{Cam, Side};
+use crate::cancel;
 use crate::corner::external::{self, Outside, PROGRAMS, Program};
-use crate::corner::map::{Line, RouteName, SideMap, Sides};
+use crate::corner::map::{LinearForm, RouteName, SideMap, Sides};
 use crate::corner::second_order::{CurvedMap, second_order};
 use crate::corner::{self, CornerImpact, CornerMap, LocateError, Route};
 use crate::corner::{closed_form, simulated_orbit, variational};
-use crate::measured::{Likely, Measured};
+use crate::measured::{Measured, PlausibleCams};
 use crate::model::Model;
 use crate::progress::{Unwatched, Watch};
 use crate::published::{PrintedNumber, PublishedError, compare_published};
 use crate::python::PythonError;
-use crate::stop;
 use crate::study::ModelLabel;
 use crate::study::certify::{self, Certificate, CertifyError, Outcome};
-use crate::study::compared::{self, Log, Skipped};
+use crate::study::routes::{self, Log, Skipped};
 
 /// What a verification found: the document `corner-impact/verify/1`.
 #[derive(Clone, Debug)]
@@ -53,7 +53,7 @@ pub struct Verification {
     /// Every comparison of two routes.
     pub comparisons: Vec<Agreement>,
     /// `(e, f)`: the impact comes before the corner where `e dx + f dT < 0`.
-    pub border: Line,
+    pub border: LinearForm,
     /// The map with its parameter out of the border.
     pub normal_form: Result<NormalForm, Degenerate>,
     /// What happens at the corner impact.
@@ -138,7 +138,7 @@ pub struct Verdicts {
 
 impl LeftOpen {
     /// Of a corner impact with its map.
-    fn new(likely: Likely, at: &CornerImpact, map: &CornerMap, sticking: Option<Side>) -> Self {
+    fn new(likely: PlausibleCams, at: &CornerImpact, map: &CornerMap, sticking: Option<Side>) -> Self {
         let numbers = |speed: f64, map: &CornerMap| -> [f64; 13] {
             let mut all = [speed; 13];
             all[1..7].copy_from_slice(&map.minus.entries());
@@ -150,7 +150,7 @@ impl LeftOpen {
             let (first, others) = corner::locate(model, cam).ok()?;
             let found = std::iter::once(first).chain(others).find(|found| at.is_near(found))?;
             let map = closed_form::route(model, &found).map;
-            let verdict = compared::classified(&map, variational::border(model, cam, &found), sticking).ok();
+            let verdict = routes::classified(&map, variational::border(model, cam, &found), sticking).ok();
             seen.lock().unwrap_or_else(PoisonError::into_inner).push(verdict.map(|kind| kind.scenario));
             Some(numbers(found.speed_rpm(), &map))
         };
@@ -223,12 +223,12 @@ impl Verification {
     }
 
     /// Comparisons and printed numbers by what came of them.
-    pub fn tally(&self) -> Tally {
+    pub fn tally(&self) -> ComparisonTally {
         let numbers = &self.published;
         let (following, pairs): (Vec<_>, Vec<_>) = self.comparisons.iter().partition(|pair| pair.follows);
         let right = numbers.iter().filter(|number| number.as_found && number.agreement.agrees).count();
         let otherwise = numbers.iter().filter(|number| !number.as_found).count();
-        Tally {
+        ComparisonTally {
             comparisons: pairs.len(),
             agreeing: pairs.iter().filter(|pair| pair.agrees).count(),
             following: following.len(),
@@ -244,7 +244,7 @@ impl Verification {
 
 /// How many comparisons and printed numbers there are of each kind.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Tally {
+pub struct ComparisonTally {
     /// Comparisons of two routes, but for those that follow from A and B.
     pub comparisons: usize,
     /// Those that agree.
@@ -305,14 +305,14 @@ pub fn verify_watched(model: &Model, external: External, watch: &dyn Watch) -> R
     let is_beyond = certify::is_beyond(model);
     let proving = (external == External::Run && !is_beyond).then(|| {
         let (model, place) = (model.clone(), certify::candidate(model, &cam, &at));
-        std::thread::spawn(stop::carried(move || certify::prove(&model, vec![place], certify::BITS)))
+        std::thread::spawn(cancel::carry(move || certify::prove(&model, vec![place], certify::BITS)))
     });
 
     watch.at("the map by the routes of this program", 0, 0);
     let closed = closed_form::route(model, &at);
     let map = closed.map;
-    let (mut routes, sticking) = compared::routes(model, &cam, &at, &mut log);
-    let measured = Likely::of(model)?.map(|likely| LeftOpen::new(likely, &at, &map, sticking));
+    let (mut routes, sticking) = routes::routes(model, &cam, &at, &mut log);
+    let measured = PlausibleCams::of(model)?.map(|likely| LeftOpen::new(likely, &at, &map, sticking));
 
     let mut orbits: Vec<NamedOrbit> = vec![(RouteName::Located, at.x_star(), at.period)];
     if model.follower.stiffness > 0.0 {
@@ -339,7 +339,7 @@ pub fn verify_watched(model: &Model, external: External, watch: &dyn Watch) -> R
         }
     }
     let border = variational::border(model, &cam, &at);
-    let classification = compared::classified(&map, border, sticking);
+    let classification = routes::classified(&map, border, sticking);
     watch.at("the proof, in Python", 0, 0);
     let certificate = certificate(proving, (classification.is_err(), is_beyond), &mut log);
     if let Some(certificate) = &certificate {
@@ -347,7 +347,7 @@ pub fn verify_watched(model: &Model, external: External, watch: &dyn Watch) -> R
         routes.push(Route { name, map: certificate.map(), own: certificate.own(), uncertainty: None });
         orbits.push((name, x_star, certificate.period_s.value()));
     }
-    let mut comparisons = compared::comparisons(&at, &routes, &mut log);
+    let mut comparisons = routes::comparisons(&at, &routes, &mut log);
     comparisons.extend(compare_orbits(&orbits));
     let normal_form = normal_form(&map);
     log.refused("normal_form", &normal_form);
@@ -438,7 +438,7 @@ fn start_outside(model: &Model, external: External) -> Result<Vec<Started>, Loca
     let told = external::told(model, model.study()?)?;
     let start = |program: Program| {
         let told = told.clone();
-        std::thread::spawn(stop::carried(move || external::run(program, &told)))
+        std::thread::spawn(cancel::carry(move || external::run(program, &told)))
     };
     Ok(PROGRAMS.map(|program| (program, (external == External::Run).then(|| start(program)))).into())
 }

@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 
 use corner_impact::cam::Cam;
 use corner_impact::model::Model;
-use corner_impact::orbit::branch::{Bifurcation, Branch, BranchPoint, End, Following, Kind};
+use corner_impact::orbit::branch::{Bifurcation, Branch, BranchPoint, End, Following, SpecialKind};
 use corner_impact::orbit::{Course, Parameter, PeriodicOrbit, Search};
 use corner_impact::progress::Unwatched;
 use corner_impact::simulate::angular_velocity;
@@ -19,12 +19,12 @@ fn following(model: &Model, parameter: &str, range: [f64; 2], longest_step: f64)
     Following { parameter: Parameter::named(model, parameter).unwrap(), range, longest_step, most_points: 400 }
 }
 
-fn is_special(point: &BranchPoint, is_wanted: impl Fn(Kind) -> bool) -> bool {
+fn is_special(point: &BranchPoint, is_wanted: impl Fn(SpecialKind) -> bool) -> bool {
     point.special.is_some_and(|special| is_wanted(special.kind))
 }
 
 /// The branch of the orbits that rest at a speed, rpm, and the first point where a kind of thing changes.
-fn resting(model: &Model, rpm: f64, speeds: [f64; 2], kind: Kind) -> (Branch, BranchPoint) {
+fn resting(model: &Model, rpm: f64, speeds: [f64; 2], kind: SpecialKind) -> (Branch, BranchPoint) {
     let orbits = orbits(model, rpm, 1);
     let rests = orbits.iter().find(|orbit| matches!(orbit.course, Course::Sticking(_))).unwrap();
     let branch = Branch::through(model, rpm, rests, &following(model, "rpm", speeds, 0.05)).unwrap();
@@ -34,18 +34,24 @@ fn resting(model: &Model, rpm: f64, speeds: [f64; 2], kind: Kind) -> (Branch, Br
 
 #[test]
 fn each_event_that_has_a_curve_is_of_its_kind() {
-    let graze = Kind::Graze { before: 1, after: 2, turned: 1.0, first: None };
-    let corner = Kind::Corner { impact: 0, segment: 1, jump_order: 2 };
-    let kinds = [corner, Kind::Fold, Kind::Flip, graze, Kind::Detachment, Kind::Chatter];
+    let graze = SpecialKind::Graze { before: 1, after: 2, turned: 1.0, first: None };
+    let corner = SpecialKind::Corner { impact: 0, segment: 1, jump_order: 2 };
+    let kinds = [corner, SpecialKind::Fold, SpecialKind::Flip, graze, SpecialKind::Detachment, SpecialKind::Chatter];
     assert_eq!(kinds.map(|kind| kind.bifurcation().unwrap()), Bifurcation::ALL);
-    let others = [Kind::Branching, Kind::Cusp, Kind::DegenerateGraze, Kind::Place, Kind::Turn];
+    let others = [
+        SpecialKind::Branching,
+        SpecialKind::Cusp,
+        SpecialKind::DegenerateGraze,
+        SpecialKind::Place,
+        SpecialKind::Turn,
+    ];
     assert!(others.iter().all(|kind| kind.bifurcation().is_none()));
 }
 
 /// Nothing but the speeds on its two sides is known of it.
 #[test]
 fn what_is_left_of_a_detachment_is_the_width_of_its_bracket() {
-    let (_, point) = resting(&model("osorio-2008"), 90.0, [80.0, 130.0], Kind::Detachment);
+    let (_, point) = resting(&model("osorio-2008"), 90.0, [80.0, 130.0], SpecialKind::Detachment);
     let special = point.special.unwrap();
     let [low, high] = special.bracket;
     assert_eq!(special.residual, high - low);
@@ -120,8 +126,8 @@ fn a_branch_that_comes_back_to_its_start_is_followed_once() {
         // It left its start, which is 0, on one side, and comes back from the other.
         assert!(values[0] * values[values.len() - 2] < 0.0, "{values:?}");
         // It turns round at two grazes, and passes each once.
-        let specials: Vec<Kind> = branch.points.iter().filter_map(|it| it.special).map(|it| it.kind).collect();
-        assert!(matches!(specials[..], [Kind::Graze { .. }, Kind::Graze { .. }]), "{specials:?}");
+        let specials: Vec<SpecialKind> = branch.points.iter().filter_map(|it| it.special).map(|it| it.kind).collect();
+        assert!(matches!(specials[..], [SpecialKind::Graze { .. }, SpecialKind::Graze { .. }]), "{specials:?}");
         closed += 1;
     }
     assert_eq!(closed, 2);
@@ -161,7 +167,7 @@ fn curve(model: &Model, point: &BranchPoint, speeds: [f64; 2], following: &Follo
 fn an_onset_of_resting_ends_where_impacts_are_without_number() {
     let model = model("laws/harmonic");
     let speeds = [310.0, 420.0];
-    let (_, chatter) = resting(&model, 340.0, speeds, Kind::Chatter);
+    let (_, chatter) = resting(&model, 340.0, speeds, SpecialKind::Chatter);
     let curve = curve(&model, &chatter, speeds, &following(&model, "restitution", [0.599, 1.2], 0.1));
     assert_eq!(curve.ends, [End::Range, End::Endless]);
     let last = curve.points.last().unwrap().value;
@@ -174,7 +180,7 @@ fn an_onset_of_resting_ends_where_impacts_are_without_number() {
 fn an_onset_of_resting_is_one_curve_at_any_step() {
     let model = model("laws/harmonic");
     let speeds = [310.0, 420.0];
-    let (_, chatter) = resting(&model, 340.0, speeds, Kind::Chatter);
+    let (_, chatter) = resting(&model, 340.0, speeds, SpecialKind::Chatter);
     let ends = [0.1, 0.05, 0.02].map(|step| {
         let curve = curve(&model, &chatter, speeds, &following(&model, "stiffness", [100.0, 900.0], step));
         assert_eq!(curve.ends, [End::Range, End::Range], "{step}");
@@ -190,7 +196,7 @@ fn an_onset_of_resting_is_one_curve_at_any_step() {
 fn a_detachment_ends_where_the_spring_carries_the_follower() {
     let model = model("laws/harmonic");
     let speeds = [310.0, 420.0];
-    let (_, leaves) = resting(&model, 340.0, speeds, Kind::Detachment);
+    let (_, leaves) = resting(&model, 340.0, speeds, SpecialKind::Detachment);
     let curve = curve(&model, &leaves, speeds, &following(&model, "rest_position", [0.07, 0.2], 0.2));
     assert_eq!(curve.ends, [End::Range, End::OtherWay]);
     let lowest = 0.1 - 0.02 + 0.001;
@@ -204,7 +210,7 @@ fn a_detachment_ends_where_the_spring_carries_the_follower() {
 fn a_damped_follower_leaves_where_the_nose_ends() {
     let model = model("osorio-2008");
     let speeds = [100.0, 130.0];
-    let (_, leaves) = resting(&model, 112.0, speeds, Kind::Detachment);
+    let (_, leaves) = resting(&model, 112.0, speeds, SpecialKind::Detachment);
     let curve = curve(&model, &leaves, speeds, &following(&model, "damping", [-1.0, 5.0], 0.1));
     let edge = matches!(&curve.ends, [End::Edge { largest: false, .. }, End::Range]);
     assert!(edge && curve.points.len() > 8, "{:?}", curve.ends);
@@ -243,7 +249,7 @@ fn an_onset_of_resting_may_be_of_two_revolutions() {
 fn a_curve_has_as_many_points_as_are_asked_for() {
     let model = model("osorio-2008");
     let speeds = [205.0, 240.0];
-    let (_, leaves) = resting(&model, 112.0, [100.0, 130.0], Kind::Detachment);
+    let (_, leaves) = resting(&model, 112.0, [100.0, 130.0], SpecialKind::Detachment);
     let following = Following { most_points: 3, ..following(&model, "stiffness", [1000.0, 2000.0], 0.02) };
     let curve = curve(&model, &leaves, speeds, &following);
     assert_eq!((curve.ends, curve.points.len()), ([End::MostPoints, End::MostPoints], 3 + 1 + 3));
@@ -254,11 +260,11 @@ fn a_curve_has_as_many_points_as_are_asked_for() {
 fn a_detachment_goes_on_to_the_last_value_that_is_allowed() {
     let model = model("osorio-2008");
     let speeds = [100.0, 130.0];
-    let (_, leaves) = resting(&model, 112.0, speeds, Kind::Detachment);
+    let (_, leaves) = resting(&model, 112.0, speeds, SpecialKind::Detachment);
     let curve = curve(&model, &leaves, speeds, &following(&model, "nose_end_deg", [150.0, 180.0], 0.1));
     assert!(matches!(&curve.ends, [End::Range, End::Edge { largest: true, .. }]), "{:?}", curve.ends);
-    let specials: Vec<Kind> = curve.points.iter().filter_map(|point| point.special).map(|it| it.kind).collect();
-    assert_eq!((curve.points.last().unwrap().value, &specials[..]), (180.0, &[Kind::Detachment][..]));
+    let specials: Vec<SpecialKind> = curve.points.iter().filter_map(|point| point.special).map(|it| it.kind).collect();
+    assert_eq!((curve.points.last().unwrap().value, &specials[..]), (180.0, &[SpecialKind::Detachment][..]));
 }
 
 /// A branch of twice the period goes to the flip that it comes from and no further. It is stable there, and for 0.004 rpm only: a flip
@@ -271,7 +277,7 @@ fn a_branch_of_twice_the_period_ends_at_its_flip() {
     let branch = Branch::through(&model, 493.0, of_three, &following(&model, "rpm", [400.0, 600.0], 0.05)).unwrap();
     assert_eq!(branch.ends, [End::Range, End::Shorter]);
     let flips: Vec<usize> =
-        (0..branch.points.len()).filter(|&at| is_special(&branch.points[at], |it| it == Kind::Flip)).collect();
+        (0..branch.points.len()).filter(|&at| is_special(&branch.points[at], |it| it == SpecialKind::Flip)).collect();
     let (points, last) = (&branch.points, branch.points.last().unwrap());
     let [flip, end] = flips[..] else { panic!("{flips:?} of {}", points.len()) };
     assert!(end == points.len() - 1 && last.orbit.revolutions == 1, "{end} {last:?}");
@@ -290,7 +296,7 @@ fn a_branch_goes_on_beyond_a_corner_that_moves() {
     let number = following(&model, "flank_start_deg", [60.0, 120.0], 0.1);
     let branch = Branch::through(&model, 700.0, of_two, &number).unwrap();
     assert_eq!(branch.ends, [End::Range, End::Range]);
-    let is_corner = |kind| matches!(kind, Kind::Corner { .. });
+    let is_corner = |kind| matches!(kind, SpecialKind::Corner { .. });
     let corners: Vec<&BranchPoint> = branch.points.iter().filter(|point| is_special(point, is_corner)).collect();
     let [corner] = corners[..] else { panic!("{}", corners.len()) };
     assert!((corner.orbit.events[0].cam_angle - corner.value.to_radians()).abs() < 1e-9, "{corner:?}");
@@ -361,7 +367,7 @@ fn a_branch_of_twice_the_period_begins_at_a_graze() {
         let found = doubled(name, rpm, range, 1);
         let begins = found.iter().filter(|branch| revolutions(branch) == 2).any(|branch| {
             let last = branch.points.last().unwrap();
-            let is_graze = is_special(last, |kind| matches!(kind, Kind::Graze { .. }));
+            let is_graze = is_special(last, |kind| matches!(kind, SpecialKind::Graze { .. }));
             branch.ends == [End::Range, End::Shorter] && is_graze && (last.rpm - graze).abs() < 1e-3
         });
         assert!(begins, "{name} {:?}", found.iter().map(|branch| &branch.ends).collect::<Vec<_>>());
@@ -379,7 +385,7 @@ fn branches_of_four_times_the_period_end_where_those_of_twice_flip() {
     let flips: Vec<f64> = two
         .iter()
         .flat_map(|it| &it.points)
-        .filter(|it| is_special(it, |kind| kind == Kind::Flip))
+        .filter(|it| is_special(it, |kind| kind == SpecialKind::Flip))
         .map(|it| it.rpm)
         .collect();
     let is_flip = |point: &BranchPoint| flips.iter().any(|rpm| (rpm - point.rpm).abs() < 1e-9 * rpm);
@@ -470,7 +476,7 @@ fn a_fold_is_told_wherever_a_row_of_the_cam_is() {
         let found = orbits(&model, 700.0, 1);
         let orbit = found.iter().find(|orbit| orbit.impacts().count() == 1).unwrap();
         let branch = Branch::through(&model, 700.0, orbit, &following(&model, "rpm", [540.0, 720.0], 0.05)).unwrap();
-        let folds = branch.points.iter().filter(|point| is_special(point, |kind| kind == Kind::Fold));
+        let folds = branch.points.iter().filter(|point| is_special(point, |kind| kind == SpecialKind::Fold));
         let told: Vec<f64> = folds.map(|point| point.rpm).collect();
         assert!(matches!(told[..], [rpm] if (rpm - fold).abs() < 1e-9 * fold), "{turned} {told:?}");
     }
@@ -493,7 +499,7 @@ fn a_cam_that_does_not_move_lets_go_all_at_once() {
     let rests = orbits.iter().find(|orbit| matches!(orbit.course, Course::Sticking(_))).unwrap();
     let branch = Branch::through(&model, 300.0, rests, &following(&model, "gravity", [-3.0, 20.0], 0.05)).unwrap();
     let (first, special) = (&branch.points[0], branch.points[0].special.unwrap());
-    assert_eq!((&branch.ends, special.kind), (&[End::Chatter, End::Range], Kind::Chatter));
+    assert_eq!((&branch.ends, special.kind), (&[End::Chatter, End::Range], SpecialKind::Chatter));
     assert!(first.value.abs() < 1e-12 && special.bracket[0] <= 0.0 && 0.0 <= special.bracket[1], "{special:?}");
     assert_eq!(special.residual, std::f64::consts::TAU);
 }
@@ -549,7 +555,7 @@ fn a_graze_just_before_an_impact_is_where_the_parabola_touches() {
     let branch = Branch::through(&model, 400.0, &behind.unwrap(), &number).unwrap();
     assert_eq!(branch.ends, [End::Range, End::Range]);
     let grazes = branch.points.iter().filter_map(|point| match point.special?.kind {
-        Kind::Graze { before: 1, after: 2, turned, .. } => Some((point, turned)),
+        SpecialKind::Graze { before: 1, after: 2, turned, .. } => Some((point, turned)),
         _ => None,
     });
     let [(graze, turned)] = grazes.collect::<Vec<_>>()[..] else { panic!("{:?}", branch.points) };
@@ -592,7 +598,7 @@ fn a_dwell_lets_go_all_along_itself_and_the_rest_goes_on() {
     let branch = Branch::through(&model, 10.0, rests, &following(&model, "gravity", [-17.0, 10.0], 0.1)).unwrap();
     assert_eq!(branch.ends, [End::Range, End::Range]);
     let specials = branch.points.iter().filter_map(|point| Some((point.special?.kind, point.value)));
-    let [(Kind::Detachment, gravity)] = specials.collect::<Vec<_>>()[..] else { panic!("{:?}", branch.points) };
+    let [(SpecialKind::Detachment, gravity)] = specials.collect::<Vec<_>>()[..] else { panic!("{:?}", branch.points) };
     assert!((gravity + 400.0 * 0.04).abs() < 1e-9, "{gravity}");
 }
 
@@ -652,7 +658,7 @@ fn a_cascade_of_touches_is_followed_to_some_two_dozen_impacts() {
     let through = |orbit| Branch::through(&model, 1000.0, &orbit, &following(&model, "rpm", [600.0, 1600.0], 0.3));
     let mut branches = found.map(|orbit| through(orbit).unwrap());
     let branch = branches.find(|branch| branch.ends == [End::Chatter, End::Chatter]).unwrap();
-    let folds = branch.points.iter().filter(|point| is_special(point, |kind| kind == Kind::Fold));
+    let folds = branch.points.iter().filter(|point| is_special(point, |kind| kind == SpecialKind::Fold));
     let counts: Vec<usize> = folds.map(|fold| fold.orbit.impacts().count()).take_while(|count| *count > 7).collect();
     assert_eq!(counts, (8..=23).rev().collect::<Vec<_>>());
 }
@@ -680,10 +686,9 @@ fn orbits_of_every_amplitude_are_one_continuum() {
         assert!(!of_two.is_empty(), "{}", found.branches.len());
         for branch in of_two {
             assert_eq!(branch.ends.contains(&End::Continuum), is_continuum, "{:?}", branch.ends);
-            let folds = branch
-                .points
-                .iter()
-                .filter(|it| matches!(it.special, Some(it) if matches!(it.kind, Kind::Fold | Kind::Branching)));
+            let folds = branch.points.iter().filter(
+                |it| matches!(it.special, Some(it) if matches!(it.kind, SpecialKind::Fold | SpecialKind::Branching)),
+            );
             assert!(!is_continuum || folds.count() == 0);
             if is_continuum {
                 assert!(branch.points.iter().all(|it| (it.rpm / branch.points[0].rpm - 1.0).abs() < 1e-9));
@@ -714,10 +719,10 @@ fn a_follower_leaves_at_the_top_and_not_on_a_dwell_that_presses_or_is_slack() {
     for (base, gravity) in [(0.0, 0.0), (0.3, 0.0), (0.1, 9.81)] {
         let slack = base + gravity / stiffness;
         let speeds = [0.7 * rpm(rise), 1.4 * rpm(rise)];
-        let (_, leaves) = resting(&with(base, gravity, slack), 0.8 * rpm(rise), speeds, Kind::Detachment);
+        let (_, leaves) = resting(&with(base, gravity, slack), 0.8 * rpm(rise), speeds, SpecialKind::Detachment);
         assert!((leaves.rpm / rpm(rise) - 1.0).abs() < 1e-9, "{base} {gravity}: {}", leaves.rpm);
         let pressed = with(base, gravity, slack - 0.2 * rise);
-        let (_, leaves) = resting(&pressed, 0.8 * rpm(rise), speeds, Kind::Detachment);
+        let (_, leaves) = resting(&pressed, 0.8 * rpm(rise), speeds, SpecialKind::Detachment);
         assert!((leaves.rpm / rpm(1.2 * rise) - 1.0).abs() < 1e-9, "{base} {gravity}: {}", leaves.rpm);
         let number = following(&pressed, "rest_position", [slack - 0.4 * rise, slack - 0.05 * rise], 0.1);
         let curve = curve(&pressed, &leaves, speeds, &number);

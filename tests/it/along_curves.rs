@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 
 use corner_impact::cam::apart;
 use corner_impact::model::Model;
-use corner_impact::orbit::branch::{Bifurcation, Branch, BranchPoint, End, Following, Kind};
+use corner_impact::orbit::branch::{Bifurcation, Branch, BranchPoint, End, Following, SpecialKind};
 use corner_impact::orbit::{Parameter, Search};
 use corner_impact::progress::Unwatched;
 use corner_impact::simulate::{Event, EventKind, Goal, angular_velocity};
@@ -47,7 +47,7 @@ fn an_impact_on_a_corner_that_moves_goes_with_it() {
     let corners = points(&model, 736.0, 1, speeds, "corner");
     let mut followed = 0;
     for corner in
-        corners.iter().filter(|corner| matches!(corner.special.unwrap().kind, Kind::Corner { segment: 1, .. }))
+        corners.iter().filter(|corner| matches!(corner.special.unwrap().kind, SpecialKind::Corner { segment: 1, .. }))
     {
         let curve = curve(&model, corner, speeds, &number);
         assert_eq!(curve.ends, [End::Range, End::Range], "{corner:?}");
@@ -213,7 +213,7 @@ fn a_cusp_is_where_it_is_with_two_lobes_for_one() {
         let fold = like.max_by(|one, two| one.rpm.total_cmp(&two.rpm)).unwrap();
         let number = Following { most_points: 20, ..following(&model, name, [-52.0, -40.0], 0.3) };
         let curve = curve(&model, fold, [low, high], &number);
-        let is_cusp = |point: &&BranchPoint| point.special.is_some_and(|special| special.kind == Kind::Cusp);
+        let is_cusp = |point: &&BranchPoint| point.special.is_some_and(|special| special.kind == SpecialKind::Cusp);
         let cusps = curve.points.iter().filter(is_cusp).map(|cusp| [cusp.value, cusp.rpm * lobes as f64]);
         let mut cusps: Vec<[f64; 2]> = cusps.collect();
         cusps.sort_by(|one, two| one[0].total_cmp(&two[0]));
@@ -367,7 +367,7 @@ fn an_onset_of_resting_behind_a_row_is_where_it_is_on_a_cam_that_is_turned() {
 }
 
 /// The events of some kinds at some speeds, of orbits of one impact.
-fn events(follower: &Value, cam: &Value, wanted: &[Bifurcation], speeds: [f64; 2]) -> Vec<(Kind, f64)> {
+fn events(follower: &Value, cam: &Value, wanted: &[Bifurcation], speeds: [f64; 2]) -> Vec<(SpecialKind, f64)> {
     let model = Model::of_document("events", &json!({ "follower": follower, "cam": cam })).unwrap();
     let number = Following { most_points: 0, ..following(&model, "restitution", [0.05, 0.9], 0.05) };
     let search = Search { revolutions: 1, impacts: Some(1) };
@@ -385,7 +385,9 @@ fn two_events_of_one_orbit_are_two() {
     let follower = serde_json::to_value(ball(0.8, 0.0).follower).unwrap();
     let cam = json!({ "law": "table", "spline": "quintic", "rows": rows });
     let found = events(&follower, &cam, &Bifurcation::ALL, [0.999 * fold, 1.001 * fold]);
-    let [(Kind::Corner { segment: 18, .. }, corner), (Kind::Fold, there)] = found[..] else { panic!("{found:?}") };
+    let [(SpecialKind::Corner { segment: 18, .. }, corner), (SpecialKind::Fold, there)] = found[..] else {
+        panic!("{found:?}")
+    };
     assert!((corner / there - 1.0).abs() < 1e-9 && (there / fold - 1.0).abs() < 1e-3, "{found:?} {fold}");
 }
 
@@ -462,7 +464,7 @@ fn a_corner_impact_stays_itself_where_the_flight_from_it_touches() {
     let corners = points(&model, 560.0, 1, [555.0, 565.0], "corner");
     let curve = curve(&model, &corners[0], [500.0, 650.0], &following(&model, "restitution", [0.1, 0.4], 0.1));
     let touches = curve.points.iter().filter_map(|point| match point.special?.kind {
-        Kind::Graze { before: 1, after: 2, .. } => Some(point),
+        SpecialKind::Graze { before: 1, after: 2, .. } => Some(point),
         _ => None,
     });
     let [touch] = touches.collect::<Vec<_>>()[..] else { panic!("{:?}", curve.points) };
@@ -484,7 +486,7 @@ fn no_flip_is_told_at_a_corner_that_a_multiplier_only_jumps_at() {
     let (model, name) = (model("osorio-2008"), "follower.restitution");
     let corner = points(&model, 700.0, 1, [660.0, 710.0], "corner").swap_remove(0);
     let of_corner = curve(&model, &corner, [300.0, 1200.0], &following(&model, name, [0.3, 0.85], 0.1));
-    let is_flip = |kind| matches!(kind, Kind::Type { after_corner: Some(true), multiplier: -1.0 });
+    let is_flip = |kind| matches!(kind, SpecialKind::Type { after_corner: Some(true), multiplier: -1.0 });
     let flip = of_corner.points.iter().find(|point| point.special.is_some_and(|special| is_flip(special.kind)));
     let (restitution, rpm) = flip.map(|flip| (flip.value, flip.rpm)).unwrap();
     let beside = model.with_number(name, restitution - 1e-8).unwrap();
@@ -540,12 +542,12 @@ fn a_curve_of_corner_impacts_ends_where_the_impact_on_the_corner_is_a_touch() {
     let found = orbits(&model, 400.0, 1).into_iter().filter(|orbit| orbit.impacts().count() == 2);
     let through = |orbit| Branch::through(&model, 400.0, &orbit, &following(&model, "rpm", speeds, 0.2)).unwrap();
     let all = found.map(through).flat_map(|branch| branch.points);
-    let on_it = |kind| matches!(kind, Kind::Corner { impact: 1, segment: 9, .. });
+    let on_it = |kind| matches!(kind, SpecialKind::Corner { impact: 1, segment: 9, .. });
     let corner = all.into_iter().find(|point| point.special.is_some_and(|special| on_it(special.kind))).unwrap();
     let curve = curve(&model, &corner, [200.0, 800.0], &following(&model, "rest_position", [0.09, 0.13], 0.2));
     assert_eq!(curve.ends, [End::Range, End::Graze]);
     let last = curve.points.last().unwrap();
-    assert!(matches!(last.special.unwrap().kind, Kind::Graze { before: 2, after: 1, .. }), "{last:?}");
+    assert!(matches!(last.special.unwrap().kind, SpecialKind::Graze { before: 2, after: 1, .. }), "{last:?}");
     let [one, two] = &last.orbit.events[..] else { panic!("{last:?}") };
     let [one_speed, two_speed] = [one, two].map(|event| event.cam_velocity - event.velocity_before);
     assert!((two.cam_angle - 330.0_f64.to_radians()).abs() < 1e-9, "{two:?}");

@@ -15,7 +15,7 @@ use corner_impact::orbit::long_run::{Budget, Kind, LongRun, Recorded, StickingOr
 use corner_impact::orbit::runs::{AfterRelease, LongRuns, RunOutcome};
 use corner_impact::orbit::{Course, PeriodicOrbit, Search, search};
 use corner_impact::progress::Unwatched;
-use corner_impact::simulate::{Event, EventKind, Machine, Met, Motion, SimulateError, angular_velocity};
+use corner_impact::simulate::{Event, EventKind, ImpactTally, Machine, Motion, SimulateError, angular_velocity};
 use corner_impact::study::attractors::{AttractorsAtValue, AttractorsError, Cause, Resolution, Step, Transition};
 use corner_impact::study::basins::{Grid, SectionStarts};
 use corner_impact::study::speeds::{At, AttractorRow, SpeedSurvey, usual_range};
@@ -31,7 +31,7 @@ pub fn ball() -> Model {
 /// What a motion comes to that settles on nothing, of so much growth with so much error, as much in the first half of its record as in the second.
 pub fn by_growth(value: f64, error: f64) -> LongRun {
     let growth = Estimate { value, error, error_is: ErrorIs::Standard };
-    let met = Met { impacts: 100, impact_speed: 1.0 };
+    let met = ImpactTally { impacts: 100, impact_speed: 1.0 };
     LongRun::by_growth(Recorded { growth, halves: [50.0 * value; 2], met, revolutions: 100, runs: 1, rested: false })
 }
 

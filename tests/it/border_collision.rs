@@ -8,21 +8,21 @@ use std::fmt::Write;
 use crate::common;
 use crate::orbit_numbers::is_as_it_was;
 use approx::assert_relative_eq;
-use corner_impact::border_collision::local_map::PeriodicOrbit;
-use corner_impact::border_collision::long_run::{End, Escape};
+use corner_impact::border_collision::local_map::MapOrbit;
+use corner_impact::border_collision::long_run::{EscapeReason, LocalLongRun};
 use corner_impact::border_collision::word::Word;
 use corner_impact::border_collision::{LocalMap, passage};
 use corner_impact::cam::Side;
 use corner_impact::corner::SideMap;
 use corner_impact::estimate::Estimate;
 use corner_impact::interval::Interval;
-use corner_impact::known::Known;
+use corner_impact::known::Evidence;
 use nalgebra::{Matrix2, Vector2};
 
 /// What a motion from 0 does, in a word.
-fn kind(end: &End) -> String {
+fn kind(end: &LocalLongRun) -> String {
     match end {
-        End::Periodic(orbit) => orbit.word.to_string(),
+        LocalLongRun::Periodic(orbit) => orbit.word.to_string(),
         other => other.name().into(),
     }
 }
@@ -36,9 +36,9 @@ fn grid([low, high]: [f64; 2], count: u32) -> impl Iterator<Item = f64> + Clone 
     (0..count).map(move |index| low + (high - low) * f64::from(index) / f64::from(count - 1))
 }
 
-fn exponent(end: &End) -> Estimate {
+fn exponent(end: &LocalLongRun) -> Estimate {
     match end {
-        End::Chaotic(chaos) => chaos.exponent,
+        LocalLongRun::Chaotic(chaos) => chaos.exponent,
         other => panic!("{other:?}"),
     }
 }
@@ -245,7 +245,7 @@ fn chaos_is_robust_where_it_is_known_to_be() {
             let (from_0, from_fold) = (map.end(Vector2::zeros(), 1.0), map.end(Vector2::new(l / (l - d_l), 0.0), 1.0));
             let case = format!("traces {t_l} {t_r}, determinants {d_l} {d_r}, phi = {phi}: {from_0:?} {from_fold:?}");
             if phi > 1e-3 {
-                let stable = map.admissible_orbits(1.0, 6).iter().any(PeriodicOrbit::stable);
+                let stable = map.admissible_orbits(1.0, 6).iter().any(MapOrbit::stable);
                 assert!(kind(&from_0) == "chaotic" && kind(&from_fold) == "chaotic" && !stable, "{case}");
                 let theorem = map.robust_chaos(1.0).unwrap();
                 assert!(theorem.holds() && theorem.saddle == Side::Minus, "{case}");
@@ -254,8 +254,7 @@ fn chaos_is_robust_where_it_is_known_to_be() {
                 assert_eq!(map.robust_chaos(-1.0), None);
                 chaotic += 1;
             } else if phi < -1e-3 {
-                let follows =
-                    matches!(&from_fold, End::Escapes(Escape::Follows { word, .. }) if word.to_string() == "L");
+                let follows = matches!(&from_fold, LocalLongRun::Escapes(EscapeReason::Follows { word, .. }) if word.to_string() == "L");
                 assert!(follows && !map.robust_chaos(1.0).unwrap().holds(), "{case}");
                 left += 1;
                 stayed += usize::from(kind(&from_0) == "chaotic");
@@ -282,17 +281,17 @@ fn the_theorem_of_robust_chaos_has_its_hypotheses() {
     assert_relative_eq!(theorem.hypotheses[4].value, 0.575, max_relative = 1e-14);
     assert_relative_eq!(theorem.least_exponent, (0.75 + 0.3625_f64.sqrt()).ln(), max_relative = 1e-14);
     // Proved for matrices in intervals, as long as none of these has a hypothesis that fails: at phi = 0.575, 0.1 is too wide.
-    for (width, known) in [(1e-3, Known::Proved), (0.1, Known::Computed)] {
+    for (width, known) in [(1e-3, Evidence::Proved), (0.1, Evidence::Computed)] {
         let around = |entry: f64| Interval::new(entry - width, entry + width);
         let matrices =
             [map.minus, map.plus].map(|side| [0, 1].map(|row| [0, 1].map(|column| around(side.a[(row, column)]))));
         let mut theorem = map.robust_chaos(1.0).unwrap();
-        assert_eq!(theorem.known, Known::Computed);
+        assert_eq!(theorem.known, Evidence::Computed);
         theorem.prove(matrices);
         assert_eq!(theorem.known, known, "{width}");
-        theorem.known = Known::Computed;
+        theorem.known = Evidence::Computed;
         theorem.prove([matrices[1], matrices[0]]);
-        assert_eq!(theorem.known, Known::Computed, "the sides exchanged");
+        assert_eq!(theorem.known, Evidence::Computed, "the sides exchanged");
     }
     // Nor for matrices of which one hypothesis alone fails, whichever.
     for (failing, traces, determinants) in [
@@ -305,7 +304,7 @@ fn the_theorem_of_robust_chaos_has_its_hypotheses() {
         let side = |side: usize| [[traces[side], 1.0], [-determinants[side], 0.0]].map(|row| row.map(Interval::from));
         let mut theorem = map.robust_chaos(1.0).unwrap();
         theorem.prove([side(0), side(1)]);
-        assert_eq!(theorem.known, Known::Computed, "{failing}");
+        assert_eq!(theorem.known, Evidence::Computed, "{failing}");
     }
     for (traces, determinants) in
         [([1.29, -1.5], [0.3, 0.2]), ([1.7, -1.19], [0.3, 0.2]), ([1.7, -1.5], [-0.1, 0.2]), ([1.7, -1.5], [0.3, 0.0])]
@@ -321,7 +320,7 @@ fn the_map_is_the_same_at_every_scale() {
         for mu in [1.0, -1.0] {
             let (whole, part) = (map.end(Vector2::zeros(), mu), map.end(Vector2::zeros(), mu / 1024.0));
             assert_eq!(kind(&whole), kind(&part));
-            if let (End::Periodic(whole), End::Periodic(part)) = (&whole, &part) {
+            if let (LocalLongRun::Periodic(whole), LocalLongRun::Periodic(part)) = (&whole, &part) {
                 assert_relative_eq!(whole.points[0] / 1024.0, part.points[0], max_relative = 1e-12);
             }
         }
@@ -334,7 +333,7 @@ fn escapes_name_the_word_that_they_follow() {
         [([1.5, 0.5], -1.0, "L", 1.5), ([0.5, 3.0], 1.0, "R", 3.0), ([-1.5, -2.0], 1.0, "LR", 3.0)]
     {
         match common::of_the_line(slopes).end(Vector2::zeros(), mu) {
-            End::Escapes(Escape::Follows { word, multiplier: found }) => {
+            LocalLongRun::Escapes(EscapeReason::Follows { word, multiplier: found }) => {
                 assert_eq!(word.to_string(), text);
                 assert_relative_eq!(found, multiplier, max_relative = 1e-12);
             }
@@ -343,7 +342,7 @@ fn escapes_name_the_word_that_they_follow() {
     }
     // A spiral away follows no word for ever.
     let spiral = common::normal_form([0.9, 0.8], [1.2, 1.3]).end(Vector2::zeros(), 1.0);
-    assert_eq!(spiral, End::Escapes(Escape::Grown));
+    assert_eq!(spiral, LocalLongRun::Escapes(EscapeReason::Grown));
 }
 
 #[test]
@@ -435,13 +434,15 @@ fn told(map: &LocalMap, mu: f64) -> String {
     }
     for fate in outcome.fates {
         let more = match &fate.end {
-            End::Chaotic(chaos) => {
+            LocalLongRun::Chaotic(chaos) => {
                 let (exponent, region) = (chaos.exponent, chaos.region);
                 format!(" {} in {} polygons of {} corners", digits(exponent.value), region.polygons, region.corners)
             }
             // How fast what never settles parts is known to its error.
-            End::Undecided(exponent) => format!(" above {:.3}", exponent.value - 5.0 * exponent.error),
-            End::Escapes(Escape::Follows { word, multiplier }) => format!(" by {word}, {}", digits(*multiplier)),
+            LocalLongRun::Undecided(exponent) => format!(" above {:.3}", exponent.value - 5.0 * exponent.error),
+            LocalLongRun::Escapes(EscapeReason::Follows { word, multiplier }) => {
+                format!(" by {word}, {}", digits(*multiplier))
+            }
             _ => String::new(),
         };
         writeln!(text, "  {} {}{more}", fate.starts, kind(&fate.end)).unwrap();
@@ -531,7 +532,7 @@ fn robust_chaos_is_proved_in_any_coordinates() {
     let mut theorem = map.robust_chaos(1.0).unwrap();
     // 0.85^2 + c = 0.3 and 0.75^2 + c = 0.2
     theorem.prove([side(0.85, 0.3 - 0.7225), side(-0.75, 0.2 - 0.5625)]);
-    assert_eq!(theorem.known, Known::Proved);
+    assert_eq!(theorem.known, Evidence::Proved);
     // At the other sign of mu the saddles are not there.
     assert_eq!(map.robust_chaos(-1.0), None);
 }
@@ -609,7 +610,7 @@ fn a_motion_whose_neighbours_stay_is_not_called_chaotic() {
         }
         assert!((x - beside).norm() < 1e-7 && x.norm() < 100.0, "{traces:?} {determinants:?}: {x} {beside}");
         let end = map.end(Vector2::zeros(), 1.0);
-        assert!(matches!(end, End::Undecided(_)), "{traces:?} {determinants:?}: {end:?}");
+        assert!(matches!(end, LocalLongRun::Undecided(_)), "{traces:?} {determinants:?}: {end:?}");
     }
 }
 
@@ -622,7 +623,7 @@ fn chaos_by_the_theorem_needs_no_measured_exponent() {
     assert!(map.robust_chaos(1.0).unwrap().holds());
     let l: f64 = 0.5 * (trace + (trace * trace - 4.0 * determinant).sqrt());
     match map.end(Vector2::zeros(), 1.0) {
-        End::Chaotic(chaos) => {
+        LocalLongRun::Chaotic(chaos) => {
             assert!(chaos.exponent.error > 0.2 * chaos.exponent.value, "{chaos:?}");
             assert_relative_eq!(chaos.least_exponent.unwrap(), l.ln(), max_relative = 1e-9);
         }

@@ -3,7 +3,7 @@
 use crate::common;
 use approx::assert_relative_eq;
 use corner_impact::border_collision::conditions::{Condition, Decides};
-use corner_impact::border_collision::long_run::End;
+use corner_impact::border_collision::long_run::LocalLongRun;
 use corner_impact::border_collision::word::Word;
 use corner_impact::border_collision::{Degenerate, LocalMap, classify, conditions};
 use corner_impact::corner::map::{CornerMap, SideMap};
@@ -225,9 +225,9 @@ fn distances_from_failing_have_no_units() {
 #[test]
 fn numbers_that_are_none_end_without_a_panic() {
     let mut map = common::normal_form([0.5, f64::NAN], [0.3, 0.2]);
-    assert!(!matches!(map.outcome(1.0).fates[0].end, End::Periodic(_) | End::Chaotic(..)));
+    assert!(!matches!(map.outcome(1.0).fates[0].end, LocalLongRun::Periodic(_) | LocalLongRun::Chaotic(..)));
     map.plus.a = Matrix2::repeat(f64::INFINITY);
-    assert!(!matches!(map.outcome(-1.0).fates[0].end, End::Chaotic(..)));
+    assert!(!matches!(map.outcome(-1.0).fates[0].end, LocalLongRun::Chaotic(..)));
     assert!(conditions(&map).iter().any(|condition| !condition.holds()));
 }
 

@@ -7,7 +7,7 @@ use corner_impact::cam::Side;
 use corner_impact::corner::range::{FoundCornerImpacts, find_corner_impacts};
 use corner_impact::corner::{CornerImpact, Way};
 use corner_impact::flight::State;
-use corner_impact::known::Known;
+use corner_impact::known::Evidence;
 use corner_impact::model::{Model, Study};
 use corner_impact::orbit::near::near;
 use corner_impact::orbit::search::{Searched, search_all};
@@ -50,7 +50,7 @@ fn one_impact_in_any_number_of_turns_is_where_the_parabola_has_it() {
         let rpm = 60.0 / period;
         let all = find_corner_impacts(&model, &cam, around(rpm), turns, &Unwatched).unwrap();
         assert_eq!(all.corners.iter().map(|corner| corner.angle).collect::<Vec<_>>(), [0.0, PI]);
-        assert!(all.complete.iter().any(|it| (it.revolutions, it.impacts, it.known) == (turns, 1, Known::Proved)));
+        assert!(all.complete.iter().any(|it| (it.revolutions, it.impacts, it.known) == (turns, 1, Evidence::Proved)));
         let places: Vec<_> = all.found.iter().map(|at| (at.corner.angle, at.side, at.cycle.impacts.len())).collect();
         assert_eq!(places, [(0.0, Side::Plus, 1), (PI, Side::Plus, 1)]);
         for at in &all.found {

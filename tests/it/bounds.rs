@@ -2,7 +2,7 @@
 //! narrow a range is asked for?
 
 use corner_impact::model::Model;
-use corner_impact::orbit::branch::{Branch, BranchPoint, End, Following, Kind};
+use corner_impact::orbit::branch::{Branch, BranchPoint, End, Following, SpecialKind};
 use corner_impact::orbit::{Course, Parameter};
 
 use crate::orbit_numbers::{model, orbits};
@@ -133,7 +133,7 @@ fn a_follower_on_the_cam_is_followed_to_where_it_loses_nothing() {
 /// The curve of where a follower that rests at a speed leaves the cam.
 fn detachment(model: &Model, rpm: f64, speeds: [f64; 2], number: &Following) -> Branch {
     let branch = resting(model, rpm, &following(model, "rpm", speeds));
-    let is_it = |point: &&BranchPoint| point.special.is_some_and(|special| special.kind == Kind::Detachment);
+    let is_it = |point: &&BranchPoint| point.special.is_some_and(|special| special.kind == SpecialKind::Detachment);
     let leaves = branch.points.iter().find(is_it).unwrap();
     Branch::of_event(model, leaves, speeds, number).unwrap().unwrap()
 }
@@ -173,7 +173,7 @@ fn a_branch_from_a_bound_ends_at_a_flip_close_by() {
     let number = following(&model, "rpm", [360.0, 380.0]);
     let one = orbits(&model, 369.0, 1).into_iter().filter(|orbit| orbit.impacts().count() == 1);
     let mut points = one.flat_map(|orbit| Branch::through(&model, 369.0, &orbit, &number).unwrap().points);
-    let is_flip = |point: &BranchPoint| point.special.is_some_and(|special| special.kind == Kind::Flip);
+    let is_flip = |point: &BranchPoint| point.special.is_some_and(|special| special.kind == SpecialKind::Flip);
     let rpm = points.find(is_flip).unwrap().value + 1e-3;
     let twice: Vec<_> = orbits(&model, rpm, 2).into_iter().filter(|orbit| orbit.impacts().count() == 2).collect();
     let [orbit] = &twice[..] else { panic!("{twice:?}") };

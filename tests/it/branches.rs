@@ -8,7 +8,7 @@ use crate::common;
 use crate::properties::depth;
 use corner_impact::cam::Cam;
 use corner_impact::model::Model;
-use corner_impact::orbit::branch::{Branch, BranchPoint, End, Following, Kind};
+use corner_impact::orbit::branch::{Branch, BranchPoint, End, Following, SpecialKind};
 use corner_impact::orbit::long_run::{Budget, LongRun};
 use corner_impact::orbit::{Course, Eigenvalue, Parameter, PeriodicOrbit, Search, eigenvalues, search};
 use corner_impact::progress::Unwatched;
@@ -38,7 +38,7 @@ fn branch(model: &Model, rpm: f64, impacts: usize, stable: bool, range: [f64; 2]
     follow(model, rpm, orbits.iter().find(is_it).unwrap(), "rpm", range)
 }
 
-fn specials(branch: &Branch) -> Vec<(f64, Kind)> {
+fn specials(branch: &Branch) -> Vec<(f64, SpecialKind)> {
     branch.points.iter().filter_map(|point| Some((point.value, point.special?.kind))).collect()
 }
 
@@ -64,7 +64,7 @@ fn the_papers_branch_has_its_corner_and_its_flip() {
         let branch = branch(&model, 700.0, 1, stable, [600.0, 760.0]);
         let corner = special(&branch, "corner", 673.0);
         is_at(corner, 673.234445003848821);
-        let is_at_p = |kind: Kind| matches!(kind, Kind::Corner { segment: 2, jump_order: 2, .. });
+        let is_at_p = |kind: SpecialKind| matches!(kind, SpecialKind::Corner { segment: 2, jump_order: 2, .. });
         assert!(corner.special.is_some_and(|special| is_at_p(special.kind)), "{:?}", corner.special);
         is_at(special(&branch, "flip", 739.0), by_bisection([735.0, 739.37], |rpm| flip(&model, rpm) > 0.0));
         assert_eq!(specials(&branch).len(), 2, "{:?}", specials(&branch));
@@ -210,7 +210,9 @@ fn grazes_are_where_the_number_of_impacts_changes() {
     for orbit in orbits(&model, 442.0, 1) {
         let branch = follow(&model, 442.0, &orbit, "rpm", [400.0, 480.0]);
         for (index, point) in branch.points.iter().enumerate() {
-            let Some(Kind::Graze { before, after, .. }) = point.special.map(|special| special.kind) else { continue };
+            let Some(SpecialKind::Graze { before, after, .. }) = point.special.map(|special| special.kind) else {
+                continue;
+            };
             seen.push(point.value);
             let near = [&branch.points[index - 1], &branch.points[index + 1]].map(simulated_impacts(&model));
             let mut expected = [before, after];
@@ -455,7 +457,7 @@ fn a_jump_of_the_cams_velocity_is_a_gap() {
             if *end == End::Gap {
                 gaps += 1;
                 let special = point.special.unwrap();
-                assert!(matches!(special.kind, Kind::Corner { jump_order: 1, .. }), "{special:?}");
+                assert!(matches!(special.kind, SpecialKind::Corner { jump_order: 1, .. }), "{special:?}");
                 let corner = point.orbit.impacts().map(|event| event.cam_angle % std::f64::consts::PI);
                 assert!(
                     corner.fold(f64::INFINITY, |least, angle| least.min(angle.min(std::f64::consts::PI - angle)))

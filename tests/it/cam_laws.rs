@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use crate::common;
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 use corner_impact::cam::{Arc, Cam, Harmonics, Law, Lift, Polynomial, Sinusoid};
-use corner_impact::model::{HarmonicProfile, Model, Motion};
+use corner_impact::model::{HarmonicProfile, Model, StandardMotion};
 
 /// One model file for every law but `arcs`, which all others have.
 fn law_files() -> Vec<PathBuf> {
@@ -433,7 +433,7 @@ fn motions_have_the_peaks_of_the_handbooks() {
         ("poly345", 1.875, 5.7735),
         ("poly4567", 2.1875, 7.5132),
     ];
-    assert_eq!(peaks.len() + 1, Motion::NAMES.len());
+    assert_eq!(peaks.len() + 1, StandardMotion::NAMES.len());
     for (name, velocity, acceleration) in peaks {
         for (span_deg, rise) in [(110.0, 0.02), (230.0, -0.01)] {
             let cam = motion(name, span_deg, rise);
@@ -544,7 +544,7 @@ fn a_nose_may_be_as_large_as_is_told() {
 /// Within a motion nothing jumps below the acceleration's own derivatives, and the lift nowhere.
 #[test]
 fn pieces_of_a_motion_meet() {
-    for (name, _) in Motion::NAMES.into_iter().filter(|(name, _)| *name != "dwell") {
+    for (name, _) in StandardMotion::NAMES.into_iter().filter(|(name, _)| *name != "dwell") {
         let cam = motion(name, 123.0, 0.02);
         for pair in cam.segments().windows(2) {
             let (minus, plus) = (pair[0].law.lift(pair[0].end), pair[1].law.lift(pair[1].start));

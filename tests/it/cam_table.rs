@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use crate::common;
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 use corner_impact::cam::Cam;
-use corner_impact::measured::{Likely, Openness};
+use corner_impact::measured::{CamUncertainty, PlausibleCams};
 use corner_impact::model::Model;
 use serde_json::json;
 
@@ -258,7 +258,7 @@ fn half_a_turn_without_a_row_is_half_a_turn_to_its_digits() {
 fn twelve_rows_may_be_smoothed() {
     for (count, are_enough) in [(11, false), (12, true)] {
         let model = even(count, |angle| (1e4 * (1.0 - angle.cos())).round() / 1e4);
-        assert_eq!(Likely::of(&model).unwrap().is_some(), are_enough, "{count}");
+        assert_eq!(PlausibleCams::of(&model).unwrap().is_some(), are_enough, "{count}");
     }
 }
 
@@ -278,8 +278,8 @@ fn even(count: u32, lift: impl Fn(f64) -> f64) -> Model {
 #[test]
 fn noise_is_seen_over_the_rise_of_the_lift() {
     let table = |noise: f64| even(4001, |angle| 10.0 + 0.01 * angle.cos() + noise * (1e9 * (angle + 1.0).sin()).sin());
-    assert!(matches!(Openness::of(&table(2e-10)).unwrap(), Some(Openness::Noise(_))));
-    assert!(Openness::of(&table(1e-12)).unwrap().is_none());
+    assert!(matches!(CamUncertainty::of(&table(2e-10)).unwrap(), Some(CamUncertainty::Noise(_))));
+    assert!(CamUncertainty::of(&table(1e-12)).unwrap().is_none());
 }
 
 /// Text that is no table, each with what the message must say; the model's own name where its field is at fault.

@@ -5,10 +5,10 @@ use std::path::Path;
 
 use corner_impact::cam::Cam;
 use corner_impact::corner::locate;
-use corner_impact::covering::find::{Wanted, find};
+use corner_impact::covering::find::{ProofScope, find};
 use corner_impact::covering::prove::{Relation, prove};
-use corner_impact::covering::region::{Escape, Region, parted, trap};
-use corner_impact::covering::{HSet, Image, Unproved, entropy, known};
+use corner_impact::covering::region::{OpenRegion, Region, parted, trap};
+use corner_impact::covering::{HSet, Image, UnprovedFlight, entropy, known};
 use corner_impact::interval::Interval;
 use corner_impact::model::Model;
 use corner_impact::progress::Unwatched;
@@ -229,7 +229,7 @@ fn images_in_a_picture_are_where_runs_arrive() {
 fn chaos_of_other_machines_is_found_and_proved() {
     let model = common::read(std::path::Path::new(&format!("{}/models/damped-light.toml", common::ROOT)));
     let machine = machine(&model, 675.0);
-    let found = find(&machine, [675.0; 2], Wanted { strips: 2, cones: true }, &Unwatched).unwrap();
+    let found = find(&machine, [675.0; 2], ProofScope { strips: 2, cones: true }, &Unwatched).unwrap();
     let found = found.unwrap_or_else(|short| panic!("{short:?}"));
     assert!(prove(&machine, &found.set).is_ok());
 }
@@ -250,7 +250,7 @@ fn a_theorem_with_cones_comes_before_one_of_more_strips_without() {
 /// Where a motion settles from everywhere no h-set is found.
 #[test]
 fn where_there_is_no_saddle_no_chaos_is_found() {
-    let wanted = Wanted { strips: 8, cones: true };
+    let wanted = ProofScope { strips: 8, cones: true };
     let found = find(&machine(&common::osorio(), 160.0), [160.0; 2], wanted, &Unwatched).unwrap();
     assert!(found.is_err(), "{found:?}");
 }
@@ -277,7 +277,7 @@ fn heavy() -> Model {
 }
 
 /// The region that the impacts of a run begin, in so many squares of a degree.
-fn region(model: &Model, rpm: f64, start: [f64; 2], squares: u32, most: usize) -> Result<Region, Escape> {
+fn region(model: &Model, rpm: f64, start: [f64; 2], squares: u32, most: usize) -> Result<Region, OpenRegion> {
     let machine = machine(model, rpm);
     let run = impacts(&machine, start, 2500);
     let run: Vec<[Interval; 2]> = run
@@ -333,7 +333,7 @@ fn runs_do_not_leave_a_region_that_traps() {
 #[ignore = "slow"]
 fn a_region_is_not_closed_where_motions_rest_or_cells_run_out() {
     let rests = region(&common::osorio(), 183.0, [200.0, 0.1], 1, 20_000).unwrap_err();
-    assert_eq!(rests.flight, Some(Unproved::NoImpact), "{rests:?}");
+    assert_eq!(rests.flight, Some(UnprovedFlight::NoImpact), "{rests:?}");
     let none = trap(&machine(&heavy(), 706.6), 706.6, &[], 1, 1000, &Unwatched).unwrap_err();
     assert_eq!((none.cells, none.flight), (0, None), "of no impacts nothing is proved");
     let many = region(&heavy(), 706.6, [151.0, 2.0], 1, 1000).unwrap_err();

@@ -10,7 +10,7 @@ use crate::common;
 use corner_impact::agreement::Quantity;
 use corner_impact::model::Model;
 use corner_impact::progress::Unwatched;
-use corner_impact::study::compare::{Comparison, NoVerdict, compare};
+use corner_impact::study::compare::{ModelComparison, NoVerdict, compare};
 use corner_impact::study::verify::{External, verify};
 
 const PAPER: &str = "models/osorio-2008.toml";
@@ -199,8 +199,8 @@ fn what_a_measured_cam_leaves_open_is_no_change() {
     };
     let machine = |places: i32, stiffness: f64| of_rows(rows(places), stiffness);
     let compared =
-        |b: &Model| -> Comparison { compare(&machine(5, 1430.8), b, External::LeftOut, &Unwatched).unwrap() };
-    let speed = |found: &Comparison| {
+        |b: &Model| -> ModelComparison { compare(&machine(5, 1430.8), b, External::LeftOut, &Unwatched).unwrap() };
+    let speed = |found: &ModelComparison| {
         let of =
             |name: &str| found.changes.iter().chain(&found.unchanged).find(|it| it.quantity == name).unwrap().clone();
         of("separation_speed_rpm")
@@ -218,7 +218,7 @@ fn what_a_measured_cam_leaves_open_is_no_change() {
     // The same rows leave another spring less open than other rows do: both followers are on one cam, whichever it is.
     let [once, twice, other] = [(5, 1500.0), (5, 1569.2), (4, 1500.0)].map(|(places, k)| compared(&machine(places, k)));
     // Two springs on one cam press by k (c - rest), and what is open about c is in the difference as often as k differs.
-    let preload = |found: &Comparison| {
+    let preload = |found: &ModelComparison| {
         found.changes.iter().find(|it| it.quantity == "preload_n").and_then(|it| it.error).unwrap()
     };
     assert!(preload(&once) > 0.0);

@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use crate::{common, random};
 use corner_impact::cam::{Cam, apart};
 use corner_impact::corner::range::find_corner_impacts;
-use corner_impact::known::Known;
+use corner_impact::known::Evidence;
 use corner_impact::model::{Model, Study};
 use corner_impact::orbit::{Course, PeriodicOrbit, Search, Searched, search, search_all};
 use corner_impact::progress::Unwatched;
@@ -30,8 +30,8 @@ fn file(name: &str) -> Model {
 
 fn is_complete(searched: &Searched) -> bool {
     let [complete] = searched.complete[..] else { panic!("{searched:?}") };
-    assert_eq!(complete.known == Known::Proved, searched.undecided.is_empty(), "{searched:?}");
-    complete.known == Known::Proved
+    assert_eq!(complete.known == Evidence::Proved, searched.undecided.is_empty(), "{searched:?}");
+    complete.known == Evidence::Proved
 }
 
 /// Impacts of each orbit, in degrees.
@@ -42,7 +42,10 @@ fn angles(searched: &Searched) -> Vec<Vec<f64>> {
 
 #[track_caller]
 fn are(searched: &Searched, expected: &[&[f64]]) {
-    assert!(is_complete(searched) && searched.orbits.iter().all(|orbit| orbit.known == Known::Proved), "{searched:?}");
+    assert!(
+        is_complete(searched) && searched.orbits.iter().all(|orbit| orbit.known == Evidence::Proved),
+        "{searched:?}"
+    );
     let angles = angles(searched);
     let near = |one: &[f64], other: &[f64]| {
         one.len() == other.len() && one.iter().zip(other).all(|(a, b)| (a - b).abs() < 1e-7)
@@ -94,7 +97,7 @@ fn a_fold_is_passed() {
     // Next to it to the last digits one or both may be found, and neither is proved.
     for ulps in -40..=40 {
         let there = all(&machine(&model, fold * (1.0 + f64::from(ulps) * f64::EPSILON)), 1);
-        let proved = there.orbits.iter().filter(|orbit| orbit.known == Known::Proved).count();
+        let proved = there.orbits.iter().filter(|orbit| orbit.known == Evidence::Proved).count();
         assert!(is_complete(&there) || proved == below.orbits.len().min(above.orbits.len()), "{ulps}: {there:?}");
     }
 }
@@ -109,7 +112,7 @@ fn a_corner_of_one_of_two_impacts_is_left_undecided() {
     assert_ne!(below, above);
     for ulps in -40..=40 {
         let there = all(&machine(&paper, corner * (1.0 + f64::from(ulps) * f64::EPSILON)), 2);
-        let proved = there.orbits.iter().filter(|orbit| orbit.known == Known::Proved).count();
+        let proved = there.orbits.iter().filter(|orbit| orbit.known == Evidence::Proved).count();
         let most = if ulps < -4 {
             below
         } else if ulps > 4 {
@@ -147,7 +150,7 @@ fn a_flight_that_meets_the_cam_beyond_the_angle_that_it_comes_back_to_is_refused
 fn the_papers_corner_impacts_are_all_found() {
     let (paper, range) = (common::osorio(), Study { rpm_min: 600.0, rpm_max: 760.0 });
     let looked_at = find_corner_impacts(&paper, &Cam::new(&paper).unwrap(), range, 1, &Unwatched).unwrap();
-    assert_eq!((looked_at.complete[0].known, &looked_at.undecided[..]), (Known::Proved, &[][..]));
+    assert_eq!((looked_at.complete[0].known, &looked_at.undecided[..]), (Evidence::Proved, &[][..]));
     let of_one: Vec<f64> =
         looked_at.found.iter().filter(|it| it.cycle.impacts.len() == 1).map(|it| it.speed_rpm()).collect();
     assert!(of_one.len() == 1 && (of_one[0] - 673.234445003812033).abs() < 1e-10, "{of_one:?}");
@@ -227,7 +230,8 @@ fn is_told(searched: &Searched, angles: &[f64]) -> bool {
     let is_at = |ends: &[f64; 2]| {
         angles.iter().any(|angle| near(*ends, *angle) || near(*ends, angle + TAU) || near(*ends, angle - TAU))
     };
-    let is_proved = |orbit: &&PeriodicOrbit| orbit.known == Known::Proved && matches!(orbit.course, Course::Impacts(_));
+    let is_proved =
+        |orbit: &&PeriodicOrbit| orbit.known == Evidence::Proved && matches!(orbit.course, Course::Impacts(_));
     searched.orbits.iter().filter(is_proved).any(|orbit| same(impacts(orbit)))
         || searched.undecided.iter().any(|it| it.cam_angles.iter().all(is_at))
 }
@@ -242,7 +246,7 @@ fn samples_find_no_orbit_of_one_impact_that_is_not_told() {
         let Ok(searched) = search_all(&case.machine, &Search { revolutions: 1, impacts: Some(1) }, &Unwatched) else {
             return Ok(());
         };
-        let proved = u32::from(searched.complete[0].known == Known::Proved);
+        let proved = u32::from(searched.complete[0].known == Evidence::Proved);
         SEEN[1].fetch_add(proved, Ordering::Relaxed);
         for angle in sampled(&case.machine) {
             SEEN[0].fetch_add(1, Ordering::Relaxed);
@@ -261,7 +265,7 @@ fn runs_find_no_orbit_of_two_impacts_that_is_not_told() {
         let Ok(searched) = search_all(&case.machine, &Search { revolutions: 1, impacts: Some(2) }, &Unwatched) else {
             return Ok(());
         };
-        let proved = u32::from(searched.complete[0].known == Known::Proved);
+        let proved = u32::from(searched.complete[0].known == Evidence::Proved);
         SEEN[3].fetch_add(proved, Ordering::Relaxed);
         let Ok(orbits) = search(&case.machine, &Search { revolutions: 1, impacts: Some(2) }) else { return Ok(()) };
         for orbit in orbits.iter().filter(|orbit| matches!(orbit.course, Course::Impacts(_))) {

@@ -7,8 +7,8 @@ use std::ops::ControlFlow;
 
 use approx::assert_relative_eq;
 use corner_impact::cam::{Cam, Side};
-use corner_impact::corner::jump_order::compared::{Compared, Quantity, compare};
-use corner_impact::corner::jump_order::measured::{Sides, gap};
+use corner_impact::corner::jump_order::compared::{Compared, PowerLawQuantity, compare};
+use corner_impact::corner::jump_order::measured::{SideFlights, gap};
 use corner_impact::corner::jump_order::predicted::{self, Hits};
 use corner_impact::corner::jump_order::{Approach, JumpOrderError};
 use corner_impact::corner::map::Uncertainty;
@@ -249,7 +249,7 @@ fn deviations_of_flights_move_their_impact_alike() {
         EXAMPLES.iter().filter(|example| !example.name.contains("sine,") && !example.name.contains("hollows"))
     {
         let (model, cam, approach) = example.build().unwrap();
-        let sides = Sides::new(&model, &cam, &approach).unwrap();
+        let sides = SideFlights::new(&model, &cam, &approach).unwrap();
         let (closing, omega, scales) = (approach.closing_velocity(), approach.angular_velocity, sides.scales());
         let time = scales[0] / closing;
         let reach = time * omega;
@@ -487,11 +487,13 @@ fn errors_of_jumps_are_in_the_units_of_their_coefficients() {
     for example in EXAMPLES.iter() {
         let (model, cam, approach) = example.build().unwrap();
         let compared = compare(&model, &cam, &approach).unwrap();
-        let rows = |quantity: Quantity| compared.rows.iter().find(move |row| row.quantity == quantity);
-        let (Some(of_position), Some(of_period)) = (rows(Quantity::MapOfPosition), rows(Quantity::MapOfPeriod)) else {
+        let rows = |quantity: PowerLawQuantity| compared.rows.iter().find(move |row| row.quantity == quantity);
+        let (Some(of_position), Some(of_period)) =
+            (rows(PowerLawQuantity::MapOfPosition), rows(PowerLawQuantity::MapOfPeriod))
+        else {
             continue;
         };
-        let sides = Sides::new(&model, &cam, &approach).unwrap();
+        let sides = SideFlights::new(&model, &cam, &approach).unwrap();
         for (row, direction, component) in [(of_position, 0, 0), (of_period, 2, 1)] {
             let mut z = Vector3::zeros();
             z[direction] = sides.scales()[direction];
@@ -525,7 +527,7 @@ fn a_flight_without_force_meets_a_slope_when_it_must() {
     let (corner, omega, slope) = (cam.corners()[1], 2.0, 0.5);
     let velocity = omega * slope - 6.0;
     let approach = Approach::new(corner, omega, velocity).unwrap();
-    let sides = Sides::new(&model, &cam, &approach).unwrap();
+    let sides = SideFlights::new(&model, &cam, &approach).unwrap();
     for times in [1.0, -1.0, 0.3] {
         let longer = times * sides.scales()[2];
         let pair = sides.pair(Vector3::new(0.0, 0.0, longer)).unwrap();
@@ -615,7 +617,7 @@ fn a_flight_that_comes_back_under_one_law_is_none() {
         let cam = common::cam(&model);
         let (corner, omega) = (cam.corners()[1], 1.3);
         let approach = Approach::new(corner, omega, omega * slope - 6.0).unwrap();
-        let sides = Sides::new(&model, &cam, &approach).unwrap();
+        let sides = SideFlights::new(&model, &cam, &approach).unwrap();
         assert_relative_eq!(sides.span(), PI / 256.0, max_relative = 1e-14);
         // Lower when the corner passes, by what it falls past the slope until then.
         let lower = 6.0 * early - 0.5 * 190.0 * early * early;
@@ -639,7 +641,7 @@ fn a_jump_that_rounding_hides_has_no_exponent() {
     let corner = cam.corners()[1];
     assert_relative_eq!(corner.jump, -1e-7, max_relative = 1e-6);
     let approach = Approach::new(corner, 1.3, -6.0).unwrap();
-    match Sides::new(&model, &cam, &approach).unwrap().at_corner() {
+    match SideFlights::new(&model, &cam, &approach).unwrap().at_corner() {
         Err(JumpOrderError::Unresolved { resolved, tried, needed }) => assert!(resolved < needed && needed < tried),
         other => panic!("{other:?}"),
     }

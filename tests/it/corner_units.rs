@@ -4,7 +4,7 @@
 //! where no speed has to be searched for, since searches are over a grid in rpm.
 
 use corner_impact::corner::jump_order::Approach;
-use corner_impact::corner::jump_order::measured::{MeasuredLaw, Sides, gap};
+use corner_impact::corner::jump_order::measured::{MeasuredLaw, SideFlights, gap};
 use corner_impact::corner::map::{CornerMap, Route, Uncertainty};
 use corner_impact::corner::range::find_corner_impacts;
 use corner_impact::corner::varied::Varied;
@@ -169,7 +169,7 @@ fn laws_at_a_corner_are_the_same_in_any_units() {
         let (corner, omega) = (cam.corners()[corner], omega / factor(0, -1));
         let before = omega * corner.minus.slope - closing / factor(1, -1);
         let approach = Approach::new(corner, omega, before).unwrap();
-        let sides = Sides::new(&model, &cam, &approach).unwrap();
+        let sides = SideFlights::new(&model, &cam, &approach).unwrap();
         // Exponents are slopes of logarithms, which round otherwise; all else is the same to the last bit.
         let slope = |of: Estimate| [(of.value, 1e-12), (of.error, 1e-2 * of.error + 1e-14)];
         // Position and velocity, against a time or against a part of a deviation.

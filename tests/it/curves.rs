@@ -7,7 +7,7 @@ use std::path::Path;
 use crate::common;
 use corner_impact::cam::Cam;
 use corner_impact::model::Model;
-use corner_impact::orbit::branch::{Bifurcation, Branch, End, Following, Kind};
+use corner_impact::orbit::branch::{Bifurcation, Branch, End, Following, SpecialKind};
 use corner_impact::orbit::{Course, Parameter, Search, search};
 use corner_impact::progress::Unwatched;
 use corner_impact::simulate::{Machine, angular_velocity};
@@ -32,7 +32,7 @@ fn on_branches(model: &Model, rpm: f64, event: Bifurcation) -> Vec<f64> {
         let machine = Machine::new(Cam::new(model).unwrap(), &model.follower, angular_velocity(beside));
         for orbit in search(&machine, &Search { revolutions: 1, impacts: None }).unwrap() {
             let branch = Branch::through(model, beside, &orbit, &following).unwrap();
-            let is_event = |kind: Kind| kind.bifurcation() == Some(event);
+            let is_event = |kind: SpecialKind| kind.bifurcation() == Some(event);
             let points =
                 branch.points.iter().filter(|point| point.special.is_some_and(|special| is_event(special.kind)));
             found.extend(points.map(|point| point.rpm));
@@ -93,7 +93,7 @@ fn of_detachment(model: &Model, rpm: f64, speeds: [f64; 2], name: &str, range: [
     let rests = orbits.iter().find(|orbit| matches!(orbit.course, Course::Sticking(_))).unwrap();
     let following = |parameter, range| Following { parameter, range, longest_step: 0.05, most_points: 400 };
     let branch = Branch::through(model, rpm, rests, &following(Parameter::Speed, speeds)).unwrap();
-    let is_detachment = |kind| kind == Kind::Detachment;
+    let is_detachment = |kind| kind == SpecialKind::Detachment;
     let leaves = branch.points.iter().find(|point| point.special.is_some_and(|it| is_detachment(it.kind))).unwrap();
     let parameter = Parameter::named(model, name).unwrap();
     Branch::of_event(model, leaves, speeds, &following(parameter, range)).unwrap().unwrap()
@@ -111,7 +111,7 @@ fn a_follower_leaves_at_two_places_at_once_where_they_are_alike() {
         let curve = of_detachment(&own, 330.0, [300.0, 400.0], name, range);
         assert_eq!(curve.ends, [End::Range, End::Range]);
         let specials = curve.points.iter().filter_map(|point| Some((point, point.special?)));
-        let places: Vec<_> = specials.filter(|(_, special)| special.kind == Kind::Place).collect();
+        let places: Vec<_> = specials.filter(|(_, special)| special.kind == SpecialKind::Place).collect();
         let [(place, special)] = places[..] else { panic!("{range:?} {places:?}") };
         assert!((0.0..1e-12).contains(&special.residual), "{special:?}");
         assert!(place.value.abs() < 1e-9 && special.bracket[0] <= 1e-12 && -1e-12 <= special.bracket[1], "{special:?}");
@@ -147,7 +147,7 @@ fn a_cam_that_is_its_own_mirror_image_has_one_curve() {
         let curve = of_detachment(&model("osorio-2008"), 110.0, [100.0, 120.0], name, range);
         assert_eq!(curve.ends, [End::Range, End::Range], "{name}");
         let specials: Vec<_> = curve.points.iter().filter_map(|point| point.special).collect();
-        assert!(matches!(specials[..], [special] if special.kind == Kind::Detachment), "{name} {specials:?}");
+        assert!(matches!(specials[..], [special] if special.kind == SpecialKind::Detachment), "{name} {specials:?}");
         let goes_on = curve.points.windows(2).all(|pair| pair[0].value < pair[1].value);
         assert!(goes_on, "{name}");
     }
@@ -169,7 +169,7 @@ fn the_onset_of_resting_goes_on_around_kinks() {
     let kinks: Vec<&_> = curve
         .points
         .iter()
-        .filter(|point| matches!(point.special, Some(it) if matches!(it.kind, Kind::Corner { .. })))
+        .filter(|point| matches!(point.special, Some(it) if matches!(it.kind, SpecialKind::Corner { .. })))
         .collect();
     assert!(kinks.len() >= 10, "{}", kinks.len());
     // Beyond a kink on either side of the model, far from the next.
@@ -191,7 +191,7 @@ fn curves_end_on_each_other() {
         let (hosts, guests): (Vec<_>, Vec<_>) =
             found.curves.iter().partition(|curve| curve.kind.bifurcation() == Some(on));
         let all = hosts.iter().flat_map(|curve| &curve.points);
-        let is_type = |kind| matches!(kind, Kind::Type { .. });
+        let is_type = |kind| matches!(kind, SpecialKind::Type { .. });
         let types: Vec<_> = all.filter(|point| point.special.is_some_and(|special| is_type(special.kind))).collect();
         let mut met = 0;
         for curve in &guests {
@@ -250,7 +250,7 @@ fn a_cusp_of_folds_is_where_its_equations_are_zero() {
         let following = Following { parameter, range: [-180.0, 180.0], longest_step: 0.02, most_points: 2000 };
         let wanted = Search { revolutions: 1, impacts: Some(1) };
         let found = curves(&model, rpm, &wanted, &[Bifurcation::Fold], &following, &Unwatched).unwrap();
-        let is_cusp = |kind| kind == Kind::Cusp;
+        let is_cusp = |kind| kind == SpecialKind::Cusp;
         let points = found.curves.iter().flat_map(|curve| &curve.points);
         let cusps: Vec<_> = points.filter(|point| point.special.is_some_and(|it| is_cusp(it.kind))).collect();
         assert_eq!(cusps.len(), 2, "{restitution}");
@@ -293,7 +293,7 @@ fn a_curve_is_the_same_from_either_end() {
             3 => other.points[last].value *= 1.001,
             4 => other.ends[0] = End::Kink,
             5 => other.ends[1] = End::Kink,
-            6 => other.kind = Kind::Fold,
+            6 => other.kind = SpecialKind::Fold,
             7 => other.points.truncate(1),
             _ => other.points.clear(),
         }
@@ -322,7 +322,8 @@ fn an_orbit_without_impacts_grazes_at_every_speed() {
     ] {
         let wanted = Search { revolutions, impacts };
         let found = curves(&model, [300.0, 301.0], &wanted, &[event], &following, &Unwatched).unwrap().curves;
-        let touches: Vec<_> = found.iter().filter(|it| matches!(it.kind, Kind::Graze { before: 0, .. })).collect();
+        let touches: Vec<_> =
+            found.iter().filter(|it| matches!(it.kind, SpecialKind::Graze { before: 0, .. })).collect();
         assert_eq!(touches.len(), usize::from(is_told), "{revolutions} {impacts:?} {event}");
         for point in touches.iter().flat_map(|curve| &curve.points) {
             assert!((point.value - 0.01).abs() < 1e-12 && (300.0..=301.0).contains(&point.rpm), "{point:?}");

@@ -9,7 +9,7 @@ use corner_impact::border_collision::{LocalMap, classify};
 use corner_impact::corner::map::CornerMap;
 use corner_impact::corner::{self, CornerImpact, SideMap, variational};
 use corner_impact::interval::Interval;
-use corner_impact::known::Known;
+use corner_impact::known::Evidence;
 use corner_impact::model::{Model, Study};
 use corner_impact::progress::Unwatched;
 use corner_impact::section::StroboscopicMap;
@@ -82,9 +82,9 @@ fn what_diverges_at_the_corner_impact_is_dangerous() {
             let divergence = found.divergence.as_ref().unwrap();
             // In oblique coordinates no sector may be left that is certain: then the directions are sampled.
             let is_plain = least > 0.9;
-            assert!(!is_plain || found.known == Known::Computed, "{l} {r}: {found:?}");
+            assert!(!is_plain || found.known == Evidence::Computed, "{l} {r}: {found:?}");
             // Along isolated rays motions may shrink.
-            let is_all = divergence.share == 1.0 && divergence.known == Known::Sampled;
+            let is_all = divergence.share == 1.0 && divergence.known == Evidence::Sampled;
             assert!(is_all || divergence.share > least && divergence.share < 1.0, "{l} {r}: {divergence:?}");
             for speeds in [Speeds::Faster, Speeds::Slower] {
                 assert!(found.at(speeds).any(|attractor| attractor.end.fixed_on().is_some()), "{l} {r}: {found:?}");
@@ -126,7 +126,7 @@ fn attractors_that_meet_at_the_corner_impact_are_told() {
         ([-0.19, -1.83, 0.52, 0.45], 1.0, ["LR", "LLR"]),
     ] {
         let found = danger(&normal_form(case)).unwrap();
-        assert_eq!((found.kind, found.known), (DangerKind::MultipleAttractors, Known::Computed), "{case:?}");
+        assert_eq!((found.kind, found.known), (DangerKind::MultipleAttractors, Evidence::Computed), "{case:?}");
         assert!(found.divergence.is_none(), "{found:?}");
         let at = found.at(Speeds::of(mu).unwrap());
         let seen: Vec<String> = at.filter_map(|attractor| Some(attractor.word()?.to_string())).collect();
@@ -175,15 +175,15 @@ fn a_danger_is_proved_where_all_of_it_is() {
         danger.prove(share, is_attracting);
         (danger.known, danger.divergence.unwrap().known)
     };
-    assert_eq!(with(1.0, true), (Known::Proved, Known::Proved));
-    assert_eq!(with(1.0, false), (Known::Computed, Known::Proved));
-    assert_eq!(with(0.0, true), (Known::Computed, Known::Computed));
+    assert_eq!(with(1.0, true), (Evidence::Proved, Evidence::Proved));
+    assert_eq!(with(1.0, false), (Evidence::Computed, Evidence::Proved));
+    assert_eq!(with(0.0, true), (Evidence::Computed, Evidence::Computed));
     // Beside a stable orbit of several steps that no certificate has.
     let mut both = computed.clone();
     let several = danger(&normal_form([0.19, -1.28, 0.64, 0.87])).unwrap();
     both.attractors.extend(several.at(Speeds::Slower).filter(|attractor| attractor.end.fixed_on().is_none()).cloned());
     both.prove(1.0, true);
-    assert_eq!(both.known, Known::Computed);
+    assert_eq!(both.known, Evidence::Computed);
 }
 
 /// Whether a motion comes back to the fixed point of its side.

@@ -4,7 +4,7 @@ use corner_impact::border_collision::danger::{Danger, DangerKind, Divergence, Lo
 use corner_impact::border_collision::feigin::Speeds;
 use corner_impact::border_collision::{LocalMap, LocalOutcome};
 use corner_impact::corner::SideMap;
-use corner_impact::known::Known;
+use corner_impact::known::Evidence;
 use nalgebra::{Matrix2, RowVector2, Vector2};
 
 use crate::common;
@@ -79,13 +79,13 @@ fn chaos_beside_a_fixed_point_is_an_attractor_of_its_own() {
     assert!(fixed > 10 && parting > 10, "{fixed} {parting}");
     let found = map.danger(&[map.outcome(-1.0)], PERIOD).unwrap();
     // That chaos stays where it is is known by a region; that it is chaos by its exponent.
-    assert_eq!((found.kind, found.known), (DangerKind::MultipleAttractors, Known::Sampled));
+    assert_eq!((found.kind, found.known), (DangerKind::MultipleAttractors, Evidence::Sampled));
     let told =
         |it: &LocalAttractor| (it.end.name(), it.known, it.word().map(ToString::to_string), it.returns.is_some());
     let mut told: Vec<_> = found.at(Speeds::Faster).map(told).collect();
     told.sort_by_key(|it| it.0);
-    assert_eq!(told[0], ("chaotic", Known::Sampled, None, false));
-    assert_eq!(told[1], ("fixed-point", Known::Computed, Some("L".to_owned()), true));
+    assert_eq!(told[0], ("chaotic", Evidence::Sampled, None, false));
+    assert_eq!(told[1], ("fixed-point", Evidence::Computed, Some("L".to_owned()), true));
     assert_eq!(told.len(), 2);
 }
 
@@ -103,7 +103,7 @@ fn the_share_of_directions_that_are_sampled_is_that_of_the_circle() {
             };
             let turned = seen(&plane, Matrix2::new(cos, -sin, sin, cos));
             let found = seen(&turned, Matrix2::new(one, 0.0, 0.0, two)).divergence().unwrap();
-            assert_eq!((found.share, found.known), (40.0 / 64.0, Known::Sampled), "{one} {two}");
+            assert_eq!((found.share, found.known), (40.0 / 64.0, Evidence::Sampled), "{one} {two}");
         }
     }
 }
@@ -115,7 +115,7 @@ fn a_divergence_that_is_slow_is_computed() {
         let side = SideMap { a: Matrix2::new(0.6, -0.8, 0.8, 0.6) * stretch, b: Vector2::new(1.2, -0.4) };
         LocalMap { minus: side, plus: side, border: (RowVector2::new(1.0, 0.3), 0.2) }.divergence()
     };
-    assert_eq!(turned(1.002), Some(Divergence { share: 1.0, known: Known::Computed, follows: None }));
+    assert_eq!(turned(1.002), Some(Divergence { share: 1.0, known: Evidence::Computed, follows: None }));
     assert_eq!((turned(1.0), turned(0.99)), (None, None));
 }
 

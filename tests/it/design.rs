@@ -1,7 +1,7 @@
 //! Is the contact force the one that holds the follower on the cam, and is what must be changed enough and no more than enough?
 
 use corner_impact::cam::Cam;
-use corner_impact::known::Known;
+use corner_impact::known::Evidence;
 use corner_impact::model::Model;
 use corner_impact::progress::Unwatched;
 use corner_impact::show::Paged;
@@ -155,7 +155,7 @@ fn a_load_that_is_low_enough_again_further_on_is_told() {
         let found = design(&model, &Asked { speeds: 2, needs, against, ..Asked::default() }, &Unwatched).unwrap();
         let damping = found.needs.iter().find(|answer| answer.lever == Lever::Damping).unwrap();
         let trade = found.trades.iter().find(|trade| trade.parameter == Lever::Damping).unwrap();
-        assert_eq!((damping.again, trade.known == Known::Sampled), (trade.pairs[0].again, is_again), "{damping:?}");
+        assert_eq!((damping.again, trade.known == Evidence::Sampled), (trade.pairs[0].again, is_again), "{damping:?}");
         assert_eq!(damping.again.is_some(), is_again, "{damping:?}");
         let Some(again) = damping.again else { continue };
         assert!(damping.note.contains("it is so again") && again > 2.0 * trade.pairs[0].other.unwrap(), "{damping:?}");

@@ -6,14 +6,15 @@ use corner_impact::cam::Cam;
 use corner_impact::draw::layout::{Layout, TEXT, Text, WIDTH, width};
 use corner_impact::draw::ticks::{Tick, ticks, unit};
 use corner_impact::draw::{
-    Axis, Cloud, Colour, Data, Density, Figure, Look, Mark, Marker, Panel, Series, Spacing, Stroke, png, svg, thin,
+    Cloud, Colour, Data, Density, Figure, FigureAxis, Look, Mark, Marker, Panel, Series, Stroke, TickSpacing, png, svg,
+    thin,
 };
 use corner_impact::figures::{
-    CornerMark, Run, cam_figure, corner_marks, impact_diagram, phase_plane, strobe_diagram, time_trace,
+    CornerMark, TracedRun, cam_figure, corner_marks, impact_diagram, phase_plane, strobe_diagram, time_trace,
 };
 use corner_impact::flight::State;
 use corner_impact::model::{Model, OSORIO_2008};
-use corner_impact::section::Sample;
+use corner_impact::section::TraceSample;
 use corner_impact::simulate::{Event, EventKind};
 use resvg::tiny_skia::Pixmap;
 use resvg::usvg::{Options, Tree, roxmltree::Document};
@@ -23,8 +24,14 @@ fn series(data: Data) -> Series {
 }
 
 fn figure(data: Data) -> Figure {
-    let panel = Panel { y: Axis::new("up", "m"), height: 0.4, series: vec![series(data)], marks: vec![] };
-    Figure { title: "T".into(), x: Axis::new("across", "s"), marks: vec![], panels: vec![panel], note: String::new() }
+    let panel = Panel { y: FigureAxis::new("up", "m"), height: 0.4, series: vec![series(data)], marks: vec![] };
+    Figure {
+        title: "T".into(),
+        x: FigureAxis::new("across", "s"),
+        marks: vec![],
+        panels: vec![panel],
+        note: String::new(),
+    }
 }
 
 fn line(points: Vec<[f64; 2]>) -> Data {
@@ -88,13 +95,13 @@ fn sweep(speeds: usize, impacts: usize, mut push: impl FnMut(f64, f64)) {
 }
 
 /// Hops and rests by turns, 0.002 revolutions a sample, with impacts after 2 and after 6 tenths of a revolution.
-fn motion() -> Run {
+fn motion() -> TracedRun {
     let sample = |i: i32| {
         let (turned, contact) = (0.3 + f64::from(i) * 0.002 * TAU, (i / 100) % 2 == 1);
         let gap = if contact { 0.0 } else { (f64::from(i % 100) / 100.0 * TAU / 2.0).sin() * 0.02 };
         let lift = 0.4 + 0.1 * turned.sin();
         let velocity = (f64::from(i % 100) / 100.0 * TAU / 2.0).cos();
-        Sample {
+        TraceSample {
             turned,
             cam_angle: turned,
             state: State { position: lift + gap, velocity },
@@ -115,7 +122,7 @@ fn motion() -> Run {
         cam_velocity: 0.0,
         segment: 0,
     };
-    Run { rpm: 60.0, samples: (0..600).map(sample).collect(), events: [0.2, 0.6].map(impact).to_vec() }
+    TracedRun { rpm: 60.0, samples: (0..600).map(sample).collect(), events: [0.2, 0.6].map(impact).to_vec() }
 }
 
 #[test]
@@ -123,7 +130,7 @@ fn ticks_are_round_and_inside() {
     for range in
         [[0.0, 1.0], [-3.7, 12.9], [0.4, 0.5537], [660.0, 750.0], [673.2344, 673.2345], [-2e-7, 5e-7], [0.0, 3e9]]
     {
-        let found = ticks(range, Spacing::Decimal, 8, |_| true);
+        let found = ticks(range, TickSpacing::Decimal, 8, |_| true);
         let at: Vec<f64> = found.ticks.iter().map(|tick| tick.at).collect();
         assert!((3..=8).contains(&at.len()), "{range:?}: {at:?}");
         assert!(at.iter().all(|at| (range[0]..=range[1]).contains(at)), "{range:?}: {at:?}");
@@ -144,7 +151,7 @@ fn ticks_are_round_and_inside() {
 #[test]
 fn angles_are_cut_into_parts_of_a_circle() {
     let steps = |range, most| {
-        let found = ticks(range, Spacing::Degrees, most, |_| true).ticks;
+        let found = ticks(range, TickSpacing::Degrees, most, |_| true).ticks;
         found[1].at - found[0].at
     };
     assert_eq!(steps([0.0, 360.0], 13), 30.0);
@@ -159,10 +166,10 @@ fn angles_are_cut_into_parts_of_a_circle() {
 #[test]
 fn impossible_ranges_have_no_ticks() {
     for range in [[0.0, 0.0], [1.0, 0.0], [f64::NAN, 1.0], [0.0, f64::INFINITY], [-1e308, 1e308]] {
-        assert!(ticks(range, Spacing::Decimal, 8, |_| true).ticks.is_empty(), "{range:?}");
+        assert!(ticks(range, TickSpacing::Decimal, 8, |_| true).ticks.is_empty(), "{range:?}");
     }
     // Labels that never fit end the search.
-    assert!(ticks([0.0, 1.0], Spacing::Degrees, 8, |_| false).ticks.len() <= 1);
+    assert!(ticks([0.0, 1.0], TickSpacing::Degrees, 8, |_| false).ticks.len() <= 1);
     assert_eq!(unit("m", -3), "10⁻³ m");
     assert_eq!(unit("", 12), "10¹²");
     assert_eq!(unit("rpm", 0), "rpm");
@@ -184,8 +191,8 @@ fn no_label_covers_another() {
             };
             let marks: Vec<Mark> = (0..count).map(mark).collect();
             let mut figure = figure(line(vec![[0.0, 0.0], [360.0, 360.0]]));
-            figure.x = Axis::degrees("angle").over([0.0, 360.0]);
-            figure.panels[0].y = Axis::degrees("phase").over([0.0, 360.0]);
+            figure.x = FigureAxis::degrees("angle").over([0.0, 360.0]);
+            figure.panels[0].y = FigureAxis::degrees("phase").over([0.0, 360.0]);
             figure.marks.clone_from(&marks);
             figure.panels[0].marks = marks;
             let layout = Layout::new(&figure, &figure.title, WIDTH);
@@ -307,7 +314,7 @@ fn nothing_to_draw_is_said() {
         assert!(!svg.contains("NaN") && !svg.contains("inf"), "{svg}");
         assert!(png::render(figure.clone(), &Look::default(), 300).is_ok());
     }
-    let empty = Run { rpm: 60.0, samples: vec![], events: vec![] };
+    let empty = TracedRun { rpm: 60.0, samples: vec![], events: vec![] };
     assert_eq!(drawn(&time_trace("", &empty)).matches(">no data<").count(), 2);
     let none = Figure { panels: vec![], ..parabola() };
     assert!(drawn(&none).contains("<svg") && png::render(none.clone(), &Look::default(), 100).is_ok());
@@ -323,7 +330,7 @@ fn wild_data_are_drawn_without_panic() {
         for stroke in [Stroke::Thin, Stroke::Dashed, Stroke::Thick] {
             let mut figure = figure(line(points.clone()));
             figure.x.range = range;
-            figure.panels[0].y = Axis { range, ..Axis::degrees("φ") };
+            figure.panels[0].y = FigureAxis { range, ..FigureAxis::degrees("φ") };
             figure.panels[0].height = if stroke == Stroke::Thin { f64::NAN } else { 0.3 };
             figure.panels[0].series.push(series(Data::Area { points: points.clone(), stroke }));
             figure.panels[0].series.push(series(Data::Points { points: points.clone(), marker: Marker::Below }));

@@ -71,7 +71,7 @@ fn every_link_leads_to_something_that_exists() {
         }
         let is_claim = it.tests.iter().any(|test| test.file.ends_with("ledger.rs"));
         // What is computed or sampled is evaluated somewhere, and something would notice if it were not.
-        assert!(it.code.is_some() || it.known == corner_impact::known::Known::Read, "{name}");
+        assert!(it.code.is_some() || it.known == corner_impact::known::Evidence::Read, "{name}");
         assert!(!it.tests.is_empty(), "{name}");
         // A name that stands for two things stands for the first.
         assert!(

@@ -11,7 +11,9 @@ use corner_impact::cam::Side;
 use corner_impact::cli::{Exit, run};
 use corner_impact::draw::layout::{Layout, WIDTH};
 use corner_impact::draw::{Data, Figure, Look, Series, svg};
-use corner_impact::figures::{Effort, Neighbour, Outline, Plate, Subject, branches_figure, listed, plate, plates};
+use corner_impact::figures::{
+    Effort, FigureContext, Neighbour, Outline, RenderedFigure, branches_figure, listed, plate, plates,
+};
 use corner_impact::flight::State;
 use corner_impact::model::{Model, OSORIO_2008};
 use corner_impact::orbit::Stability;
@@ -28,11 +30,11 @@ const SPRING: f64 = 1430.8 / 1.221;
 const SLACK: f64 = 0.3;
 const RESTITUTION: f64 = 0.8;
 
-fn paper() -> Subject {
-    Subject::new(&Model::parse("osorio-2008.toml", OSORIO_2008).unwrap(), None).unwrap()
+fn paper() -> FigureContext {
+    FigureContext::new(&Model::parse("osorio-2008.toml", OSORIO_2008).unwrap(), None).unwrap()
 }
 
-fn drawn(subject: &Subject, id: &str) -> Figure {
+fn drawn(subject: &FigureContext, id: &str) -> Figure {
     plate(subject, id).unwrap().drawn.unwrap().figure
 }
 
@@ -52,7 +54,7 @@ fn series(figure: &Figure, panel: usize, label: &str) -> Vec<[f64; 2]> {
 }
 
 /// Whether a figure can be read: numbers, or breaks; something to see in each panel; a small file.
-fn check(plate: &Plate) {
+fn check(plate: &RenderedFigure) {
     let figure = &plate.drawn.as_ref().unwrap().figure;
     let (id, layout) = (plate.id, Layout::new(figure, &figure.title, WIDTH));
     for (panel, place) in figure.panels.iter().zip(&layout.panels) {
@@ -157,7 +159,7 @@ fn every_model_has_its_figures_or_a_reason() {
     assert!(files.len() >= 15, "{files:?}");
     files.par_iter().for_each(|file| {
         let model = Model::read(file).unwrap();
-        let mut subject = Subject::new(&model, None).unwrap();
+        let mut subject = FigureContext::new(&model, None).unwrap();
         // Whether there is a figure, and one that can be read, does not depend on how fine the sweeps are.
         subject.slow_effort.speeds = 80;
         subject.fast_effort = Effort { speeds: 60, transient: 100, record: 30 };
@@ -185,7 +187,7 @@ fn other_models_are_shown_at_speeds_in_the_papers_proportions() {
         .replace("rpm_min = 600.0", "rpm_min = 660.0")
         .replace("rpm_max = 760.0", "rpm_max = 836.0");
     assert_ne!(stiffer, OSORIO_2008);
-    let subject = Subject::new(&Model::parse("stiffer.toml", &stiffer).unwrap(), None).unwrap();
+    let subject = FigureContext::new(&Model::parse("stiffer.toml", &stiffer).unwrap(), None).unwrap();
     assert!(!subject.is_paper);
     let slow = subject.shown.slow.unwrap();
     assert_eq!((slow.chattering, slow.range, slow.interrupted), (201.3, [126.5, 220.0], 192.5));

@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 use corner_impact::cam::Cam;
 use corner_impact::model::Model;
 use corner_impact::orbit::branch::{
-    Bifurcation, Border, Branch, BranchPoint, Doubt, End, FirstTouch, Following, GrazeClass, Kind,
+    Bifurcation, Branch, BranchPoint, Doubt, End, FirstTouch, Following, GrazeClass, SpecialKind, UndecidedGraze,
 };
 use corner_impact::orbit::long_run::{Budget, LongRun};
 use corner_impact::orbit::{Course, Parameter, PeriodicOrbit, Search, search};
@@ -49,7 +49,7 @@ fn follow(model: &Model, rpm: f64, orbit: &PeriodicOrbit, parameter: &str, range
 
 fn graze(branch: &Branch) -> (&BranchPoint, FirstTouch) {
     let first = |point: &BranchPoint| match point.special?.kind {
-        Kind::Graze { first, .. } => first,
+        SpecialKind::Graze { first, .. } => first,
         _ => None,
     };
     let mut grazes = branch.points.iter().filter_map(|point| Some((point, first(point)?)));
@@ -79,7 +79,7 @@ fn a_follower_at_rest_is_touched_where_the_cams_top_is_as_high() {
         let (point, first) = graze(&branch);
         assert!((point.value - at).abs() < 1e-12 && first.larger == larger, "{name}: {} {first:?}", point.value);
         let special = point.special.unwrap();
-        assert!(matches!(special.kind, Kind::Graze { before: 0, after: 1, turned: 0.0, .. }), "{special:?}");
+        assert!(matches!(special.kind, SpecialKind::Graze { before: 0, after: 1, turned: 0.0, .. }), "{special:?}");
         assert!(special.residual < 1e-15 && special.bracket[1] - special.bracket[0] < 1e-15, "{special:?}");
         let (mut clear, mut struck) = (0, 0);
         let is_off = |point: &&BranchPoint| point.special.is_none() && (point.value - at).abs() > 1e-12;
@@ -203,7 +203,7 @@ fn a_class_that_is_not_known_has_its_reason() {
         let branch = follow(&model, rpm, &free(&model, rpm), "offset", [-1.02, -0.98]);
         let (point, first) = graze(&branch);
         assert_eq!(first.class, class);
-        assert!(matches!(point.special.unwrap().kind, Kind::Graze { after: 2, .. }));
+        assert!(matches!(point.special.unwrap().kind, SpecialKind::Graze { after: 2, .. }));
         assert!(branch.points.iter().any(|point| point.orbit.impacts().count() == 2), "{:?}", branch.ends);
     }
 }
@@ -308,9 +308,12 @@ fn the_curve_of_a_graze_of_a_follower_at_rest_is_straight() {
         curve
     };
     let curve = found(&wall(3.0, 1.0, -1.02), [10.0, 80.0]);
-    let specials: Vec<(f64, Kind)> = curve.points.iter().filter_map(|it| Some((it.rpm, it.special?.kind))).collect();
-    let [(one, Kind::Class(Border::Eigenvalue(quarter))), (two, Kind::Class(Border::Eigenvalue(thirds)))] =
-        specials[..]
+    let specials: Vec<(f64, SpecialKind)> =
+        curve.points.iter().filter_map(|it| Some((it.rpm, it.special?.kind))).collect();
+    let [
+        (one, SpecialKind::Class(UndecidedGraze::Eigenvalue(quarter))),
+        (two, SpecialKind::Class(UndecidedGraze::Eigenvalue(thirds))),
+    ] = specials[..]
     else {
         panic!("{specials:?}")
     };
@@ -323,7 +326,7 @@ fn the_curve_of_a_graze_of_a_follower_at_rest_is_straight() {
         .points
         .iter()
         .filter_map(|point| match point.special?.kind {
-            Kind::Class(Border::Resonance(passages)) => Some((angle(point.rpm), passages)),
+            SpecialKind::Class(UndecidedGraze::Resonance(passages)) => Some((angle(point.rpm), passages)),
             _ => None,
         })
         .collect();
@@ -530,7 +533,7 @@ fn orbits_at_rest_end_where_there_are_none() {
 /// Of the borders between classes those of the range are told, and no other.
 #[test]
 fn the_curve_of_a_graze_has_the_borders_between_its_speeds() {
-    let found = |model: &Model, rpm: [f64; 2]| -> Vec<(f64, Border)> {
+    let found = |model: &Model, rpm: [f64; 2]| -> Vec<(f64, UndecidedGraze)> {
         let parameter = Parameter::named(model, "offset").unwrap();
         let following = Following { parameter, range: [-1.03, -0.95], longest_step: 0.5, most_points: 100 };
         let wanted = Search { revolutions: 1, impacts: Some(0) };
@@ -540,10 +543,11 @@ fn the_curve_of_a_graze_has_the_borders_between_its_speeds() {
         let regular: Vec<f64> = points.iter().filter(|point| point.special.is_none()).map(|point| point.rpm).collect();
         let wanted = [rpm[0], 0.5 * (rpm[0] + rpm[1]), rpm[1]];
         assert!(regular.len() == 3 && regular.iter().zip(wanted).all(|(one, other)| (one / other - 1.0).abs() < 1e-12));
-        let border = |kind: Kind| if let Kind::Class(border) = kind { border } else { panic!("{kind:?}") };
+        let border =
+            |kind: SpecialKind| if let SpecialKind::Class(border) = kind { border } else { panic!("{kind:?}") };
         points.iter().filter_map(|point| Some((point.rpm, border(point.special?.kind)))).collect()
     };
-    let [quarter, thirds] = [0.25, 2.0 / 3.0].map(|lambda| (rpm_of(3.0, lambda), Border::Eigenvalue(lambda)));
+    let [quarter, thirds] = [0.25, 2.0 / 3.0].map(|lambda| (rpm_of(3.0, lambda), UndecidedGraze::Eigenvalue(lambda)));
     let model = wall(3.0, 1.0, -1.02);
     for (rpm, wanted) in [
         ([0.9 * quarter.0, 1.1 * quarter.0], vec![quarter]),
@@ -570,7 +574,10 @@ fn the_curve_of_a_graze_has_the_borders_between_its_speeds() {
         let found = found(&model, halves.map(at));
         assert_eq!(found.len(), wanted.len(), "{halves:?}: {found:?}");
         for (one, (halves, passages)) in found.iter().zip(wanted) {
-            assert!((one.0 / at(halves) - 1.0).abs() < 1e-12 && one.1 == Border::Resonance(passages), "{found:?}");
+            assert!(
+                (one.0 / at(halves) - 1.0).abs() < 1e-12 && one.1 == UndecidedGraze::Resonance(passages),
+                "{found:?}"
+            );
         }
     }
 }
@@ -592,14 +599,16 @@ fn the_borders_of_a_graze_go_by_passages_and_by_the_followers_time() {
         let mut amplitudes = vec![0.0; tops];
         amplitudes[tops - 1] = 1.0;
         let own = |rpm: f64| rpm / slower / tops as f64;
-        let found = |damping: f64, rpm: [f64; 2]| -> Vec<(f64, Border)> {
+        let found = |damping: f64, rpm: [f64; 2]| -> Vec<(f64, UndecidedGraze)> {
             let model = on_cam(damping / slower, slower.powi(-2), &cosines(-1.02, &amplitudes));
             let [curve] = &touches(&model, "offset", [-1.03, -0.95], rpm.map(own)).curves[..] else { panic!("{tops}") };
-            let border = |kind: Kind| if let Kind::Class(border) = kind { border } else { panic!("{kind:?}") };
+            let border =
+                |kind: SpecialKind| if let SpecialKind::Class(border) = kind { border } else { panic!("{kind:?}") };
             curve.points.iter().filter_map(|point| Some((point.rpm, border(point.special?.kind)))).collect()
         };
-        let oscillating = [(2.5, 2), (7.0 / 3.0, 3), (2.25, 4)].map(|(halves, n)| (at(halves), Border::Resonance(n)));
-        let real = [0.25, 2.0 / 3.0].map(|lambda| (rpm_of(3.0, lambda), Border::Eigenvalue(lambda)));
+        let oscillating =
+            [(2.5, 2), (7.0 / 3.0, 3), (2.25, 4)].map(|(halves, n)| (at(halves), UndecidedGraze::Resonance(n)));
+        let real = [0.25, 2.0 / 3.0].map(|lambda| (rpm_of(3.0, lambda), UndecidedGraze::Eigenvalue(lambda)));
         for (found, wanted) in
             [(found(0.1, [2.6, 2.1].map(at)), &oscillating[..]), (found(3.0, [10.0, 80.0]), &real[..])]
         {
@@ -626,7 +635,7 @@ fn each_touch_in_a_range_has_a_curve_and_no_other() {
             .curves
             .iter()
             .map(|curve| match curve.kind {
-                Kind::Graze { first: Some(first), .. } => (curve.points[0].value, first.larger),
+                SpecialKind::Graze { first: Some(first), .. } => (curve.points[0].value, first.larger),
                 kind => panic!("{kind:?}"),
             })
             .collect();
@@ -653,7 +662,7 @@ fn a_branch_goes_on_at_rest_from_one_touch_to_the_other() {
             .points
             .iter()
             .filter_map(|point| match point.special?.kind {
-                Kind::Graze { first: Some(first), .. } => Some((point.value / size, first.larger)),
+                SpecialKind::Graze { first: Some(first), .. } => Some((point.value / size, first.larger)),
                 _ => None,
             })
             .collect();

@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 
 use approx::assert_abs_diff_eq;
 use corner_impact::cam::Cam;
-use corner_impact::covering::{Frame, HSet, Image, ImpactMap, Strip, Unproved};
+use corner_impact::covering::{HSet, HSetFrame, Image, ImpactMap, Strip, UnprovedFlight};
 use corner_impact::interval::Interval;
 use corner_impact::model::Model;
 use corner_impact::section::{next_impact, trace};
@@ -34,7 +34,7 @@ fn simulated(machine: &Machine, [angle, velocity, omega]: [f64; 3], impacts: u64
 }
 
 /// The image of a box about a centre, in degrees, m/s and rad/s, and what some of its starts come to, corners first.
-type Looked = (Result<Image, Unproved>, Vec<([f64; 3], Option<[f64; 2]>)>);
+type Looked = (Result<Image, UnprovedFlight>, Vec<([f64; 3], Option<[f64; 2]>)>);
 
 fn look(machine: &Machine, centre: [f64; 3], half: [f64; 3], impacts: u64) -> Looked {
     let set = HSet {
@@ -49,7 +49,7 @@ fn look(machine: &Machine, centre: [f64; 3], half: [f64; 3], impacts: u64) -> Lo
     };
     let place = [0, 1, 2].map(|side| Interval::new(centre[side] - half[side], centre[side] + half[side]));
     let strip = Strip { impacts, revolutions: 0, x: [0.0; 2] };
-    let image = Frame::new(&set).image(&ImpactMap::new(machine), &strip, &place);
+    let image = HSetFrame::new(&set).image(&ImpactMap::new(machine), &strip, &place);
     let start = |index: u32| -> [f64; 3] {
         std::array::from_fn(|side| match index {
             0..8 => [place[side].low(), place[side].high()][usize::from(index & (1 << side) != 0)],

@@ -7,7 +7,7 @@ use approx::{assert_abs_diff_eq, assert_relative_eq};
 use corner_impact::flight::{Flight, State};
 use corner_impact::model::Model;
 use corner_impact::simulate::{
-    Event, EventKind, Goal, Machine, Met, Motion, Observer, SimulateError, Work, angular_velocity,
+    Event, EventKind, Goal, ImpactTally, Machine, Motion, Observer, SimulateError, Work, angular_velocity,
 };
 use corner_impact::tolerance;
 
@@ -304,7 +304,7 @@ fn rounding_of_a_weight_that_is_carried_lifts_nothing() {
 /// Of two stretches of a run there are as many impacts as in both, and the fastest is that of either.
 #[test]
 fn impacts_of_two_stretches_are_those_of_both() {
-    let [one, two] = [(3, 2.0), (4, 1.0)].map(|(impacts, impact_speed)| Met { impacts, impact_speed });
-    assert_eq!(one.with(two), Met { impacts: 7, impact_speed: 2.0 });
-    assert_eq!(two.with(one), Met { impacts: 7, impact_speed: 2.0 });
+    let [one, two] = [(3, 2.0), (4, 1.0)].map(|(impacts, impact_speed)| ImpactTally { impacts, impact_speed });
+    assert_eq!(one.with(two), ImpactTally { impacts: 7, impact_speed: 2.0 });
+    assert_eq!(two.with(one), ImpactTally { impacts: 7, impact_speed: 2.0 });
 }

@@ -7,7 +7,7 @@ use corner_impact::model::Model;
 use corner_impact::orbit::long_run::{Budget, Kind, LongRun, Recorded, StickingOrbit};
 use corner_impact::orbit::runs::{LongRuns, RunOutcome};
 use corner_impact::progress::Unwatched;
-use corner_impact::simulate::{Machine, Met, Motion, SimulateError};
+use corner_impact::simulate::{ImpactTally, Machine, Motion, SimulateError};
 use corner_impact::study::attractors::{Cause, Resolution};
 use corner_impact::study::design::contact::Separation;
 use corner_impact::study::speeds::{Off, SpeedSurvey};
@@ -23,7 +23,14 @@ use crate::study_numbers::resolution;
 fn record(halves: [f64; 2], impacts: u64) -> Recorded {
     let value = (halves[0] + halves[1]) / 100.0;
     let growth = Estimate { value, error: 0.01 * value, error_is: ErrorIs::Standard };
-    Recorded { growth, halves, met: Met { impacts, impact_speed: 1.0 }, revolutions: 100, runs: 1, rested: false }
+    Recorded {
+        growth,
+        halves,
+        met: ImpactTally { impacts, impact_speed: 1.0 },
+        revolutions: 100,
+        runs: 1,
+        rested: false,
+    }
 }
 
 fn kind(halves: [f64; 2]) -> Kind {

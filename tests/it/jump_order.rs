@@ -8,8 +8,8 @@ use std::path::Path;
 
 use crate::common;
 use corner_impact::cam::Corner;
-use corner_impact::corner::jump_order::compared::{Compared, Quantity, compare};
-use corner_impact::corner::jump_order::measured::{Sides, gap};
+use corner_impact::corner::jump_order::compared::{Compared, PowerLawQuantity, compare};
+use corner_impact::corner::jump_order::measured::{SideFlights, gap};
 use corner_impact::corner::jump_order::predicted::{self, Hits};
 use corner_impact::corner::jump_order::{Approach, JumpOrderError};
 use corner_impact::corner::{closed_form, locate};
@@ -37,8 +37,8 @@ fn exponents_and_coefficients_are_those_of_the_formulas() {
         assert!(compared.agrees(), "{}: {compared:#?}", example.name);
         for row in &compared.rows {
             let expected = match row.quantity {
-                Quantity::Position if order == 1 => 2,
-                Quantity::Position => order,
+                PowerLawQuantity::Position if order == 1 => 2,
+                PowerLawQuantity::Position => order,
                 _ => order - 1,
             };
             assert_eq!(row.predicted.exponent, expected, "{}: {row:?}", example.name);
@@ -94,7 +94,7 @@ fn order_two_is_the_rank_one_jump_of_the_closed_form() {
 fn order_three_jumps_in_the_second_derivative_only() {
     for example in EXAMPLES.iter().filter(|example| example.name.starts_with("jerk")) {
         let (model, cam, approach) = example.build().unwrap();
-        let sides = Sides::new(&model, &cam, &approach).unwrap();
+        let sides = SideFlights::new(&model, &cam, &approach).unwrap();
         let over = predicted::over(&model.follower, &approach, sides.span(), sides.span());
         let scales = sides.scales();
         let parts = Matrix3::new(0.6, -0.4, 0.5, -0.3, 0.2, 0.7, 0.8, 0.3, -0.2);
@@ -180,13 +180,13 @@ fn what_cannot_be_compared_says_why() {
 const PAGE: &str = "docs/jump-order.md";
 const MARKS: [&str; 2] = ["<!-- measured: begin -->\n", "<!-- measured: end -->\n"];
 
-fn words(quantity: Quantity) -> &'static str {
+fn words(quantity: PowerLawQuantity) -> &'static str {
     match quantity {
-        Quantity::Gap => "velocity, cam as it is",
-        Quantity::Velocity => "velocity at the corner",
-        Quantity::Position => "position at the corner",
-        Quantity::MapOfPosition => "position after the map, by dx1",
-        Quantity::MapOfPeriod => "velocity after the map, by dT",
+        PowerLawQuantity::Gap => "velocity, cam as it is",
+        PowerLawQuantity::Velocity => "velocity at the corner",
+        PowerLawQuantity::Position => "position at the corner",
+        PowerLawQuantity::MapOfPosition => "position after the map, by dx1",
+        PowerLawQuantity::MapOfPeriod => "velocity after the map, by dT",
     }
 }
 

@@ -304,3 +304,20 @@ fn mutants_are_looked_for_where_there_is_something() {
         }
     }
 }
+
+/// Two public types with one name are two ideas with one word.
+#[test]
+fn no_public_type_name_occurs_twice() {
+    let mut seen = BTreeMap::new();
+    for file in rust_files(&Path::new(crate::common::ROOT).join("src")) {
+        for line in std::fs::read_to_string(&file).unwrap().lines() {
+            let words: Vec<&str> = line.trim_start().split(' ').take(3).collect();
+            let ["pub", "struct" | "enum" | "type" | "trait" | "union", name] = words[..] else { continue };
+            let name: String = name.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
+            if let Some(other) = seen.insert(name.clone(), file.clone()) {
+                panic!("{name} in {} and in {}", other.display(), file.display());
+            }
+        }
+    }
+    assert!(seen.len() > 300, "{} types seen", seen.len());
+}

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::sync::OnceLock;
 
 use crate::common;
-use corner_impact::known::Known;
+use corner_impact::known::Evidence;
 use corner_impact::model::Model;
 use corner_impact::pages;
 use corner_impact::paper::checks::{CHECKS, Check, find};
@@ -104,11 +104,11 @@ fn every_verdict_says_how_it_is_known() {
     let claims = &papers().claims;
     for held in claims {
         let check = find(&held.id).unwrap();
-        assert_eq!(matches!(check, Check::Read(..)), held.known == Known::Read, "{held:#?}");
+        assert_eq!(matches!(check, Check::Read(..)), held.known == Evidence::Read, "{held:#?}");
         let proof = matches!(check, Check::Equation(_) | Check::Proofs(..));
-        assert_eq!(proof, held.known == Known::Proved, "{held:#?}");
+        assert_eq!(proof, held.known == Evidence::Proved, "{held:#?}");
     }
-    let words: BTreeSet<Known> = claims.iter().map(|held| held.known).collect();
+    let words: BTreeSet<Evidence> = claims.iter().map(|held| held.known).collect();
     assert_eq!(words.len(), 4, "{words:?}");
 }
 

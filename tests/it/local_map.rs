@@ -5,9 +5,9 @@ use std::path::Path;
 
 use crate::common;
 use approx::assert_relative_eq;
-use corner_impact::border_collision::local_map::PeriodicOrbit;
-use corner_impact::border_collision::long_run::{End, Escape};
-use corner_impact::border_collision::validity::{Compared, Ends, ranges};
+use corner_impact::border_collision::local_map::MapOrbit;
+use corner_impact::border_collision::long_run::{EscapeReason, LocalLongRun};
+use corner_impact::border_collision::validity::{ComparedMotion, Ends, ranges};
 use corner_impact::border_collision::word::Word;
 use corner_impact::border_collision::{Degenerate, LocalMap, Refusal};
 use corner_impact::cam::Side;
@@ -25,9 +25,9 @@ use nalgebra::{Matrix2, Vector2};
 use serde_json::json;
 
 /// What a motion from 0 does, in a word.
-fn kind(end: &End) -> String {
+fn kind(end: &LocalLongRun) -> String {
     match end {
-        End::Periodic(orbit) => orbit.word.to_string(),
+        LocalLongRun::Periodic(orbit) => orbit.word.to_string(),
         other => other.name().into(),
     }
 }
@@ -36,9 +36,9 @@ fn word(text: &str) -> Word {
     Word::read(text).unwrap()
 }
 
-fn exponent(end: &End) -> Estimate {
+fn exponent(end: &LocalLongRun) -> Estimate {
     match end {
-        End::Chaotic(chaos) => chaos.exponent,
+        LocalLongRun::Chaotic(chaos) => chaos.exponent,
         other => panic!("{other:?}"),
     }
 }
@@ -54,14 +54,14 @@ fn the_papers_local_map_has_nothing_below_its_speed() {
     let found = paper();
     let [faster, slower, at] = found.outcomes.as_slice() else { panic!("{:?}", found.outcomes) };
     assert_eq!((faster.mu, slower.mu, at.mu), (-1.0, 1.0, 0.0));
-    let words = |orbits: &[PeriodicOrbit]| orbits.iter().map(|orbit| orbit.word.to_string()).collect::<Vec<_>>();
+    let words = |orbits: &[MapOrbit]| orbits.iter().map(|orbit| orbit.word.to_string()).collect::<Vec<_>>();
     assert_eq!(words(&faster.orbits), ["L", "R"]);
     assert_eq!(faster.fates[0].end.fixed_on(), Some(Side::Plus));
     assert!(slower.orbits.is_empty() && slower.fixed_points.len() == 2);
     for outcome in [slower, at] {
         match &outcome.fates[..] {
             [one] => match &one.end {
-                End::Escapes(Escape::Follows { word, multiplier }) => {
+                LocalLongRun::Escapes(EscapeReason::Follows { word, multiplier }) => {
                     assert_eq!(word.to_string(), "L");
                     assert_relative_eq!(*multiplier, 1.00514740546535501, max_relative = 1e-12);
                 }
@@ -88,10 +88,10 @@ fn the_local_map_is_a_tenth_off_where_its_range_ends() {
     let compared: Vec<_> =
         found.ranges.iter().filter(|range| range.order == 1).map(|range| (range.compared, range.sign)).collect();
     let expected = [
-        (Compared::OneRevolution, -1.0),
-        (Compared::FixedPointMinus, -1.0),
-        (Compared::FixedPointPlus, -1.0),
-        (Compared::OneRevolution, 1.0),
+        (ComparedMotion::OneRevolution, -1.0),
+        (ComparedMotion::FixedPointMinus, -1.0),
+        (ComparedMotion::FixedPointPlus, -1.0),
+        (ComparedMotion::OneRevolution, 1.0),
     ];
     assert_eq!(compared, expected);
     for range in found.ranges.iter().filter(|range| range.order == 1) {
@@ -102,20 +102,20 @@ fn the_local_map_is_a_tenth_off_where_its_range_ends() {
             let mut state = at.state;
             let predicted = match range.compared {
                 // Faster, the corner passes before the follower is there.
-                Compared::OneRevolution => {
+                ComparedMotion::OneRevolution => {
                     state = section.apply(state).unwrap().state;
                     let side = if dt < 0.0 { &map.plus } else { &map.minus };
                     side.b * dt
                 }
                 // The stable one by running to it.
-                Compared::FixedPointPlus => {
+                ComparedMotion::FixedPointPlus => {
                     for _ in 0..1000 {
                         state = section.apply(state).unwrap().state;
                     }
                     (Matrix2::identity() - map.plus.a).try_inverse().unwrap() * map.plus.b * dt
                 }
                 // The unstable one by what it does: it comes back.
-                Compared::FixedPointMinus => {
+                ComparedMotion::FixedPointMinus => {
                     let predicted = (Matrix2::identity() - map.minus.a).try_inverse().unwrap() * map.minus.b * dt;
                     state.position += predicted[0];
                     state.velocity += predicted[1];
@@ -256,8 +256,9 @@ fn another_motion_ends_the_range_at_once() {
         let mut at = found.at.clone();
         at.state = State { position, velocity: 0.0 };
         let curved = found.second_order.unwrap();
-        for range in
-            ranges(&model, &cam, &at, &map, &curved).iter().filter(|range| range.compared == Compared::OneRevolution)
+        for range in ranges(&model, &cam, &at, &map, &curved)
+            .iter()
+            .filter(|range| range.compared == ComparedMotion::OneRevolution)
         {
             assert_eq!(
                 (range.ends, range.period_change, range.difference),

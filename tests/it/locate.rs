@@ -8,7 +8,7 @@ use corner_impact::corner::Way;
 use corner_impact::corner::range::{self, RangeError, Recaptured};
 use corner_impact::model::{Model, Study};
 use corner_impact::progress::Unwatched;
-use corner_impact::study::locate::{Happens, LocateError, Located, LocatedImpact};
+use corner_impact::study::locate::{Happens, LocateRangeError, Located, LocatedImpact};
 use serde_json::Value;
 
 const MODEL: &str = concat!(env!("PROJECT"), "/models/osorio-2008.toml");
@@ -400,7 +400,7 @@ fn bad_ranges_are_refused() {
     {
         let range = Study { rpm_min, rpm_max };
         let found = corner_impact::study::locate::locate(&common::osorio(), range, 1, &Unwatched);
-        assert!(matches!(found, Err(LocateError::Range(RangeError::NoRange { .. }))), "{rpm_min} {rpm_max}");
+        assert!(matches!(found, Err(LocateRangeError::Range(RangeError::NoRange { .. }))), "{rpm_min} {rpm_max}");
     }
 }
 

@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 use approx::assert_abs_diff_eq;
 use corner_impact::cam::{Cam, Corner, Law, Segment, Side, apart};
 use corner_impact::figures::corner_marks;
-use corner_impact::measured::Likely;
+use corner_impact::measured::PlausibleCams;
 use corner_impact::model::{Model, Study};
 use corner_impact::orbit::{PeriodicOrbit, Search};
 use corner_impact::progress::Unwatched;
@@ -15,7 +15,7 @@ use corner_impact::study::design::contact::{Contact, Separation};
 use corner_impact::study::design::needs::Answer;
 use corner_impact::study::design::{Asked, design, known};
 use corner_impact::study::locate::locate;
-use corner_impact::study::orbit::{Wanted, orbits};
+use corner_impact::study::orbit::{OrbitQuery, orbits};
 use corner_impact::study::speeds::SpeedSurvey;
 use corner_impact::study::verify::{External, Verification, verify};
 use serde_json::{Value, json};
@@ -191,7 +191,7 @@ fn first(model: &Model, cam: &Cam) -> f64 {
 fn separation(cam: Value) -> (f64, f64) {
     let model = machine(cam).unwrap();
     let found = first(&model, &Cam::new(&model).unwrap());
-    let likely = Likely::of(&model).unwrap().unwrap();
+    let likely = PlausibleCams::of(&model).unwrap().unwrap();
     let [error] = likely.error([found], |model, cam| Some([first(model, cam)])).unwrap();
     (found, error)
 }
@@ -214,7 +214,7 @@ fn separation_is_known_to_within_what_is_said() {
         let angle = |model: &Model| {
             let cam = Cam::new(model).unwrap();
             let separation = Contact::new(&cam, model.follower).separation();
-            let found = known(separation, Likely::of(model).unwrap().as_ref());
+            let found = known(separation, PlausibleCams::of(model).unwrap().as_ref());
             let Separation::At { cam_angle, angle_error, .. } = found else { panic!("{motion}: {found:?}") };
             (cam_angle, angle_error)
         };
@@ -252,7 +252,7 @@ fn corners_and_dwells_are_found() {
     let measured = |motion: &str, span: f64, places: i32, more: &Value| {
         let cam = Cam::new(&machine(program(motion, span, 13.71, 40.3)).unwrap()).unwrap();
         let model = machine(smoothing(&rounded(&cam, places), more)).unwrap();
-        (Likely::of(&model).unwrap().unwrap().measured, Cam::new(&model).unwrap())
+        (PlausibleCams::of(&model).unwrap().unwrap().measured, Cam::new(&model).unwrap())
     };
     // Harmonic motion begins and ends with an acceleration.
     let (told, cam) = measured("harmonic", 63.689, 6, &json!({}));
@@ -286,7 +286,7 @@ fn corners_and_dwells_are_found() {
     // A slow cam's top is no dwell.
     let rows: Vec<(f64, f64)> =
         (0..360).map(|k| (f64::from(k), (500.0 * (1.0 - f64::from(k).to_radians().cos())).round() / 100.0)).collect();
-    let told = Likely::of(&machine(smoothing(&rows, &json!({}))).unwrap()).unwrap().unwrap().measured;
+    let told = PlausibleCams::of(&machine(smoothing(&rows, &json!({}))).unwrap()).unwrap().unwrap().measured;
     assert!(told.corners_deg.is_empty() && told.dwells_deg.is_empty(), "{told:?}");
     assert_eq!((told.step_m, told.is_rounded()), (Some(0.01), true));
     // What is given is taken, and nothing else.
@@ -366,7 +366,7 @@ fn what_rows_become_is_what_it_was() {
         let lifts = list((0..9).map(lift).collect());
         became += &format!("{name}\n  corners: {corners}\n  dwells: {dwells}\n  lifts, 1e-6: {lifts}\n");
         if name.ends_with("noisy") {
-            let told = Likely::of(&model).unwrap().unwrap().measured;
+            let told = PlausibleCams::of(&model).unwrap().unwrap().measured;
             let corners = list(told.corners_deg.iter().map(|corner| format!("{corner:.4}")).collect());
             became += &format!(
                 "  noise: {:.7e}, at most {:.7e} from a row\n  corners: {corners}\n  curvature: {:.7e} ± {:.4e}\n",
@@ -433,7 +433,7 @@ fn real_files() {
         );
         std::fs::write(&file, text).unwrap();
         let model = Model::read(&file).map_err(|error| error.to_string())?;
-        let reading = Likely::of(&model).unwrap().unwrap().measured.reading;
+        let reading = PlausibleCams::of(&model).unwrap().unwrap().measured.reading;
         Ok::<_, String>((Cam::new(&model).unwrap(), serde_json::to_value(reading).unwrap()))
     };
     let read = |text: &str, more: &str, length: &str| read_bytes(text.as_bytes(), more, length);
@@ -634,14 +634,14 @@ fn orbits_of_a_measured_cam_are_known_to_within_what_is_said() {
     let mut compared = 0;
     for rpm in [3500.0, 8000.0, 12000.0] {
         let find =
-            |model: &Model| orbits(model, rpm, Wanted::All(Search { revolutions: 1, impacts: None }), &Unwatched);
+            |model: &Model| orbits(model, rpm, OrbitQuery::All(Search { revolutions: 1, impacts: None }), &Unwatched);
         let exact = find(&truth).unwrap();
         assert!(exact.measured.is_none() && exact.errors.is_empty());
         for spline in ["smoothing", "quintic"] {
             let mut rows = smoothing(&rounded(&cam, 4), &json!({}));
             rows["spline"] = json!(spline);
             let model = machine(rows).unwrap();
-            let likely = Likely::of(&model).unwrap().unwrap();
+            let likely = PlausibleCams::of(&model).unwrap().unwrap();
             let found = find(&model).unwrap();
             assert_eq!(found.errors.len(), found.orbits.len());
             assert!(found.errors.iter().any(Option::is_some), "{spline} at {rpm}: {found:?}");
@@ -653,7 +653,7 @@ fn orbits_of_a_measured_cam_are_known_to_within_what_is_said() {
                     .iter()
                     .filter(|_| spline == "smoothing" && orbit.events.len() == orbit.impacts().count())
                 {
-                    let there = orbits(model, rpm, Wanted::Near(orbit.state, 1), &Unwatched).unwrap();
+                    let there = orbits(model, rpm, OrbitQuery::Near(orbit.state, 1), &Unwatched).unwrap();
                     for other in &there.orbits {
                         for (one, two) in other.multipliers().into_iter().zip(orbit.multipliers()) {
                             assert!(
@@ -923,7 +923,7 @@ fn what_is_found_does_not_hang_on_the_unit() {
 #[test]
 fn a_slip_is_larger_than_what_the_cam_bends() {
     let strays = |rows: &[(f64, f64)]| {
-        Likely::of(&machine(smoothing(rows, &json!({}))).unwrap()).unwrap().unwrap().measured.strays
+        PlausibleCams::of(&machine(smoothing(rows, &json!({}))).unwrap()).unwrap().unwrap().measured.strays
     };
     for motion in ["harmonic", "poly345"] {
         let cam = Cam::new(&machine(program(motion, 63.7, 13.71, 40.3)).unwrap()).unwrap();
@@ -948,7 +948,7 @@ fn a_slip_in_one_row_is_told() {
     let strays = |rows: &[(f64, f64)], spline: &str| {
         let mut cam = smoothing(rows, &json!({}));
         cam["spline"] = json!(spline);
-        Likely::of(&machine(cam).unwrap()).unwrap().unwrap().measured.strays
+        PlausibleCams::of(&machine(cam).unwrap()).unwrap().unwrap().measured.strays
     };
     for motion in ["cycloidal", "poly345", "modified-trapezoid", "harmonic"] {
         let cam = Cam::new(&machine(program(motion, 63.7, 13.71, 40.3)).unwrap()).unwrap();
@@ -1246,7 +1246,7 @@ fn a_spline_through_rough_rows_is_never_refused() {
         for spline in ["cubic", "quintic"] {
             let cam = json!({ "law": "table", "spline": spline, "unit": "m", "rows": rows });
             let model = machine(cam).unwrap_or_else(|why| panic!("{why}: {rows:?}"));
-            let likely = Likely::of(&model).unwrap_or_else(|why| panic!("{why}: {rows:?}"));
+            let likely = PlausibleCams::of(&model).unwrap_or_else(|why| panic!("{why}: {rows:?}"));
             assert_eq!(likely.is_some(), rows.len() >= 12);
             let Some(likely) = likely else { continue };
             assert_eq!(likely.measured.noise_unknown.is_some(), likely.measured.noise_m.is_nan(), "{rows:?}");
@@ -1263,7 +1263,7 @@ fn a_noise_that_is_unknown_is_said_to_be() {
         (0..16).map(|row| [22.5 * f64::from(row), 0.04 + 0.001 * f64::from(row % 5)]).collect();
     rows[7][0] = rows[6][0] + 1e-9;
     let model = machine(json!({ "law": "table", "spline": "cubic", "unit": "m", "rows": rows })).unwrap();
-    let measured = Likely::of(&model).unwrap().unwrap().measured;
+    let measured = PlausibleCams::of(&model).unwrap().unwrap().measured;
     let why = measured.noise_unknown.clone().unwrap();
     assert!(why.contains("for a spline near them") && measured.noise_m.is_nan() && !measured.is_noisy, "{measured:?}");
     assert!(measured.largest_curvature > 0.0 && measured.curvature_error.is_nan());

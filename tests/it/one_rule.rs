@@ -14,7 +14,7 @@ use corner_impact::study::basins::{SectionStarts, States};
 use corner_impact::study::chart::Chart;
 use corner_impact::study::design::loads::Loads;
 use corner_impact::study::diagram::one_row;
-use corner_impact::study::simulate::{Simulation, Until, Wanted};
+use corner_impact::study::simulate::{RunRequest, Simulation, Until};
 use corner_impact::study::survey::{Axis, Placed, Sample, Start, Survey, Values, growth, long_run};
 use serde_json::Value;
 
@@ -82,7 +82,8 @@ fn answers((name, rpm, state): Case, surveyed: bool) -> Vec<(&'static str, Told)
     let states = SectionStarts::Given(States { cam_angle: 0.0, states: vec![state] });
     let basins = states.basins(&machine, BUDGET, Some(1), &Unwatched).unwrap();
     let loads = Loads::among(&model, &machine, Some(&[start]), BUDGET).unwrap().1;
-    let wanted = Wanted { until: Until::Revolutions(1), events: false, strobe: None, drawn: 0, long_run: Some(BUDGET) };
+    let wanted =
+        RunRequest { until: Until::Revolutions(1), events: false, strobe: None, drawn: 0, long_run: Some(BUDGET) };
     let run = Simulation::new(&model, rpm, start).unwrap().run::<StudyError>(wanted, &Unwatched, |_| Ok(())).unwrap();
     let grown = growth(&machine, motion, BUDGET).unwrap();
     let mut all = vec![

@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 use corner_impact::cam::Cam;
 use corner_impact::flight::State;
 use corner_impact::model::Model;
-use corner_impact::orbit::branch::{Branch, BranchPoint, End, Following, Kind};
+use corner_impact::orbit::branch::{Branch, BranchPoint, End, Following, SpecialKind};
 use corner_impact::orbit::{Eigenvalue, Parameter, PeriodicOrbit, Search, Stability, near, search};
 use corner_impact::simulate::{Machine, angular_velocity};
 use serde_json::Value;
@@ -132,14 +132,14 @@ fn branches(model: &Model, rpm: f64, case: &Value, parameter: &str, range: [f64;
 }
 
 /// Among the orbits of one impact: the branch may go on with more.
-fn all_of(branch: &Branch, is: impl Fn(&Kind) -> bool) -> Vec<&BranchPoint> {
+fn all_of(branch: &Branch, is: impl Fn(&SpecialKind) -> bool) -> Vec<&BranchPoint> {
     let one_impact = branch.points.iter().filter(|point| point.orbit.impacts().count() == 1);
     one_impact.filter(|point| point.special.is_some_and(|special| is(&special.kind))).collect()
 }
 
 /// The one point of its kind, with its status: between the ends of its bracket, next to nothing left.
 #[track_caller]
-fn the_one(branch: &Branch, is: impl Fn(&Kind) -> bool, derived: f64) -> &BranchPoint {
+fn the_one(branch: &Branch, is: impl Fn(&SpecialKind) -> bool, derived: f64) -> &BranchPoint {
     let points = all_of(branch, is);
     let kinds: Vec<_> = branch.points.iter().filter_map(|point| Some((point.value, point.special?))).collect();
     assert_eq!(points.len(), 1, "{derived} among {kinds:#?}, ends {:?}", branch.ends);
@@ -147,7 +147,7 @@ fn the_one(branch: &Branch, is: impl Fn(&Kind) -> bool, derived: f64) -> &Branch
     near(point.value, derived, derived.abs(), special.kind.name());
     assert!(special.residual <= 1e-9, "{special:?}");
     let [low, high] = special.bracket;
-    if [Kind::Fold, Kind::Flip].contains(&special.kind) {
+    if [SpecialKind::Fold, SpecialKind::Flip].contains(&special.kind) {
         assert_eq!(point.orbit.judgement.stability, Stability::Neutral, "{point:?}");
     }
     let rounding = DIGITS * derived.abs();
@@ -164,18 +164,22 @@ fn the_oscillators_branch_has_its_graze_its_fold_and_its_flip() {
         let (fold, flip, graze) = (number(&case["fold"]), number(&case["flip"]), number(&case["graze"]));
         let range = [1.5 * fold, flip.max(graze) + 0.05 * fold.abs()];
         for branch in branches(&model, rpm, &case, "offset", range) {
-            let at_fold = the_one(&branch, |kind| *kind == Kind::Fold, fold);
+            let at_fold = the_one(&branch, |kind| *kind == SpecialKind::Fold, fold);
             assert!(at_fold.orbit.multipliers().iter().any(|one| (one.re - 1.0).abs() < 1e-6));
-            let at_flip = the_one(&branch, |kind| *kind == Kind::Flip, flip);
+            let at_flip = the_one(&branch, |kind| *kind == SpecialKind::Flip, flip);
             assert!(at_flip.orbit.multipliers().iter().any(|one| (one.re + 1.0).abs() < 1e-9));
             // Its one impact becomes a touch, and the follower at rest goes on to the end of the range.
-            let is_its_own = |kind: &Kind| matches!(kind, Kind::Graze { before, after, .. } if before.min(after) == &0);
+            let is_its_own = |kind: &SpecialKind| matches!(kind, SpecialKind::Graze { before, after, .. } if before.min(after) == &0);
             let points = branch.points.iter().filter(|point| point.special.is_some_and(|at| is_its_own(&at.kind)));
             let [at] = points.collect::<Vec<_>>()[..] else { panic!("{:?}", branch.ends) };
             near(at.value, graze, graze.abs(), "graze");
             assert!(branch.ends.contains(&End::Range), "{:?}", branch.ends);
             assert!(branch.points.iter().any(|point| point.special.is_none() && point.orbit.impacts().count() == 0));
-            the_one(&branch, |kind| matches!(kind, Kind::Graze { before: 1, after: 2, .. }), number(&case["touch"]));
+            the_one(
+                &branch,
+                |kind| matches!(kind, SpecialKind::Graze { before: 1, after: 2, .. }),
+                number(&case["touch"]),
+            );
         }
     }
 }
@@ -187,12 +191,12 @@ fn the_balls_branch_has_its_fold_and_its_flip() {
         let (model, rpm) = table(&case);
         let (fold, flip) = (number(&case["fold_rpm"]), number(&case["flip_rpm"]));
         for branch in branches(&model, rpm, &case, "rpm", [0.9 * fold, 1.05 * flip]) {
-            the_one(&branch, |kind| *kind == Kind::Fold, fold);
-            the_one(&branch, |kind| *kind == Kind::Flip, flip);
+            the_one(&branch, |kind| *kind == SpecialKind::Fold, fold);
+            the_one(&branch, |kind| *kind == SpecialKind::Flip, flip);
         }
         let (fold, given) = (number(&case["fold_restitution"]), number(&case["restitution"]));
         for branch in branches(&model, rpm, &case, "restitution", [0.9 * fold, 0.5 + 0.5 * given]) {
-            the_one(&branch, |kind| *kind == Kind::Fold, fold);
+            the_one(&branch, |kind| *kind == SpecialKind::Fold, fold);
         }
     }
 }

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use corner_impact::cam::Cam;
 use corner_impact::model::Model;
-use corner_impact::orbit::branch::{Branch, BranchPoint, End, Following, Kind};
+use corner_impact::orbit::branch::{Branch, BranchPoint, End, Following, SpecialKind};
 use corner_impact::orbit::long_run::{Budget, LongRun};
 use corner_impact::orbit::runs::LongRuns;
 use corner_impact::orbit::{Course, Parameter, PeriodicOrbit, Search, search, search_all};
@@ -72,18 +72,18 @@ pub fn orbit(orbit: &PeriodicOrbit) -> String {
     )
 }
 
-fn special(kind: Kind, residual: f64) -> String {
+fn special(kind: SpecialKind, residual: f64) -> String {
     match kind {
         // How long it rests goes to 0 there.
-        Kind::Chatter => {
+        SpecialKind::Chatter => {
             assert!(0.0 < residual && residual < 1e-5, "{residual}");
             "chatter".into()
         }
-        Kind::Corner { impact, segment, jump_order } => {
+        SpecialKind::Corner { impact, segment, jump_order } => {
             format!("corner of impact {impact}, segment {segment}, order {jump_order}")
         }
-        Kind::Graze { before, after, turned, .. } => format!("graze from {before} to {after} at {turned:.5}"),
-        Kind::Type { after_corner, multiplier } => format!("type {after_corner:?} {multiplier}"),
+        SpecialKind::Graze { before, after, turned, .. } => format!("graze from {before} to {after} at {turned:.5}"),
+        SpecialKind::Type { after_corner, multiplier } => format!("type {after_corner:?} {multiplier}"),
         other => other.name().into(),
     }
 }
@@ -113,7 +113,7 @@ fn branch(branch: &Branch, span: f64) -> String {
     for (index, at) in branch.points.iter().enumerate() {
         if let Some(it) = at.special {
             let [low, high] = it.bracket;
-            let is_seen = it.kind == Kind::Branching || matches!(at.orbit.course, Course::Sticking(_));
+            let is_seen = it.kind == SpecialKind::Branching || matches!(at.orbit.course, Course::Sticking(_));
             assert!(low <= high && high - low < if is_seen { 1e-3 } else { 1e-8 } * span, "{it:?}");
             told += &format!("    {} {}\n", special(it.kind, it.residual), point(at));
         } else if index % 15 == 0 {

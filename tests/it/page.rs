@@ -8,7 +8,7 @@ use crate::common;
 use crate::explain::all_are_explained;
 use base64::Engine;
 use corner_impact::border_collision::feigin::Speeds;
-use corner_impact::figures::through_corner::{Moment, Place, Shown, through_corner};
+use corner_impact::figures::through_corner::{ImpactSide, Moment, ShownOrbit, through_corner};
 use corner_impact::model::{Model, OSORIO_2008};
 use corner_impact::orbit::eigenvalues;
 use corner_impact::pages::report::html;
@@ -293,10 +293,10 @@ fn orbits_on_either_side_are_those_of_the_classification() {
         let cam = common::cam(&model);
         let (moments, at_corner) = through_corner(&model, &cam, &findings.at).unwrap().unwrap();
         let [slower, faster] = [&moments[at_corner - 1], &moments[at_corner + 1]];
-        for (place, side) in [(Place::Before, &kind.minus), (Place::After, &kind.plus)] {
+        for (place, side) in [(ImpactSide::Before, &kind.minus), (ImpactSide::After, &kind.plus)] {
             let of = |moment: &Moment| {
                 // Another orbit on the same segment, far from the corner, is none of the local map's.
-                let beside = |orbit: &&Shown| orbit.from_corner_deg.to_radians().abs() < 0.05;
+                let beside = |orbit: &&ShownOrbit| orbit.from_corner_deg.to_radians().abs() < 0.05;
                 let here = moment.orbits.iter().filter(|orbit| orbit.place == place).filter(beside);
                 here.map(|orbit| orbit.stable).collect::<Vec<_>>()
             };
@@ -310,7 +310,7 @@ fn orbits_on_either_side_are_those_of_the_classification() {
             // At the corner impact the multipliers are the eigenvalues of that side's matrix.
             let at = moments[at_corner].orbits.iter().find(|orbit| orbit.place == place).unwrap();
             let map = &findings.map;
-            let matrix = if place == Place::Before { map.minus.a } else { map.plus.a };
+            let matrix = if place == ImpactSide::Before { map.minus.a } else { map.plus.a };
             for (one, other) in at.multipliers.iter().zip(eigenvalues(&matrix)) {
                 assert!((one.re - other.re).hypot(one.im - other.im) < 1e-6, "{}: {one:?} {other:?}", file.display());
             }

@@ -10,7 +10,7 @@ use corner_impact::cam::Cam;
 use corner_impact::draw::font::Fonts;
 use corner_impact::draw::layout::{Layout, TEXT, Text, WIDTH, width};
 use corner_impact::draw::{
-    Axis, Beside, Colour, Data, Density, Figure, Look, Marker, Panel, Series, Stroke, Theme, Word, pdf, png, svg,
+    Beside, Colour, Data, Density, Figure, FigureAxis, Label, Look, Marker, Panel, Series, Stroke, Theme, pdf, png, svg,
 };
 use corner_impact::figures::{cam_figure, corner_marks, impact_diagram, speeds_figure};
 use corner_impact::model::{Model, OSORIO_2008};
@@ -37,7 +37,7 @@ fn column() -> Look {
 fn parabola() -> Figure {
     let points: Vec<[f64; 2]> = (0..100).map(|i| [f64::from(i), f64::from(i * i)]).collect();
     let series = |colour, data| Series { label: String::new(), name: String::new(), colour, data };
-    let word = Word { at: [50.0, 2500.0], text: "half_way".into(), beside: Beside::Right };
+    let word = Label { at: [50.0, 2500.0], text: "half_way".into(), beside: Beside::Right };
     let mut cloud = Density::new([0.0, 100.0], [0.0, 1e4]);
     (0..200).for_each(|i| (0..200).for_each(|j| cloud.push(0.5 * f64::from(i), 50.0 * f64::from(j))));
     let all = vec![
@@ -46,9 +46,11 @@ fn parabola() -> Figure {
         series(Colour::Green, Data::Points { points, marker: Marker::Ring }),
         series(Colour::Ink, Data::Words(vec![word])),
     ];
-    let panel = |series| Panel { y: Axis::new("height", "m"), height: 0.4, series, marks: vec![] };
+    let panel = |series| Panel { y: FigureAxis::new("height", "m"), height: 0.4, series, marks: vec![] };
     let panels = vec![panel(all.clone()), panel(all)];
-    Figure { title: "A parabola".into(), x: Axis::new("length", "s"), marks: vec![], panels, note: "noté".into() }
+    Figure {
+        title: "A parabola".into(), x: FigureAxis::new("length", "s"), marks: vec![], panels, note: "noté".into()
+    }
 }
 
 /// The streams of a PDF that are packed, and all the rest of it as text.
@@ -188,10 +190,10 @@ fn a_narrow_figure_holds_its_words_and_ticks() {
 #[test]
 fn an_svg_brings_its_letters() {
     // Letters by themselves: those that are pushed together are so by a table that is left out. This one is put together from two.
-    let mut figure = Figure { title: "é".into(), x: Axis::new("é", ""), note: "é".into(), ..parabola() };
+    let mut figure = Figure { title: "é".into(), x: FigureAxis::new("é", ""), note: "é".into(), ..parabola() };
     for panel in &mut figure.panels {
         panel.series.pop();
-        panel.y = Axis::new("é", "");
+        panel.y = FigureAxis::new("é", "");
     }
     let look = Look { fonts: Some(Fonts::default()), ..column() };
     let text = svg::render(&figure, &look).unwrap();

@@ -4,9 +4,9 @@
 //! moves its ends out by.
 
 use corner_impact::interval::Interval;
-use corner_impact::interval::centred::Centred;
-use corner_impact::interval::roots::{Isolated, Over, Place, isolate};
-use corner_impact::interval::varied::Varied;
+use corner_impact::interval::dual::Dual;
+use corner_impact::interval::mean_value_form::MeanValueForm;
+use corner_impact::interval::roots::{BoxValues, IntervalBox, Isolated, isolate};
 
 /// Whether it is from `low` to `high`, or wider by some ulps of numbers as large as 100.
 fn is_about(range: Interval, low: f64, high: f64) -> bool {
@@ -19,15 +19,15 @@ fn number(value: f64) -> Interval {
 }
 
 /// The unknowns of a box.
-fn unknowns<const N: usize>(place: &Place<N>) -> [Varied<N>; N] {
-    std::array::from_fn(|which| Varied {
+fn unknowns<const N: usize>(place: &IntervalBox<N>) -> [Dual<N>; N] {
+    std::array::from_fn(|which| Dual {
         value: place[which],
         by: std::array::from_fn(|unknown| number(if unknown == which { 1.0 } else { 0.0 })),
     })
 }
 
-fn fixed<const N: usize>(value: f64) -> Varied<N> {
-    Varied { value: number(value), by: [number(0.0); N] }
+fn fixed<const N: usize>(value: f64) -> Dual<N> {
+    Dual { value: number(value), by: [number(0.0); N] }
 }
 
 #[test]
@@ -40,7 +40,7 @@ fn a_number_over_a_box_has_its_derivatives() {
         (x * y, [-2.0, 6.0], [[-1.0, 3.0], [1.0, 2.0]]),
         (x * x * y, [-4.0, 12.0], [[-4.0, 12.0], [1.0, 4.0]]),
         (y * number(-4.0), [-12.0, 4.0], [[0.0, 0.0], [-4.0, -4.0]]),
-        (Varied::of(Interval::new(5.0, 7.0), Interval::new(2.0, 3.0), y.by), [5.0, 7.0], [[0.0, 0.0], [2.0, 3.0]]),
+        (Dual::of(Interval::new(5.0, 7.0), Interval::new(2.0, 3.0), y.by), [5.0, 7.0], [[0.0, 0.0], [2.0, 3.0]]),
     ] {
         assert!(is_about(of.value, value[0], value[1]), "{of:?} {value:?}");
         assert!(of.by.iter().zip(by).all(|(range, [low, high])| is_about(*range, low, high)), "{of:?} {by:?}");
@@ -51,8 +51,8 @@ fn a_number_over_a_box_has_its_derivatives() {
 #[test]
 fn a_number_over_a_box_is_near_its_centre() {
     let over = [Interval::new(-0.25, 0.5), Interval::new(-0.5, 0.5)];
-    let x = Centred::unknown(0, number(4.0), &over);
-    let y = Centred::unknown(1, number(2.0), &over);
+    let x = MeanValueForm::unknown(0, number(4.0), &over);
+    let y = MeanValueForm::unknown(1, number(2.0), &over);
     let two = x.fixed(number(2.0));
     for (of, centre, value, by) in [
         (x, 4.0, [3.75, 4.5], [[1.0, 1.0], [0.0, 0.0]]),
@@ -88,26 +88,30 @@ fn a_number_over_a_box_is_near_its_centre() {
     }
 }
 
-fn over<const N: usize>(values: [Varied<N>; N]) -> Over<N> {
-    Over { values: values.map(|value| value.value), derivatives: values.map(|value| value.by), is_wanted: true }
+fn over<const N: usize>(values: [Dual<N>; N]) -> BoxValues<N> {
+    BoxValues { values: values.map(|value| value.value), derivatives: values.map(|value| value.by), is_wanted: true }
 }
 
 /// The product of x - r, all over a box.
-fn with_roots(roots: &[f64], place: &Place<1>) -> Over<1> {
+fn with_roots(roots: &[f64], place: &IntervalBox<1>) -> BoxValues<1> {
     let [x] = unknowns(place);
     over([roots.iter().fold(fixed(1.0), |product, root| product * (x - fixed(*root)))])
 }
 
-fn holds<const N: usize>(place: &Place<N>, root: [f64; N]) -> bool {
+fn holds<const N: usize>(place: &IntervalBox<N>, root: [f64; N]) -> bool {
     place.iter().zip(root).all(|(side, root)| side.low() <= root && root <= side.high())
 }
 
 /// Each root in a box of its own, a few ulps wide; how many boxes were looked at, and how often the equations were
 /// asked, which is what it costs.
 #[track_caller]
-fn finds<const N: usize>(place: Place<N>, roots: &[[f64; N]], over: impl Fn(&Place<N>) -> Over<N>) -> [usize; 2] {
+fn finds<const N: usize>(
+    place: IntervalBox<N>,
+    roots: &[[f64; N]],
+    over: impl Fn(&IntervalBox<N>) -> BoxValues<N>,
+) -> [usize; 2] {
     let asked = std::cell::Cell::new(0);
-    let counted = |place: &Place<N>| {
+    let counted = |place: &IntervalBox<N>| {
         asked.set(asked.get() + 1);
         over(place)
     };
@@ -140,7 +144,7 @@ fn every_root_is_found_once() {
 /// As a sum of powers, in which intervals forget that each is of one x: the mean value form tells more.
 #[test]
 fn a_sum_of_powers_has_the_same_roots() {
-    let powers = |place: &Place<1>| {
+    let powers = |place: &IntervalBox<1>| {
         let [x] = unknowns(place);
         over([x * x * x - x * x * number(6.0) + x * number(11.0) - fixed(6.0)])
     };
@@ -150,7 +154,7 @@ fn a_sum_of_powers_has_the_same_roots() {
 /// A circle and a line or a parabola, in boxes that are not square.
 #[test]
 fn every_root_of_two_equations_is_found_once() {
-    let circle_and_line = |place: &Place<2>| {
+    let circle_and_line = |place: &IntervalBox<2>| {
         let [x, y] = unknowns(place);
         over([x * x + y * y - fixed(25.0), x * number(3.0) - y * number(4.0)])
     };
@@ -163,7 +167,7 @@ fn every_root_of_two_equations_is_found_once() {
     ] {
         assert_eq!(finds(place, roots, circle_and_line), looks, "{place:?}");
     }
-    let parabolas = |place: &Place<2>| {
+    let parabolas = |place: &IntervalBox<2>| {
         let [x, y] = unknowns(place);
         over([x * x - y, y * y - x])
     };
@@ -191,10 +195,10 @@ fn a_double_root_is_left_undecided() {
 fn what_rounding_hides_is_not_halved() {
     let noise = Interval::new(-0.125, 0.125);
     let line = |value: f64, slope: f64| {
-        move |place: &Place<1>| {
+        move |place: &IntervalBox<1>| {
             let [x] = unknowns(place);
             let line = x * number(slope) + fixed(value);
-            over([Varied { value: line.value + noise, ..line }])
+            over([Dual { value: line.value + noise, ..line }])
         }
     };
     let found = isolate([Interval::new(-1.0, 1.0)], 10_000, line(0.0, 1e-6));
@@ -219,7 +223,7 @@ fn no_root_is_lost_when_boxes_run_out() {
         }
         assert_eq!(found.undecided.is_empty(), most == needed, "{most}: {found:?}");
     }
-    let right = |place: &Place<1>| Over { is_wanted: place[0].high() > 0.0, ..with_roots(&roots, place) };
+    let right = |place: &IntervalBox<1>| BoxValues { is_wanted: place[0].high() > 0.0, ..with_roots(&roots, place) };
     let found = isolate(place, 10_000, right);
     assert!(found.roots.len() == 3 && found.undecided.is_empty(), "{found:?}");
 }
@@ -229,7 +233,7 @@ fn no_root_is_lost_when_boxes_run_out() {
 fn no_root_is_lost_between_two_doubles() {
     for root in [1.0, 1.0_f64.next_up(), -1.0, (-1.0_f64).next_up()] {
         for place in [Interval::new(root, root.next_up()), Interval::new(root.next_down(), root)] {
-            let falls = |place: &Place<1>| over([-unknowns(place)[0] + fixed(root)]);
+            let falls = |place: &IntervalBox<1>| over([-unknowns(place)[0] + fixed(root)]);
             for found in [isolate([place], 100, |place| with_roots(&[root], place)), isolate([place], 100, falls)] {
                 assert!(
                     found.roots.iter().chain(&found.undecided).any(|place| holds(place, [root])),

@@ -10,7 +10,7 @@ use corner_impact::section::StroboscopicMap;
 use corner_impact::simulate::{EventKind, angular_velocity};
 use corner_impact::study::StudyError;
 use corner_impact::study::basins::boundary::{approach, border};
-use corner_impact::study::basins::{Curve, Extent, Grid, Reversed, Saddle, Section, SectionStarts};
+use corner_impact::study::basins::{BasinSection, Curve, Extent, Grid, Reversed, Saddle, SectionStarts};
 use serde_json::{Value, json};
 
 use crate::attractors::ball;
@@ -96,7 +96,7 @@ fn a_saddle_has_two_directions_and_curves_along_them() {
 #[test]
 fn starts_of_a_section_are_about_its_orbits() {
     let paper = common::osorio();
-    let section = Section::new(&paper, 700.0, STROBE).unwrap();
+    let section = BasinSection::new(&paper, 700.0, STROBE).unwrap();
     let machine = &section.map.machine;
     let lift = machine.cam().lift(STROBE);
     let orbits = search(machine, &Search { revolutions: 1, impacts: Some(1) }).unwrap();
@@ -138,7 +138,7 @@ fn starts_of_a_section_are_about_its_orbits() {
         assert!(matches!(none, Err(StudyError::NoStarts)), "{none:?}");
     }
     // A cam at rest at its lowest, and a follower with no orbit of one impact: as fast as its height in a radian.
-    let slow = Section::new(&paper, 50.0, 0.0).unwrap();
+    let slow = BasinSection::new(&paper, 50.0, 0.0).unwrap();
     let (cam, omega) = (slow.map.machine.cam(), angular_velocity(50.0));
     let grid = slow.grid([1, 1], None, None).unwrap();
     let height = cam.top() - cam.lowest().value;
@@ -302,7 +302,7 @@ fn the_distance_from_a_curve_is_that_from_its_lines() {
 #[test]
 fn what_parts_the_basins_is_told_with_the_orbits() {
     let paper = common::osorio();
-    let section = Section::new(&paper, 678.0, STROBE).unwrap();
+    let section = BasinSection::new(&paper, 678.0, STROBE).unwrap();
     let saddle = saddle(&section.map);
     let orbits = search(&section.map.machine, &Search { revolutions: 1, impacts: Some(1) }).unwrap();
     let stable = orbits.iter().filter(|it| it.is_stable());
@@ -396,7 +396,7 @@ fn apart(one: State, two: State, omega: f64) -> f64 {
 #[test]
 fn curves_are_as_fine_and_as_long_as_the_picture_is_high() {
     let ball = lifted_ball();
-    let section = Section::new(&ball, 700.0, 1.0).unwrap();
+    let section = BasinSection::new(&ball, 700.0, 1.0).unwrap();
     let omega = section.map.machine.angular_velocity();
     let saddle = saddle(&section.map).state;
     let height = 0.001;

@@ -6,7 +6,7 @@ use approx::{assert_abs_diff_eq, assert_relative_eq};
 use corner_impact::cam::apart;
 use corner_impact::flight::State;
 use corner_impact::model::Model;
-use corner_impact::orbit::branch::{Branch, BranchPoint, Following, Kind};
+use corner_impact::orbit::branch::{Branch, BranchPoint, Following, SpecialKind};
 use corner_impact::orbit::long_run::{Budget, LongRun};
 use corner_impact::orbit::runs::{AfterRelease, LongRuns, RunOutcome};
 use corner_impact::orbit::{Course, Parameter, PeriodicOrbit, Search, search, search_all};
@@ -69,7 +69,7 @@ fn onset_of_chattering(turned: f64) -> [f64; 3] {
     let (range, parameter) = ([375.0, 385.0], Parameter::Speed);
     let following = Following { parameter, range, longest_step: 0.5, most_points: 400 };
     let branch = Branch::through(&model, 376.0, orbit, &following).unwrap();
-    let ends = |point: &&BranchPoint| point.special.is_some_and(|special| special.kind == Kind::Chatter);
+    let ends = |point: &&BranchPoint| point.special.is_some_and(|special| special.kind == SpecialKind::Chatter);
     let end = branch.points.iter().find(ends).unwrap();
     let Course::Sticking(middle) = end.orbit.course else { panic!("{end:?}") };
     [end.rpm, end.special.unwrap().residual, middle]

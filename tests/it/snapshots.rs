@@ -6,7 +6,7 @@
 
 use crate::common;
 use corner_impact::border_collision::LocalOutcome;
-use corner_impact::border_collision::long_run::End;
+use corner_impact::border_collision::long_run::LocalLongRun;
 use corner_impact::corner::map::{Eigenvalue, SideMap};
 use corner_impact::show::Paged;
 use corner_impact::study::verify::{External, verify};
@@ -45,7 +45,7 @@ fn side(side: &SideMap) -> Value {
 /// Where the motion from x* ends: a word, or a kind.
 fn end(outcome: &LocalOutcome) -> String {
     match &outcome.fates[0].end {
-        End::Periodic(orbit) => orbit.word.to_string(),
+        LocalLongRun::Periodic(orbit) => orbit.word.to_string(),
         other => other.name().into(),
     }
 }

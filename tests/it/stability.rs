@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use corner_impact::cam::Cam;
 use corner_impact::figures;
 use corner_impact::interval::Interval;
-use corner_impact::known::Known;
+use corner_impact::known::Evidence;
 use corner_impact::model::Model;
 use corner_impact::orbit::branch::{Branch, Following};
 use corner_impact::orbit::stability::{Rows, multipliers_error, trace};
@@ -13,7 +13,7 @@ use corner_impact::orbit::{Course, Parameter, PeriodicOrbit, Search, Stability, 
 use corner_impact::progress::Unwatched;
 use corner_impact::show::Paged;
 use corner_impact::simulate::{Machine, angular_velocity};
-use corner_impact::study::orbit::{Orbits, Wanted, orbits};
+use corner_impact::study::orbit::{OrbitQuery, Orbits, orbits};
 use nalgebra::Matrix2;
 use serde_json::Value;
 
@@ -34,7 +34,7 @@ fn at(model: &Model, rpm: f64) -> Machine {
 }
 
 fn found(model: &Model, rpm: f64, impacts: Option<usize>) -> Orbits {
-    orbits(model, rpm, Wanted::All(Search { revolutions: 1, impacts }), &Unwatched).unwrap()
+    orbits(model, rpm, OrbitQuery::All(Search { revolutions: 1, impacts }), &Unwatched).unwrap()
 }
 
 /// The orbit of one impact at the top of an elastic table whose largest acceleration is `ratio` times gravity.
@@ -57,9 +57,9 @@ fn an_elastic_balls_orbit_is_neutral_up_to_its_flip_and_unstable_beyond() {
         assert_eq!(told(ratio), Stability::Unstable, "{ratio}");
     }
     for ratio in [0.5, 1.0 - 1e-6, 1.0 + 1e-6, 3.0] {
-        assert_eq!(on_top(ratio).judgement.known, Known::Proved, "{ratio}");
+        assert_eq!(on_top(ratio).judgement.known, Evidence::Proved, "{ratio}");
     }
-    assert_eq!(on_top(1.0).judgement.known, Known::Computed);
+    assert_eq!(on_top(1.0).judgement.known, Evidence::Computed);
     assert!(!on_top(0.5).is_stable() && !on_top(3.0).is_stable());
 }
 
@@ -120,7 +120,7 @@ fn with_restitution_1_no_orbit_is_stable_and_none_comes_to_rest() {
 fn the_least_damping_makes_a_neutral_orbit_stable() {
     let all = found(&table(1e-9, 1.0), 200.0, Some(1)).orbits;
     let pair = all.iter().find(|orbit| orbit.multipliers()[0].im != 0.0).expect("a pair");
-    assert_eq!((pair.judgement.stability, pair.judgement.known), (Stability::Stable, Known::Proved));
+    assert_eq!((pair.judgement.stability, pair.judgement.known), (Stability::Stable, Evidence::Proved));
     assert!(pair.is_stable());
     let resting = search(&at(&table(1e-9, 1.0), 200.0), &Search { revolutions: 1, impacts: None }).unwrap();
     let resting = resting.iter().find(|orbit| matches!(orbit.course, Course::Sticking(_))).expect("a rest");

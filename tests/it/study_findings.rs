@@ -18,7 +18,7 @@ use corner_impact::study::StudyError;
 use corner_impact::study::continuation::branches;
 use corner_impact::study::diagram::{Shown, loads, on_attractors, one_row};
 use corner_impact::study::locate::{Happens, locate};
-use corner_impact::study::simulate::{Sight, Simulation, Until, Wanted};
+use corner_impact::study::simulate::{RunRequest, Sight, Simulation, Until};
 use corner_impact::study::survey::{
     Axis, Beginning, Place, Placed, Places, Point, Sample, Section as Shows, Start, Survey, Sweep, Values,
 };
@@ -35,9 +35,9 @@ fn a_run_shows_what_is_asked_for() {
     let paper = common::osorio();
     let start = Start { cam_angle: 1.0, follower: Placed::OnCam(2.0) };
     let simulation = Simulation::new(&paper, 700.0, start).unwrap();
-    let wanted = Wanted { until: Until::Revolutions(5), events: true, strobe: Some(2.0), drawn: 2, long_run: None };
+    let wanted = RunRequest { until: Until::Revolutions(5), events: true, strobe: Some(2.0), drawn: 2, long_run: None };
     let (mut events, mut states) = (Vec::new(), Vec::new());
-    let run = |wanted: Wanted, see: &mut dyn FnMut(Sight<'_>)| {
+    let run = |wanted: RunRequest, see: &mut dyn FnMut(Sight<'_>)| {
         simulation.run(wanted, &Unwatched, |sight| -> Result<(), StudyError> {
             see(sight);
             Ok(())
@@ -65,12 +65,12 @@ fn a_run_shows_what_is_asked_for() {
     assert_abs_diff_eq!(motion.state.position, before.state.position, epsilon = 1e-9);
     simulation.machine.revolve(&mut motion, 2).unwrap();
     assert_abs_diff_eq!(motion.state.position, found.end.position_m, epsilon = 1e-9);
-    let whole = run(Wanted { drawn: 9, strobe: None, events: false, ..wanted }, &mut |sight| {
+    let whole = run(RunRequest { drawn: 9, strobe: None, events: false, ..wanted }, &mut |sight| {
         assert!(matches!(sight, Sight::Events([])));
     });
     let (before, first) = (whole.unwrap().before_drawn, simulation.first);
     assert_eq!((before.revolution, before.cam_angle, before.state), (first.revolution, first.cam_angle, first.state));
-    let counted = run(Wanted { until: Until::Impacts(3), strobe: None, ..wanted }, &mut |_| ()).unwrap();
+    let counted = run(RunRequest { until: Until::Impacts(3), strobe: None, ..wanted }, &mut |_| ()).unwrap();
     assert_eq!(counted.impacts, 3);
     let third = events.iter().filter(|it| it.kind == EventKind::Impact).nth(2).unwrap();
     assert_abs_diff_eq!(counted.end.cam_angle_rad, third.cam_angle, epsilon = 1e-9);
@@ -89,7 +89,7 @@ fn the_next_impact_is_waited_for_from_the_last_one_on() {
     let free = Model::parse("free.toml", free).unwrap();
     // A metre at a millimetre a second is 11,667 revolutions.
     let start = Start { cam_angle: 0.0, follower: Placed::At(State { position: 1.0, velocity: -0.001 }) };
-    let wanted = Wanted { until: Until::Impacts(5), events: false, strobe: None, drawn: 0, long_run: None };
+    let wanted = RunRequest { until: Until::Impacts(5), events: false, strobe: None, drawn: 0, long_run: None };
     let simulation = Simulation::new(&free, 700.0, start).unwrap();
     let found = simulation.run(wanted, &Unwatched, |_| -> Result<(), StudyError> { Ok(()) }).unwrap_err();
     let StudyError::NoImpact { waited, impacts, revolution, .. } = found else { panic!("{found}") };
@@ -102,7 +102,7 @@ pub fn sweep(model: &Model, low: f64, high: f64, count: usize, section: Shows) -
     Sweep {
         over: Survey::new(model, None, speeds, None).unwrap(),
         starts: Beginning::One(START),
-        following: corner_impact::study::survey::Following::Nothing,
+        following: corner_impact::study::survey::SweepStart::Nothing,
         transient: 20,
         record: 3,
         section,

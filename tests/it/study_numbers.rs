@@ -7,7 +7,7 @@ use std::fmt::Write;
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 use corner_impact::flight::State;
 use corner_impact::model::Model;
-use corner_impact::orbit::branch::{Branch, Following, Kind as Event};
+use corner_impact::orbit::branch::{Branch, Following, SpecialKind as Event};
 use corner_impact::orbit::long_run::{Budget, Kind, LongRun};
 use corner_impact::orbit::{Parameter, Search, search};
 use corner_impact::progress::Unwatched;

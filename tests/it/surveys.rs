@@ -11,8 +11,8 @@ use corner_impact::progress::{Unwatched, Watch};
 use corner_impact::simulate::{Event, EventKind, Machine, Motion, angular_velocity};
 use corner_impact::study::diagram::Swept;
 use corner_impact::study::survey::{
-    Axis, Beginning, Block, Counted, Following, Over, Place, Places, Row, Sample, Section as Shows, Seen, Spacing,
-    Survey, SurveyError, Sweep, SweepError, Tally, Values, settled_impacts,
+    Axis, Beginning, Counted, Over, Place, Places, RecordBlock, RecordRow, Sample, Section as Shows, Seen, Spacing,
+    Survey, SurveyError, Sweep, SweepError, SweepStart, SweepTally, Values, settled_impacts,
 };
 
 use crate::chart_store::START;
@@ -27,12 +27,12 @@ fn axis(name: &str, low: f64, high: f64, count: usize) -> Axis {
 /// Rows as they come, in blocks of so many; with `GOES_ON` over values that cannot be run.
 #[derive(Debug, Default)]
 struct Kept<const SIZE: usize, const GOES_ON: bool = false> {
-    rows: Vec<Row>,
+    rows: Vec<RecordRow>,
     failed: Vec<f64>,
 }
 
-impl<const SIZE: usize, const GOES_ON: bool> Block for Kept<SIZE, GOES_ON> {
-    fn push(&mut self, row: &Row) {
+impl<const SIZE: usize, const GOES_ON: bool> RecordBlock for Kept<SIZE, GOES_ON> {
+    fn push(&mut self, row: &RecordRow) {
         self.rows.push(*row);
     }
 
@@ -47,7 +47,7 @@ impl<const SIZE: usize, const GOES_ON: bool> Block for Kept<SIZE, GOES_ON> {
 }
 
 /// All that a sweep hands on, and its tally.
-fn taken<B: Block>(sweep: &Sweep, threads: usize) -> (Vec<(usize, B)>, Tally) {
+fn taken<B: RecordBlock>(sweep: &Sweep, threads: usize) -> (Vec<(usize, B)>, SweepTally) {
     let mut all = Vec::new();
     let tally = sweep.run(Some(threads), |index, block| {
         all.push((index, block));
@@ -57,12 +57,12 @@ fn taken<B: Block>(sweep: &Sweep, threads: usize) -> (Vec<(usize, B)>, Tally) {
 }
 
 /// The rows of one value by a run of its own, and where it ends.
-fn alone(sweep: &Sweep, model: &Model, rpm: f64, from: Option<Motion>) -> (Vec<Row>, Motion) {
+fn alone(sweep: &Sweep, model: &Model, rpm: f64, from: Option<Motion>) -> (Vec<RecordRow>, Motion) {
     let machine = machine(model, rpm);
     let mut motion = from.map_or_else(|| START.motion(&machine), |motion| machine.resume(&motion)).unwrap();
     machine.revolve(&mut motion, sweep.transient).unwrap();
     let mut rows = Vec::new();
-    let row = |event: &Event| Row {
+    let row = |event: &Event| RecordRow {
         value: rpm,
         revolution: event.revolution,
         motion: None,
@@ -73,29 +73,30 @@ fn alone(sweep: &Sweep, model: &Model, rpm: f64, from: Option<Motion>) -> (Vec<R
     (rows, motion)
 }
 
-fn tally(rows: &[Row], revolutions: u64) -> Tally {
-    let is_impact = |row: &&Row| matches!(row.seen, Seen::Event(event) if event.kind == EventKind::Impact);
-    Tally { points: rows.len() as u64, impacts: rows.iter().filter(is_impact).count() as u64, revolutions }
+fn tally(rows: &[RecordRow], revolutions: u64) -> SweepTally {
+    let is_impact = |row: &&RecordRow| matches!(row.seen, Seen::Event(event) if event.kind == EventKind::Impact);
+    SweepTally { points: rows.len() as u64, impacts: rows.iter().filter(is_impact).count() as u64, revolutions }
 }
 
 /// Each value is a run of its own. Its rows come after those of the value before, whatever the threads and the blocks, and all are counted.
 #[test]
 fn rows_come_by_value_on_any_number_of_threads() {
-    fn rows<const SIZE: usize>(sweep: &Sweep, threads: usize, expected: &[Row]) {
+    fn rows<const SIZE: usize>(sweep: &Sweep, threads: usize, expected: &[RecordRow]) {
         let (blocks, counted) = taken::<Kept<SIZE>>(sweep, threads);
         assert!(blocks.is_sorted_by_key(|(index, _)| *index));
         for (index, block) in &blocks {
             assert!(block.rows.iter().all(|row| row.value == sweep.over.value(*index)));
             assert!(block.rows.len() <= SIZE && block.failed.is_empty());
         }
-        let found: Vec<Row> = blocks.into_iter().flat_map(|(_, block)| block.rows).collect();
+        let found: Vec<RecordRow> = blocks.into_iter().flat_map(|(_, block)| block.rows).collect();
         assert!(found == expected, "{threads} threads, blocks of {SIZE}");
         assert_eq!(counted, tally(expected, 80 * 23));
     }
     let paper = common::osorio();
     // From runs that rest on the cam, of which some events are no impacts, to runs that fly.
     let all = sweep(&paper, 150.0, 750.0, 80, Shows::Impacts);
-    let expected: Vec<Row> = (0..80).flat_map(|index| alone(&all, &paper, all.over.value(index), None).0).collect();
+    let expected: Vec<RecordRow> =
+        (0..80).flat_map(|index| alone(&all, &paper, all.over.value(index), None).0).collect();
     assert!(tally(&expected, 0).impacts < expected.len() as u64);
     for threads in 1..=3 {
         rows::<1>(&all, threads, &expected);
@@ -112,10 +113,10 @@ fn rows_come_by_value_on_any_number_of_threads() {
 #[test]
 fn a_value_that_is_followed_begins_where_its_neighbour_ended() {
     let paper = common::osorio();
-    for following in [Following::Up, Following::Down] {
+    for following in [SweepStart::Up, SweepStart::Down] {
         let followed = Sweep { following, ..sweep(&paper, 660.0, 700.0, 9, Shows::Impacts) };
         let mut order: Vec<usize> = (0..9).collect();
-        if following == Following::Down {
+        if following == SweepStart::Down {
             order.reverse();
         }
         let (mut expected, mut from) = (Vec::new(), None);
@@ -138,8 +139,8 @@ fn a_section_is_passed_once_a_revolution() {
     for angle in [0.0, 1e-9, 1.0, 6.2] {
         let all = sweep(&common::osorio(), 690.0, 710.0, 3, Shows::Strobe(angle));
         let (blocks, counted) = taken::<Kept<2>>(&all, 1);
-        assert_eq!(counted, Tally { points: 9, impacts: 0, revolutions: 3 * 23 });
-        let rows: Vec<Row> = blocks.into_iter().flat_map(|(_, block)| block.rows).collect();
+        assert_eq!(counted, SweepTally { points: 9, impacts: 0, revolutions: 3 * 23 });
+        let rows: Vec<RecordRow> = blocks.into_iter().flat_map(|(_, block)| block.rows).collect();
         for three in rows.chunks(3) {
             let [first, second, third] = [0, 1, 2].map(|index| three[index].revolution);
             assert_eq!([second, third], [first + 1, first + 2], "{angle}");
@@ -154,7 +155,7 @@ fn runs_of_one_value_are_told_apart() {
     let two = |machine: &Machine| Ok(vec![START.motion(machine)?, machine.start_on_cam(1.0, 20.0)?]);
     all.starts = Beginning::Found(Arc::new(two));
     let (blocks, counted) = taken::<Kept<2>>(&all, 1);
-    assert_eq!(counted, Tally { points: 18, impacts: 0, revolutions: 2 * 3 * 23 });
+    assert_eq!(counted, SweepTally { points: 18, impacts: 0, revolutions: 2 * 3 * 23 });
     let which: Vec<_> = blocks.iter().flat_map(|(_, block)| &block.rows).map(|row| row.motion).collect();
     let of_one = [[Some(0); 3], [Some(1); 3]].concat();
     assert_eq!(which, [&of_one[..]; 3].concat());
@@ -180,7 +181,7 @@ fn a_sweep_ends_where_it_cannot_go_on() {
         let found = all.run(Some(threads), |_, _: Counted| Ok(()));
         assert!(matches!(found, Err(SweepError::Run { place, .. }) if place == "640 rpm"));
         let (blocks, counted) = taken::<Kept<1, true>>(&all, threads);
-        assert_eq!(counted, Tally { points: 4 * 3, impacts: 0, revolutions: 4 * 23 });
+        assert_eq!(counted, SweepTally { points: 4 * 3, impacts: 0, revolutions: 4 * 23 });
         let failed: Vec<f64> = blocks.into_iter().flat_map(|(_, block)| block.failed).collect();
         assert_eq!(failed, (4..11).map(|index| all.over.value(index)).collect::<Vec<_>>());
     }
@@ -215,11 +216,11 @@ fn a_sweep_that_has_ended_begins_no_further_value() {
 #[test]
 fn a_diagram_tells_what_it_ran() {
     let all = sweep(&common::osorio(), 690.0, 710.0, 3, Shows::Strobe(1.0));
-    let one_by_one = Sweep { following: Following::Up, ..all.clone() };
+    let one_by_one = Sweep { following: SweepStart::Up, ..all.clone() };
     for (sweep, threads, used) in [(&all, 2, 2), (&all, 5, 3), (&one_by_one, 2, 1)] {
         let told =
             Swept::new("paper", sweep, Some(threads), &Unwatched, |_: Counted| Ok::<(), SweepError>(())).unwrap();
-        assert_eq!(told.tally, Tally { points: 9, impacts: 0, revolutions: 3 * 23 });
+        assert_eq!(told.tally, SweepTally { points: 9, impacts: 0, revolutions: 3 * 23 });
         assert_eq!((told.followed, told.threads), (20 + 3, used));
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::common;
 use corner_impact::border_collision::LocalMap;
-use corner_impact::border_collision::long_run::{End, Escape};
+use corner_impact::border_collision::long_run::{EscapeReason, LocalLongRun};
 use corner_impact::border_collision::word::Word;
 use corner_impact::corner::map::SideMap;
 use nalgebra::{Matrix2, RowVector2, Vector2};
@@ -23,7 +23,7 @@ fn a_long_transient_is_not_called_chaos() {
     for ([l, r], determinant) in [([1.8, -1.954043], 0.3), ([1.645, -26.9063], 0.64)] {
         let map = common::normal_form([l, r], [determinant; 2]);
         let end = map.end(Vector2::zeros(), 1.0);
-        assert!(matches!(end, End::Undecided(_)), "{end:?}");
+        assert!(matches!(end, LocalLongRun::Undecided(_)), "{end:?}");
         let after = leaves(&map, 10_000_000);
         assert!(after.is_some_and(|steps| steps > 200_000), "{after:?}");
     }
@@ -41,12 +41,12 @@ fn what_is_said_to_stay_stays() {
         let map = common::normal_form(traces, determinants);
         match map.end(Vector2::zeros(), 1.0) {
             // Two pieces, each of which is sent into the other.
-            End::Chaotic(chaos) => assert_eq!(chaos.region.polygons, 2, "{chaos:?}"),
+            LocalLongRun::Chaotic(chaos) => assert_eq!(chaos.region.polygons, 2, "{chaos:?}"),
             end => panic!("{traces:?} {determinants:?}: {end:?}"),
         }
         assert_eq!(leaves(&map, 3_000_000), None, "{traces:?} {determinants:?}");
         let from_the_fold = map.end(Vector2::new(8.0, 0.0), 1.0);
-        assert!(matches!(from_the_fold, End::Escapes(Escape::Follows { .. })), "{from_the_fold:?}");
+        assert!(matches!(from_the_fold, LocalLongRun::Escapes(EscapeReason::Follows { .. })), "{from_the_fold:?}");
     }
 }
 
@@ -107,7 +107,7 @@ fn what_is_beside_a_segment_is_not_in_it() {
 fn a_motion_on_an_unstable_fixed_point_is_taken_off_it_by_little() {
     let end = common::of_the_line([1.5, -1.5]).end(Vector2::new(-2.0, 0.0), 1.0);
     match end {
-        End::Chaotic(chaos) => assert!((chaos.exponent.value - 1.5_f64.ln()).abs() < 1e-9, "{chaos:?}"),
+        LocalLongRun::Chaotic(chaos) => assert!((chaos.exponent.value - 1.5_f64.ln()).abs() < 1e-9, "{chaos:?}"),
         end => panic!("{end:?}"),
     }
 }
@@ -145,7 +145,7 @@ fn slow_spirals_are_not_called_chaos() {
             let map = common::normal_form(traces, [1.0 - less; 2]);
             for (index, start) in [[0.0, 0.0], [0.4, 0.1], [3.0, -2.0]].into_iter().enumerate() {
                 let end = map.end(Vector2::from(start), 1.0);
-                assert!(!matches!(end, End::Chaotic(..)), "{less:e} {traces:?} {index}: {end:?}");
+                assert!(!matches!(end, LocalLongRun::Chaotic(..)), "{less:e} {traces:?} {index}: {end:?}");
             }
         }
     }

@@ -11,7 +11,7 @@ use corner_impact::study::chart::store::{Shard, Store};
 use corner_impact::study::design::design;
 use corner_impact::study::design::needs::Lever;
 use corner_impact::study::locate::locate;
-use corner_impact::study::simulate::{Sight, Simulation, Until, Wanted};
+use corner_impact::study::simulate::{RunRequest, Sight, Simulation, Until};
 use corner_impact::study::survey::{Placed, Start};
 
 use crate::chart_store::chart;
@@ -63,7 +63,7 @@ fn a_run_tells_how_far_it_has_turned() {
     let paper = common::osorio();
     let start = Start { cam_angle: 1.0, follower: Placed::At(State { position: 1.2, velocity: 0.0 }) };
     let simulation = Simulation::new(&paper, 700.0, start).unwrap();
-    let told = |wanted: Wanted| {
+    let told = |wanted: RunRequest| {
         let (told, mut shown) = (Told::default(), Vec::new());
         let see = |sight: Sight<'_>| -> Result<(), StudyError> {
             if let Sight::Events(events) = sight {
@@ -75,10 +75,10 @@ fn a_run_tells_how_far_it_has_turned() {
         (told.of(""), shown)
     };
     let wanted =
-        Wanted { until: Until::Revolutions(2), events: false, strobe: Some(1.0 + 1.5), drawn: 0, long_run: None };
+        RunRequest { until: Until::Revolutions(2), events: false, strobe: Some(1.0 + 1.5), drawn: 0, long_run: None };
     // 1.5 rad are 238.7 thousandths of a turn.
     assert_eq!(told(wanted).0, [238, 1238, 2000].map(|done| [done, 2000]));
-    let (told, shown) = told(Wanted { until: Until::Impacts(5000), events: true, strobe: None, ..wanted });
+    let (told, shown) = told(RunRequest { until: Until::Impacts(5000), events: true, strobe: None, ..wanted });
     assert_eq!((told.last(), shown.iter().sum::<usize>()), (Some(&[4_096_000, 5_000_000]), 5000));
     assert!(shown.iter().all(|shown| *shown <= 4096) && shown.contains(&4096), "{shown:?}");
     assert!(told.iter().all(|[done, total]| done <= total), "{told:?}");

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::measured::{self, Gap, MeasuredLaw, Sides};
+use super::measured::{self, Gap, MeasuredLaw, SideFlights};
 use super::predicted::{self, Hits, PowerLaw};
 use super::{Approach, JumpOrderError};
 use crate::cam::Cam;
@@ -12,7 +12,7 @@ use crate::tolerance;
 
 /// What a power law is of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Quantity {
+pub enum PowerLawQuantity {
     /// The velocities of the cam as it is, on either side of the corner, against the gap at the corner's moment.
     Gap,
     /// The velocities at the corner's moment against the time of the impact.
@@ -27,16 +27,16 @@ pub enum Quantity {
 
 /// One power law, predicted and measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Row {
+pub struct PowerLawRow {
     /// What it is of.
-    pub quantity: Quantity,
+    pub quantity: PowerLawQuantity,
     /// By the formulas.
     pub predicted: PowerLaw,
     /// By simulation.
     pub measured: MeasuredLaw,
 }
 
-impl Row {
+impl PowerLawRow {
     /// How far the coefficients are apart, of the predicted one.
     pub fn relative_difference(&self) -> f64 {
         let predicted = self.predicted.coefficient;
@@ -62,14 +62,14 @@ pub struct Compared {
     /// The angle that the map is taken over before the corner, and after it, rad; 0 where only the gap was measured.
     pub span: f64,
     /// Every power law.
-    pub rows: Vec<Row>,
+    pub rows: Vec<PowerLawRow>,
 }
 
 impl Compared {
     /// Whether all of it agrees: the laws, and how often flights hit.
     pub fn agrees(&self) -> bool {
         let counted = self.gap.is_none_or(|gap| gap.impacts == impacts(self.hits));
-        counted && !self.rows.is_empty() && self.rows.iter().all(Row::agrees)
+        counted && !self.rows.is_empty() && self.rows.iter().all(PowerLawRow::agrees)
     }
 }
 
@@ -92,8 +92,8 @@ pub fn compare(model: &Model, cam: &Cam, approach: &Approach) -> Result<Compared
         // At the corner's moment itself F is the unit matrix.
         let step = predicted::over(follower, approach, 0.0, 0.0).step;
         compared.gap = Some(gap);
-        compared.rows.push(Row {
-            quantity: Quantity::Gap,
+        compared.rows.push(PowerLawRow {
+            quantity: PowerLawQuantity::Gap,
             predicted: PowerLaw { exponent: 0, coefficient: step[1] },
             measured: MeasuredLaw { exponent: gap.exponent, coefficient: gap.limit[1] },
         });
@@ -101,17 +101,17 @@ pub fn compare(model: &Model, cam: &Cam, approach: &Approach) -> Result<Compared
     if hits != Hits::Once {
         return Ok(compared);
     }
-    let sides = Sides::new(model, cam, approach)?;
+    let sides = SideFlights::new(model, cam, approach)?;
     compared.span = sides.span();
     let [position, velocity] = sides.at_corner()?;
     let difference = predicted::difference(follower, approach);
-    let row = |quantity, predicted, measured| Row { quantity, predicted, measured };
-    compared.rows.push(row(Quantity::Velocity, difference.velocity, velocity));
-    compared.rows.push(row(Quantity::Position, difference.position, position));
+    let row = |quantity, predicted, measured| PowerLawRow { quantity, predicted, measured };
+    compared.rows.push(row(PowerLawQuantity::Velocity, difference.velocity, velocity));
+    compared.rows.push(row(PowerLawQuantity::Position, difference.position, position));
 
     let map = predicted::over(follower, approach, compared.span, compared.span);
     let scales = sides.scales();
-    let directions = [(Quantity::MapOfPosition, 0, 0), (Quantity::MapOfPeriod, 2, 1)];
+    let directions = [(PowerLawQuantity::MapOfPosition, 0, 0), (PowerLawQuantity::MapOfPeriod, 2, 1)];
     for (quantity, direction, component) in directions {
         let mut z = Vector3::zeros();
         z[direction] = scales[direction];

@@ -1,6 +1,6 @@
 //! Exponents and coefficients by simulation, from nothing but runs of the machine.
 //!
-//! [`Sides`] runs each flight twice, over the cam with the law before the corner continued past it and over the cam with the
+//! [`SideFlights`] runs each flight twice, over the cam with the law before the corner continued past it and over the cam with the
 //! law after it; [`gap`] runs flights on either side of the corner over the cam as it is. A ladder of distances gives
 //! the exponent as the slope of a log-log fit; the quotient by that power, extrapolated to distance 0, gives the coefficient.
 
@@ -128,7 +128,7 @@ fn scales(approach: &Approach, span: f64, reach: f64) -> Vector3<f64> {
 }
 
 /// Flights over the cam with one side's law continued past the corner, both sides side by side.
-pub struct Sides<'a> {
+pub struct SideFlights<'a> {
     approach: &'a Approach,
     machines: [Machine; 2],
     reach: f64,
@@ -137,14 +137,14 @@ pub struct Sides<'a> {
 
 /// One flight, run under either law.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pair {
+pub struct FlightPair {
     /// From the corner to the impact under the law before it, s.
     pub offset: f64,
     /// The end under the law after the corner less that under the law before it, m and m/s.
     pub difference: Vector2<f64>,
 }
 
-impl<'a> Sides<'a> {
+impl<'a> SideFlights<'a> {
     /// Furthest continuation, rad: less where the neighbouring segments allow no more.
     const REACH: f64 = 0.1;
 
@@ -183,14 +183,14 @@ impl<'a> Sides<'a> {
     }
 
     /// The flight that is off by `z`: m, m/s and s.
-    pub fn pair(&self, z: Vector3<f64>) -> Option<Pair> {
+    pub fn pair(&self, z: Vector3<f64>) -> Option<FlightPair> {
         let [minus, plus] = self.machines.each_ref().map(|machine| self.passage.run(machine, z, self.reach));
         let (minus, plus) = minus.zip(plus).filter(|(minus, plus)| minus.impacts == 1 && plus.impacts == 1)?;
         let omega = TAU / (TAU / self.passage.omega + z[2]);
-        Some(Pair { offset: minus.past_corner / omega, difference: plus.end - minus.end })
+        Some(FlightPair { offset: minus.past_corner / omega, difference: plus.end - minus.end })
     }
 
-    fn pair_or_error(&self, z: Vector3<f64>) -> Result<Pair, JumpOrderError> {
+    fn pair_or_error(&self, z: Vector3<f64>) -> Result<FlightPair, JumpOrderError> {
         let least = self.passage.span;
         self.pair(z).ok_or(JumpOrderError::NotFree { cam_angle: self.approach.corner.angle, least })
     }
@@ -209,7 +209,7 @@ impl<'a> Sides<'a> {
     pub fn at_corner(&self) -> Result<[MeasuredLaw; 2], JumpOrderError> {
         let z = self.widest(self.passage.shifted(scales(self.approach, self.passage.span, self.reach)[0]))?;
         let sample = |part: f64| {
-            let Pair { offset, difference } = self.pair_or_error(z * part)?;
+            let FlightPair { offset, difference } = self.pair_or_error(z * part)?;
             Ok((offset, self.passage.back * difference))
         };
         laws(sample, self.passage.rounding(self.approach))

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use super::{BranchPoint, End, Following, Kind, Special};
+use super::{BranchPoint, End, Following, Special, SpecialKind};
 use crate::orbit::{Family, OrbitError, PeriodicOrbit, sticking};
 use crate::simulate::Machine;
 use crate::tolerance;
@@ -47,8 +47,11 @@ pub(super) fn half(
                 leaves = !orbit.events.is_empty();
                 anchor = sticking::anchor(&orbit.events, revolutions).or(anchor.filter(|_| leaves));
                 let bracket = [at.min(next), at.max(next)];
-                let special =
-                    detaches.then_some(Special { kind: Kind::Detachment, bracket, residual: bracket[1] - bracket[0] });
+                let special = detaches.then_some(Special {
+                    kind: SpecialKind::Detachment,
+                    bracket,
+                    residual: bracket[1] - bracket[0],
+                });
                 points.push(BranchPoint { held: None, rpm, value: next, orbit, special });
                 (at, step) = (next, longest.min(2.0 * step.max(closest)));
             }
@@ -57,7 +60,7 @@ pub(super) fn half(
                 if let Some(last) = points.last_mut() {
                     let residual = sticking::time_on_cam(&last.orbit);
                     let bracket = [at.min(next), at.max(next)];
-                    last.special = Some(Special { kind: Kind::Chatter, bracket, residual });
+                    last.special = Some(Special { kind: SpecialKind::Chatter, bracket, residual });
                 }
                 return Ok((points, End::Chatter));
             }

@@ -3,9 +3,9 @@
 
 use nalgebra::DVector;
 
-use super::problem::{Problem, Units};
+use super::problem::{BranchScales, Problem};
 use super::switch::{self, Exit};
-use super::{Branch, Following, Kind};
+use super::{Branch, Following, SpecialKind};
 use crate::orbit::curve::{self, Equations, NoPoint};
 use crate::orbit::cycle::lift_size;
 use crate::orbit::{Course, Cycle, Family, FamilyError, Impact, PeriodicOrbit};
@@ -26,7 +26,9 @@ pub fn crossing(family: &Family, following: &Following, branches: &[Branch]) -> 
     let pairs = branches.iter().flat_map(|branch| branch.points.windows(2));
     let met = pairs.filter_map(|pair| {
         let [before, point] = pair else { return None };
-        let (Kind::Branching, Course::Impacts(cycle)) = (point.special?.kind, &point.orbit.course) else { return None };
+        let (SpecialKind::Branching, Course::Impacts(cycle)) = (point.special?.kind, &point.orbit.course) else {
+            return None;
+        };
         let Course::Impacts(last) = &before.orbit.course else { return None };
         // What changes between the two, a touch or a half of the period, leaves no direction to come from.
         if last.impacts.len() != cycle.impacts.len() {
@@ -47,9 +49,9 @@ fn at(family: &Family, following: &Following, branch: &Branch, index: usize) -> 
     let (Some(special), Course::Impacts(cycle)) = (point.special, &point.orbit.course) else { return Vec::new() };
     let Ok((machine, _)) = family.machine(&[point.value]) else { return Vec::new() };
     let exits = match special.kind {
-        Kind::Flip => vec![None],
-        Kind::Corner { segment, .. } => on_corner(cycle, &machine, segment).map(Some).collect(),
-        Kind::Graze { turned, .. } => switch::touch(cycle, turned).into_iter().map(Some).collect(),
+        SpecialKind::Flip => vec![None],
+        SpecialKind::Corner { segment, .. } => on_corner(cycle, &machine, segment).map(Some).collect(),
+        SpecialKind::Graze { turned, .. } => switch::touch(cycle, turned).into_iter().map(Some).collect(),
         _ => Vec::new(),
     };
     exits.into_iter().filter_map(|exit| beyond(family, following, point.value, &cycle.twice(), exit)).collect()
@@ -84,7 +86,7 @@ fn stepped(
 ) -> Option<(f64, PeriodicOrbit)> {
     let (machine, _) = family.machine(&[value]).ok()?;
     let spans = [following.range[1] - following.range[0]];
-    let problem = Problem::new(family, cycle, Units::of(cycle, &machine), &spans, None);
+    let problem = Problem::new(family, cycle, BranchScales::of(cycle, &machine), &spans, None);
     let from = problem.unknowns(cycle, &machine, &[value]);
     let along = direction(&problem, &from).ok()?;
     let point = curve::step(&problem, &from, &along, FIRST * following.longest_step).ok()?;

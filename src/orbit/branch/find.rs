@@ -10,7 +10,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::{Branch, BranchPoint, Following, Kind, crossing, doubled};
+use super::{Branch, BranchPoint, Following, SpecialKind, crossing, doubled};
 use crate::cam::Cam;
 use crate::elementary;
 use crate::model::Model;
@@ -170,7 +170,7 @@ pub fn special_points(
     model: &Model,
     range: [f64; 2],
     wanted: &Search,
-    is_wanted: impl Fn(Kind) -> bool + Sync,
+    is_wanted: impl Fn(SpecialKind) -> bool + Sync,
     watch: &dyn Watch,
 ) -> Result<MetPoints, FamilyError> {
     let [first, last] = range.map(|rpm| step_at(rpm).div_euclid(CELL));
@@ -195,7 +195,7 @@ pub fn special_points(
 }
 
 /// The special points of some kinds on `branches`, each once, by rising speed.
-fn points_on(branches: &[Branch], is_wanted: impl Fn(Kind) -> bool) -> Vec<BranchPoint> {
+fn points_on(branches: &[Branch], is_wanted: impl Fn(SpecialKind) -> bool) -> Vec<BranchPoint> {
     let kind = |point: &BranchPoint| point.special.map(|special| special.kind);
     let is_met = |point: &&BranchPoint| kind(point).is_some_and(&is_wanted);
     let mut found: Vec<BranchPoint> = Vec::new();

@@ -164,7 +164,7 @@ fn struck_deeper(angle: f64) -> Option<u64> {
 
 /// Why the class of a graze is undecided at a speed, on whose two sides it differs, or the passages after which the follower is struck deeper.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Border {
+pub enum UndecidedGraze {
     /// The eigenvalue has this value.
     Eigenvalue(f64),
     /// The follower is at its equilibrium again so many passages after an impact.
@@ -172,13 +172,18 @@ pub enum Border {
 }
 
 /// Speeds in a range, rpm, at which the class is undecided, of a cam with so many tops: at most `most` of them.
-pub(super) fn borders(machine: &Machine, tops: usize, [low, high]: [f64; 2], most: usize) -> Vec<(f64, Border)> {
+pub(super) fn borders(
+    machine: &Machine,
+    tops: usize,
+    [low, high]: [f64; 2],
+    most: usize,
+) -> Vec<(f64, UndecidedGraze)> {
     let per_rpm = angular_velocity(1.0);
     // A passage takes T = 2 pi/(omega tops).
     let speed = |time: f64| TAU / time / tops as f64 / per_rpm;
-    let is_inside = |(rpm, _): &(f64, Border)| low < *rpm && *rpm < high;
+    let is_inside = |(rpm, _): &(f64, UndecidedGraze)| low < *rpm && *rpm < high;
     if let Some(slow) = machine.flight().slowest_rate() {
-        let at = |bound: f64| (speed(-elementary::ln(bound) / slow), Border::Eigenvalue(bound));
+        let at = |bound: f64| (speed(-elementary::ln(bound) / slow), UndecidedGraze::Eigenvalue(bound));
         return CHAOS_BETWEEN.into_iter().map(at).filter(is_inside).collect();
     }
     let Some(oscillation) = machine.flight().damped_frequency() else { return Vec::new() };
@@ -187,7 +192,7 @@ pub(super) fn borders(machine: &Machine, tops: usize, [low, high]: [f64; 2], mos
     let parts = (1..=LATEST).rev().map(|passages| (PI / passages as f64, passages));
     let parts: Vec<(f64, u64)> = std::iter::once((0.0, 1)).chain(parts).collect();
     let angles = turns.flat_map(|turn| parts.clone().into_iter().map(move |(part, n)| (turn as f64 * TAU + part, n)));
-    let speeds = angles.map(|(angle, passages)| (speed(angle / oscillation), Border::Resonance(passages)));
+    let speeds = angles.map(|(angle, passages)| (speed(angle / oscillation), UndecidedGraze::Resonance(passages)));
     let mut inside: Vec<_> = speeds.take_while(|(rpm, _)| low < *rpm).filter(is_inside).take(most).collect();
     inside.reverse();
     inside

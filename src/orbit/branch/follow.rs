@@ -2,11 +2,11 @@
 
 use nalgebra::DVector;
 
-use super::cut::{Cut, Located, Stride};
-use super::held::{Held, Pinned};
-use super::problem::{Problem, Units};
+use super::constraint::{Held, Pinned};
+use super::problem::{BranchScales, Problem};
+use super::step_event::{Cut, Located, Stride};
 use super::switch::{self, Exit};
-use super::{BranchPoint, End, Following, HalfBranch, Special, gap, special};
+use super::{BranchPoint, End, Following, HalfBranch, Special, least_gap, special};
 use crate::orbit::curve::{self, CurvePoint, NoPoint};
 use crate::orbit::{Cycle, Departure, Family, FamilyError, OrbitError, PeriodicOrbit};
 use crate::tolerance;
@@ -34,7 +34,7 @@ impl<'a> Stride<'a> {
     fn begun(family: &'a Family, start: &Start<'_>, following: &'a Following) -> Result<Self, OrbitError> {
         let Start { cycle, values, spans, held } = *start;
         let machine = family.machine(values)?.0;
-        let units = Units::of(cycle, &machine);
+        let units = BranchScales::of(cycle, &machine);
         let unknowns = Problem::new(family, cycle, units, spans, held).unknowns(cycle, &machine, values);
         let tangent = DVector::zeros(unknowns.len());
         let from = CurvePoint { unknowns, tangent, steps: 0 };
@@ -210,7 +210,7 @@ impl Walk<'_> {
         /// From which factor on.
         const FACTOR: f64 = 1.5;
         let Ok((cycle, machine, _)) = self.stride.problem().unpack(&self.stride.from.unknowns) else { return false };
-        let units = Units::of(&cycle, &machine);
+        let units = BranchScales::of(&cycle, &machine);
         let factor = units.velocity / self.stride.units.velocity;
         if !(1.0 / FACTOR..FACTOR).contains(&factor) {
             self.stride.units.convert(&mut self.stride.from, cycle.impacts.len(), units);
@@ -400,7 +400,7 @@ impl Walk<'_> {
         let (cycle, machine, _) = problem.unpack(&self.stride.from.unknowns)?;
         drop(problem);
         let exit = match exit {
-            Exit::Touch { impact, turned } => match gap::least(&cycle, &machine, impact, turned) {
+            Exit::Touch { impact, turned } => match least_gap::least(&cycle, &machine, impact, turned) {
                 Some((_, turned)) => Exit::Touch { impact, turned },
                 None => return Ok(Some(End::Lost)),
             },

@@ -9,8 +9,8 @@
 
 use std::convert::Infallible;
 
-use super::first_touch::{Border, Doubt, FirstTouch, borders};
-use super::{Branch, BranchPoint, End, Following, HalfBranch, Kind, OnCurve, Special, follow};
+use super::first_touch::{Doubt, FirstTouch, UndecidedGraze, borders};
+use super::{Branch, BranchPoint, End, Following, HalfBranch, OnCurve, Special, SpecialKind, follow};
 use crate::bracket::{Width, halve};
 use crate::cam::{Least, within_a_turn};
 use crate::flight::State;
@@ -51,7 +51,7 @@ impl Rest {
         let tops = self.machine.cam().tops();
         let touch = FirstTouch::of(&self.machine, &tops, larger);
         let turned = tops.first().map_or(f64::NAN, |top| within_a_turn(top.angle));
-        let kind = Kind::Graze { before: 0, after: tops.len(), turned, first: Some(touch) };
+        let kind = SpecialKind::Graze { before: 0, after: tops.len(), turned, first: Some(touch) };
         (Special { kind, bracket, residual: self.gap.abs() }, tops)
     }
 
@@ -109,7 +109,7 @@ fn with_impacts(
     special: Special,
     following: &Following,
 ) -> Result<HalfBranch, OrbitError> {
-    let doubt = if let Kind::Graze { first: Some(first), .. } = special.kind { first.doubt } else { None };
+    let doubt = if let SpecialKind::Graze { first: Some(first), .. } = special.kind { first.doubt } else { None };
     if matches!(doubt, Some(Doubt::Sharp | Doubt::Flat | Doubt::Unheld)) {
         return Ok((Vec::new(), End::Graze));
     }
@@ -134,7 +134,7 @@ pub(super) fn onward(
     /// A small step, of the range, to see on which side the follower is clear of the cam.
     const TRIAL: f64 = 1e-6;
     let Some(last) = points.last_mut() else { return Ok((points, end)) };
-    let Some(special @ Special { kind: Kind::Graze { before, after: 0, .. }, .. }) = last.special else {
+    let Some(special @ Special { kind: SpecialKind::Graze { before, after: 0, .. }, .. }) = last.special else {
         return Ok((points, end));
     };
     let (value, state) = (last.value, last.orbit.state);
@@ -148,8 +148,8 @@ pub(super) fn onward(
         return Ok((points, end));
     };
     let (Special { kind, .. }, _) = rest.graze(special.bracket, direction < 0.0);
-    if let Kind::Graze { turned, first, .. } = kind {
-        last.special = Some(Special { kind: Kind::Graze { before, after: 0, turned, first }, ..special });
+    if let SpecialKind::Graze { turned, first, .. } = kind {
+        last.special = Some(Special { kind: SpecialKind::Graze { before, after: 0, turned, first }, ..special });
     }
     last.orbit = rest.orbit;
     let (more, end) = half(family, value, state, following, direction)?;
@@ -163,7 +163,7 @@ pub(crate) fn touches(
     model: &Model,
     speeds: [f64; 2],
     following: &Following,
-) -> Result<Vec<(Branch, Kind)>, OrbitError> {
+) -> Result<Vec<(Branch, SpecialKind)>, OrbitError> {
     let family = Family::new(model, speeds[0], vec![following.parameter.clone()])?;
     let state = State { position: 0.0, velocity: 0.0 };
     let clear = |value: f64| {
@@ -197,16 +197,16 @@ fn touching(
     speeds: [f64; 2],
     (state, larger): (State, bool),
     following: &Following,
-) -> Result<(Branch, Kind), OrbitError> {
+) -> Result<(Branch, SpecialKind), OrbitError> {
     let (machine, _) = family.machine(&[value])?;
     let tops = machine.cam().tops();
     let cam_angle = tops.first().map_or(f64::NAN, |top| within_a_turn(top.angle));
     let first = Some(FirstTouch::of(&machine, &tops, larger));
-    let kind = Kind::Graze { before: 0, after: tops.len(), turned: cam_angle, first };
+    let kind = SpecialKind::Graze { before: 0, after: tops.len(), turned: cam_angle, first };
     let count = following.longest_step.recip().ceil() as u64;
     let regular = (0..=count).map(|index| (speeds[0] + (speeds[1] - speeds[0]) * index as f64 / count as f64, None));
     let borders = borders(&machine, tops.len(), speeds, following.most_points);
-    let mut places: Vec<(f64, Option<Border>)> =
+    let mut places: Vec<(f64, Option<UndecidedGraze>)> =
         regular.chain(borders.into_iter().map(|(rpm, border)| (rpm, Some(border)))).collect();
     places.sort_by(|one, other| one.0.total_cmp(&other.0));
     let mut points = Vec::new();
@@ -214,7 +214,7 @@ fn touching(
         let machine = machine.at_speed(angular_velocity(rpm));
         let Some(orbit) = at_rest(&machine, state) else { continue };
         let touch = FirstTouch::of(&machine, &tops, larger);
-        let special = border.map(|border| Special { kind: Kind::Class(border), bracket, residual: 0.0 });
+        let special = border.map(|border| Special { kind: SpecialKind::Class(border), bracket, residual: 0.0 });
         let held = Some(OnCurve { cam_angle, sides: vec![orbit.matrix], class: Some(touch.class) });
         points.push(BranchPoint { rpm, value, orbit, held, special });
     }

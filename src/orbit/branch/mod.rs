@@ -10,29 +10,29 @@
 //! | `find` | the branches through given orbits and what branches off; those of a range of speeds, and its corner impacts |
 //! | `doubled` | orbits of twice the period next to a special point, and those of a branch that crosses |
 //! | `follow` | one direction of a branch, step by step; `chatter` where the follower sticks |
-//! | `problem`, `held` | the equations, with numbers of the model free; what holds besides along a curve in two of them |
-//! | `cut`, `gap`, `halved` | what a step passes, and where: corners, folds, flips; grazes; the end of a doubled period |
+//! | `problem`, `constraint` | the equations, with numbers of the model free; what holds besides along a curve in two of them |
+//! | `step_event`, `least_gap`, `period_halving` | what a step passes, and where: corners, folds, flips; grazes; the end of a doubled period |
 //! | `free`, `first_touch` | orbits without impacts, and their graze: what is known of the motions beyond it |
-//! | `rest`, `contact` | curves of what becomes of a follower on the cam: where it leaves it, where it rests no more |
-//! | `moved` | the events of a machine that differs a little |
+//! | `sticking_curve`, `sticking_event` | curves of what becomes of a follower on the cam: where it leaves it, where it rests no more |
+//! | `perturbed` | the events of a machine that differs a little |
 //! | `switch` | the cycle beyond a corner or a graze, and which way leads there |
 //! | `special` | the points where something changes; which impact of an orbit is which of the next |
 
 mod chatter;
-mod contact;
-mod cut;
+mod constraint;
 mod doubled;
 mod find;
 mod first_touch;
 mod follow;
 mod free;
-mod gap;
-mod halved;
-mod held;
-mod moved;
+mod least_gap;
+mod period_halving;
+mod perturbed;
 mod problem;
-mod rest;
 mod special;
+mod step_event;
+mod sticking_curve;
+mod sticking_event;
 mod switch;
 
 use nalgebra::Matrix2;
@@ -42,11 +42,11 @@ use crate::model::Model;
 use crate::tolerance;
 pub(crate) use doubled::{crossing, doubled};
 pub(crate) use find::{FoundBranches, GRID_RATIO, MetPoints, find_branches, special_points};
-pub use first_touch::{Border, Doubt, FirstTouch, GrazeClass};
+pub use first_touch::{Doubt, FirstTouch, GrazeClass, UndecidedGraze};
 pub(crate) use free::touches;
-pub(crate) use moved::Event;
+pub(crate) use perturbed::Event;
 pub(crate) use special::Special;
-pub use special::{Bifurcation, Kind};
+pub use special::{Bifurcation, SpecialKind};
 
 /// What is followed, and how far.
 #[derive(Clone, Debug, PartialEq)]
@@ -251,7 +251,9 @@ impl Branch {
                 let start = follow::Start { cycle: &cycle, values: &values, spans: &spans, held: Some(held) };
                 follow::curve(&family, &start, following, Some(special))?
             }
-            super::Course::Sticking(_) => rest::curve(&family, (values, spans), &point.orbit, special, following)?,
+            super::Course::Sticking(_) => {
+                sticking_curve::curve(&family, (values, spans), &point.orbit, special, following)?
+            }
             super::Course::Free => None,
         };
         Ok(Some(match whole {

@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::held::Held;
+use super::constraint::Held;
 use crate::orbit::curve::{CurvePoint, Equations};
 use crate::orbit::cycle::lift_size;
 use crate::orbit::{Cycle, Family, FamilyError};
@@ -10,14 +10,14 @@ use crate::simulate::Machine;
 
 /// What lengths are measured by.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Units {
+pub struct BranchScales {
     /// The size of the cam's lift, m.
     pub lift: f64,
     /// The size of the follower's velocities over omega, m/rad.
     pub velocity: f64,
 }
 
-impl Units {
+impl BranchScales {
     pub fn of(cycle: &Cycle, machine: &Machine) -> Self {
         let lift = lift_size(machine);
         let fastest = cycle.impacts.iter().fold(0.0_f64, |fastest, impact| fastest.max(impact.velocity_before.abs()));
@@ -41,14 +41,14 @@ pub struct Problem<'a> {
     /// Revolutions and segments; its angles and velocities are replaced.
     pattern: Cycle,
     /// Of the cam's lift, m, and of velocities over omega, m/rad.
-    units: Units,
+    units: BranchScales,
     spans: Vec<f64>,
     held: Option<Held>,
 }
 
 impl<'a> Problem<'a> {
     /// The cycle of the pattern's revolutions and segments.
-    pub fn new(family: &'a Family, pattern: &Cycle, units: Units, spans: &[f64], held: Option<Held>) -> Self {
+    pub fn new(family: &'a Family, pattern: &Cycle, units: BranchScales, spans: &[f64], held: Option<Held>) -> Self {
         Self { family, pattern: pattern.clone(), units, spans: spans.to_vec(), held }
     }
 

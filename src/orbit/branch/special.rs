@@ -4,12 +4,12 @@ use std::f64::consts::TAU;
 
 use serde::Serialize;
 
-use super::first_touch::{Border, FirstTouch};
+use super::first_touch::{FirstTouch, UndecidedGraze};
 use crate::orbit::{Course, Impact, Judgement, PeriodicOrbit, Stability};
 
 /// What changes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Kind {
+pub enum SpecialKind {
     /// A multiplier passes 1: the branch turns round in the parameter.
     Fold,
     /// A multiplier passes 1 and the branch goes on: another branch crosses it, of orbits with less symmetry perhaps.
@@ -47,7 +47,7 @@ pub enum Kind {
     /// Along a curve of folds: a cusp, where two of them meet.
     Cusp,
     /// Along a curve of grazes of orbits without impacts: the class of the graze is undecided there, and may change.
-    Class(Border),
+    Class(UndecidedGraze),
     /// Along a curve of grazes: follower and cam have one acceleration at the touch.
     DegenerateGraze,
     /// Along a curve of detachment: where the follower leaves the cam first changes from one place to another.
@@ -85,7 +85,7 @@ impl Bifurcation {
     pub const ALL: [Self; 6] = [Self::Corner, Self::Fold, Self::Flip, Self::Graze, Self::Detachment, Self::Resting];
 }
 
-impl Kind {
+impl SpecialKind {
     /// Whether the matrix of the orbit is one on both sides of a corner, since what jumps there is beyond the acceleration.
     pub(crate) fn is_smooth_corner(&self) -> bool {
         matches!(self, Self::Corner { jump_order: 3.., .. })
@@ -127,7 +127,8 @@ impl Kind {
 /// The orbit at a point where something changes: neutral where a multiplier is 1 or -1 by the equations of the point, on whichever side
 /// of the circle rounding has put it. The other multiplier has the size of det M, which is 1 at most.
 pub(super) fn judged(orbit: PeriodicOrbit, special: Option<Special>) -> PeriodicOrbit {
-    let on_circle = special.is_some_and(|special| matches!(special.kind, Kind::Fold | Kind::Flip | Kind::Branching));
+    let on_circle = special
+        .is_some_and(|special| matches!(special.kind, SpecialKind::Fold | SpecialKind::Flip | SpecialKind::Branching));
     let stability = if on_circle { Stability::Neutral } else { orbit.judgement.stability };
     PeriodicOrbit { judgement: Judgement { stability, ..orbit.judgement }, ..orbit }
 }
@@ -135,7 +136,7 @@ pub(super) fn judged(orbit: PeriodicOrbit, special: Option<Special>) -> Periodic
 /// Where it changes, and how well that is known.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Special {
-    pub kind: Kind,
+    pub kind: SpecialKind,
     /// Two values of the parameter between which it does.
     pub bracket: [f64; 2],
     /// What is left of the quantity that passes 0 there, in its own unit: rad, m/s, m, or a multiplier's.

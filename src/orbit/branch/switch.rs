@@ -5,9 +5,9 @@ use std::f64::consts::TAU;
 
 use nalgebra::DVector;
 
-use super::held::{Held, Pinned};
+use super::constraint::{Held, Pinned};
 use super::problem::Problem;
-use super::{gap, special::Kind};
+use super::{least_gap, special::SpecialKind};
 use crate::orbit::curve::{NoPoint, first_tangent};
 use crate::orbit::{Cycle, FamilyError, Impact};
 use crate::simulate::Machine;
@@ -24,21 +24,21 @@ pub(super) enum Exit {
 }
 
 /// What the exit is called, on a cam whose corner there has this order.
-pub(super) fn kind(exit: Exit, cycle: &Cycle, machine: &Machine, order: usize) -> Kind {
+pub(super) fn kind(exit: Exit, cycle: &Cycle, machine: &Machine, order: usize) -> SpecialKind {
     let count = cycle.impacts.len();
     let turned_at = |impact: usize| cycle.impacts[impact].turned();
     match exit {
         Exit::Corner { impact, past_end } => {
             let segment = cycle.impacts[impact].segment;
             let next = (segment + 1) % machine.cam().segments().len();
-            Kind::Corner { impact, segment: if past_end { next } else { segment }, jump_order: order }
+            SpecialKind::Corner { impact, segment: if past_end { next } else { segment }, jump_order: order }
         }
         Exit::Tangent { impact } => {
-            Kind::Graze { before: count, after: count - 1, turned: turned_at(impact), first: None }
+            SpecialKind::Graze { before: count, after: count - 1, turned: turned_at(impact), first: None }
         }
         Exit::Touch { impact, turned } => {
-            let turned = gap::least(cycle, machine, impact, turned).map_or(turned, |(_, least)| least);
-            Kind::Graze { before: count, after: count + 1, turned: turned_at(impact) + turned, first: None }
+            let turned = least_gap::least(cycle, machine, impact, turned).map_or(turned, |(_, least)| least);
+            SpecialKind::Graze { before: count, after: count + 1, turned: turned_at(impact) + turned, first: None }
         }
     }
 }
@@ -52,15 +52,15 @@ pub(super) fn touch(cycle: &Cycle, turned: f64) -> Option<Exit> {
 }
 
 /// What holds at a special point, and the cycle that it holds of.
-pub(super) fn held(kind: Kind, cycle: &Cycle, machine: &Machine) -> Option<(Cycle, Held)> {
+pub(super) fn held(kind: SpecialKind, cycle: &Cycle, machine: &Machine) -> Option<(Cycle, Held)> {
     match kind {
-        Kind::Corner { impact, segment, .. } => {
+        SpecialKind::Corner { impact, segment, .. } => {
             let at_end = cycle.impacts[impact].segment != segment;
             Some((cycle.clone(), Held::Corner(Pinned { impact, at_end })))
         }
-        Kind::Fold => Some((cycle.clone(), Held::Multiplier(1.0))),
-        Kind::Flip => Some((cycle.clone(), Held::Multiplier(-1.0))),
-        Kind::Graze { turned, .. } => {
+        SpecialKind::Fold => Some((cycle.clone(), Held::Multiplier(1.0))),
+        SpecialKind::Flip => Some((cycle.clone(), Held::Multiplier(-1.0))),
+        SpecialKind::Graze { turned, .. } => {
             let touch = touch(cycle, turned)?;
             Some((beyond(touch, cycle, machine)?, Held::Touch(moved_impact(touch)?)))
         }
@@ -140,7 +140,7 @@ pub(super) fn direction(
             let before = (impact + count - 1) % count;
             // In the cycle without the impact the one before it has this index.
             let index = if impact == 0 { count - 2 } else { before };
-            gap::least(cycle, machine, index, from.turn(before)).map_or(f64::NAN, |(gap, _)| gap)
+            least_gap::least(cycle, machine, index, from.turn(before)).map_or(f64::NAN, |(gap, _)| gap)
         }
     })
 }

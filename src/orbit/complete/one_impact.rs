@@ -13,7 +13,7 @@ use super::clearance::Hop;
 use super::{Solved, Standing, Struck, joined};
 use crate::cam::{Cam, Lift};
 use crate::flight::{Flight, Response};
-use crate::interval::roots::{Isolated, Over, isolate};
+use crate::interval::roots::{BoxValues, Isolated, isolate};
 use crate::interval::{Interval, Number};
 use crate::orbit::cycle::{Cycle, Impact};
 use crate::simulate::Machine;
@@ -44,7 +44,7 @@ impl OneImpact<'_> {
         Interval::TURN * self.revolutions as f64
     }
 
-    /// Over the lifts of a range of angles and a range of times, with the responses over these.
+    /// BoxValues the lifts of a range of angles and a range of times, with the responses over these.
     pub(crate) fn equation(&self, lift: &Lift<Interval>, time: Interval, response: &Response<Interval>) -> Equation {
         let (r, flight) = (self.restitution, self.flight);
         let (p, s, s1) = (response.step, response.impulse, response.impulse_rate);
@@ -131,7 +131,7 @@ impl<'a> OneImpact<'a> {
             let segment = &segments[first];
             let over = |[angle]: &[Interval; 1]| {
                 let Equation { value, by_angle, .. } = self.equation(&segment.law.lift_over(*angle), time, &response);
-                Over { values: [value], derivatives: [[by_angle]], is_wanted: true }
+                BoxValues { values: [value], derivatives: [[by_angle]], is_wanted: true }
             };
             let Isolated { roots, undecided, .. } = isolate([segment.angles()], MOST_BOXES, over);
             let roots = roots.into_iter().map(|root| (root, true));

@@ -23,8 +23,8 @@ use super::{Solved, Standing, Struck, joined};
 use crate::cam::Lift;
 use crate::flight::Response;
 use crate::interval::Interval;
-use crate::interval::roots::{Isolated, Over, isolate};
-use crate::interval::varied::Varied;
+use crate::interval::dual::Dual;
+use crate::interval::roots::{BoxValues, Isolated, isolate};
 use crate::orbit::cycle::{Cycle, Impact};
 use crate::progress::Watch;
 use crate::simulate::Machine;
@@ -46,9 +46,9 @@ struct Flights {
     forces: [Interval; 2],
     responses: [Response<Interval>; 2],
     /// s1/t1, A and B.
-    mean: Varied<2>,
-    short: Varied<2>,
-    long: Varied<2>,
+    mean: Dual<2>,
+    short: Dual<2>,
+    long: Dual<2>,
 }
 
 impl Pair<'_> {
@@ -108,23 +108,23 @@ impl Pair<'_> {
                 [curvature.half(); 2],
             )
         };
-        let mean = Varied::of(mean, mean_by, by_1);
+        let mean = Dual::of(mean, mean_by, by_1);
         let [x, y] = self.lift(&lifts, [by_x, by_y]);
         let spring = flight.omega0_squared();
-        let force = |lift: Varied<2>| Varied { value: flight.force(lift.value), by: lift.by.map(|by| -(by * spring)) };
-        let rise = Varied { value: rise, by: rise_by };
-        let short = rise * omega - force(x) * Varied::of(step, step_by, by_1);
-        let long = x - y - force(y) * Varied::of(two.step, two.impulse, by_2);
+        let force = |lift: Dual<2>| Dual { value: flight.force(lift.value), by: lift.by.map(|by| -(by * spring)) };
+        let rise = Dual { value: rise, by: rise_by };
+        let short = rise * omega - force(x) * Dual::of(step, step_by, by_1);
+        let long = x - y - force(y) * Dual::of(two.step, two.impulse, by_2);
         Flights { lifts, forces, responses, mean, short, long }
     }
 
     /// c(x) and c(y).
-    fn lift(&self, lifts: &[Lift<Interval>; 2], by: [[Interval; 2]; 2]) -> [Varied<2>; 2] {
-        [0, 1].map(|which| Varied::of(lifts[which].value, lifts[which].slope, by[which]))
+    fn lift(&self, lifts: &[Lift<Interval>; 2], by: [[Interval; 2]; 2]) -> [Dual<2>; 2] {
+        [0, 1].map(|which| Dual::of(lifts[which].value, lifts[which].slope, by[which]))
     }
 
     /// The equations. Of the roots those are wanted that no law of impacts or flights is broken at, with y at most half a turn on.
-    fn over(&self, place: &[Interval; 2]) -> Over<2> {
+    fn over(&self, place: &[Interval; 2]) -> BoxValues<2> {
         let flights = self.flights(place);
         let is_wanted = !flights.velocities(self.machine).is_broken
             && self.turn(place).common(Interval::new(0.0, Interval::TURN.half().high())).is_some();
@@ -137,18 +137,15 @@ impl Pair<'_> {
         let none = Interval::from(0.0);
         let (by_x, by_y) = ([Interval::from(1.0), none], [none, Interval::from(1.0)]);
         let force = |which: usize, by: [Interval; 2]| {
-            Varied::of(forces[which], -(lifts[which].slope * flight.omega0_squared()), by)
+            Dual::of(forces[which], -(lifts[which].slope * flight.omega0_squared()), by)
         };
-        let slope =
-            |which: usize, by: [Interval; 2]| Varied::of(lifts[which].slope, lifts[which].curvature, by) * omega;
-        let (s1, s2) =
-            (Varied::of(one.impulse, one.impulse_rate, by_1), Varied::of(two.impulse, two.impulse_rate, by_2));
-        let rates =
-            [(&one, by_1), (&two, by_2)].map(|(of, by)| Varied::of(of.impulse_rate, flight.impulse_bend(of), by));
+        let slope = |which: usize, by: [Interval; 2]| Dual::of(lifts[which].slope, lifts[which].curvature, by) * omega;
+        let (s1, s2) = (Dual::of(one.impulse, one.impulse_rate, by_1), Dual::of(two.impulse, two.impulse_rate, by_2));
+        let rates = [(&one, by_1), (&two, by_2)].map(|(of, by)| Dual::of(of.impulse_rate, flight.impulse_bend(of), by));
         let both = mean * s2 * (r + 1.0);
         let at_x = short * s2 - slope(0, by_x) * both + mean * (long * rates[1] + force(1, by_y) * s2 * s2) * r;
         let at_y = long * mean - slope(1, by_y) * both + s2 * (short * rates[0] + force(0, by_x) * s1 * mean) * r;
-        Over { values: [at_x.value, at_y.value], derivatives: [at_x.by, at_y.by], is_wanted }
+        BoxValues { values: [at_x.value, at_y.value], derivatives: [at_x.by, at_y.by], is_wanted }
     }
 
     /// What a solution is.

@@ -4,7 +4,7 @@ use crate::agreement::{Agreement, Quantity, by_quantity, shared_decimals, worse}
 use crate::cam::Side;
 use crate::corner::map::{CornerMap, Route, Uncertainty};
 use crate::elementary;
-use crate::show::block::{Block, Column, Mark, Span, Table, Words, about, words};
+use crate::show::block::{Block, Column, Span, Table, TextMark, Words, about, words};
 use crate::show::digits::Digits;
 use crate::show::words;
 use crate::study::verify::{LeftOpen, Verification};
@@ -172,7 +172,7 @@ pub(crate) fn agreement(found: &Verification) -> Vec<Block> {
                 .map(|(value, what)| about(what, (value, Digits::Size)));
             let between = match agrees {
                 true => between.into(),
-                false => (Mark::Bad, format!("{between}  DISAGREE").as_str()).into(),
+                false => (TextMark::Bad, format!("{between}  DISAGREE").as_str()).into(),
             };
             let share = words::shared(shared_decimals(*max_abs_diff)).into();
             table.row_bad_where(!agrees, [name, count, differ, allowed, share, between]);

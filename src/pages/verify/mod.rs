@@ -11,11 +11,11 @@ use crate::pages::local_map;
 use crate::pages::source;
 use crate::pages::speeds::measured_speed;
 use crate::show::Paged;
-use crate::show::block::{Block, Column, Mark, Span, Table, Words, about, words};
+use crate::show::block::{Block, Column, Span, Table, TextMark, Words, about, words};
 use crate::show::digits::Digits;
 use crate::show::words;
-use crate::study::compared::Skipped;
-use crate::study::verify::{LeftOpen, Tally, Verification};
+use crate::study::routes::Skipped;
+use crate::study::verify::{ComparisonTally, LeftOpen, Verification};
 pub(crate) use map::{agreement, map};
 
 impl Paged for Verification {
@@ -150,7 +150,7 @@ fn left_open(found: &Verification, open: &LeftOpen) -> Option<(Words, Words)> {
     let said = match others.is_empty() {
         true => format!("the same of {all} cams that are as likely ({why})").into(),
         false => words![
-            (Mark::Doubtful, "not known"),
+            (TextMark::Doubtful, "not known"),
             format!(": of {all} cams that are as likely ({why}) {}", others.join(", "))
         ],
     };
@@ -248,7 +248,7 @@ pub(crate) fn published(found: &Verification) -> Vec<Block> {
         let (name, place) = (words::quantity(*quantity), Words::from(number.place.as_str()));
         let mut verdict = words::verdict(number.verdict);
         if !number.as_found {
-            verdict.push(words!["   ", (Mark::Bad, "UNEXPECTED")]);
+            verdict.push(words!["   ", (TextMark::Bad, "UNEXPECTED")]);
         }
         brief.row([
             name.clone(),
@@ -295,13 +295,13 @@ pub(crate) fn verdict(found: &Verification) -> Vec<Block> {
         found.skipped.iter().filter(|skipped| skipped.failed).map(|skipped| skipped.route.as_str()).collect();
     let all_agree = found.comparisons.iter().all(|pair| pair.agrees) && found.tally().printed_otherwise == 0;
     let (mark, word, reason) = match missing.as_slice() {
-        _ if found.agrees => (Mark::Good, "AGREES", String::new()),
-        [] => (Mark::Bad, "DISAGREES", ": a comparison above".to_owned()),
+        _ if found.agrees => (TextMark::Good, "AGREES", String::new()),
+        [] => (TextMark::Bad, "DISAGREES", ": a comparison above".to_owned()),
         [most @ .., last] => {
             let names = if most.is_empty() { (*last).to_owned() } else { format!("{} and {last}", most.join(", ")) };
             // If the routes that ran agree, nothing disagrees, but not everything was checked.
             let word = if all_agree { "INCOMPLETE" } else { "DISAGREES" };
-            (Mark::Bad, word, format!(": {names} did not run"))
+            (TextMark::Bad, word, format!(": {names} did not run"))
         }
     };
     blocks.push(Block::paragraph(words![(mark, word), reason]));
@@ -311,8 +311,8 @@ pub(crate) fn verdict(found: &Verification) -> Vec<Block> {
 /// Number of comparisons that agree, and number of printed numbers that are right.
 pub(crate) fn tally(found: &Verification) -> Vec<Words> {
     let tally = found.tally();
-    let Tally { comparisons, agreeing, following, following_agreeing, shared_decimals, .. } = tally;
-    let Tally { printed, printed_right, printed_wrong, printed_otherwise, .. } = tally;
+    let ComparisonTally { comparisons, agreeing, following, following_agreeing, shared_decimals, .. } = tally;
+    let ComparisonTally { printed, printed_right, printed_wrong, printed_otherwise, .. } = tally;
     let more = if shared_decimals.is_some() { " or more" } else { "" };
     let shares = words::shared(shared_decimals);
     let follow = match following {

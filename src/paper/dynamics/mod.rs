@@ -1,7 +1,7 @@
 //! Statements about runs: what the follower does at a speed, decided by the simulator.
 //!
 //! `chattering` is about slow cams, where the follower comes to rest on the cam once a revolution; `transition` about
-//! fast ones, around the corner impact; `global` about what coexists there and how the motion goes over. Evidence must not
+//! fast ones, around the corner impact; `global` about what coexists there and how the motion goes over. What is known must not
 //! depend on the computer: of a chaotic run it says only what any run shows.
 
 mod chattering;

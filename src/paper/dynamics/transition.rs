@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use super::{corners, listed, machine, one_impact};
 use crate::covering::prove::prove;
 use crate::covering::{HSet, known};
-use crate::orbit::branch::{Branch, BranchPoint, Following, Kind};
+use crate::orbit::branch::{Branch, BranchPoint, Following, SpecialKind};
 use crate::orbit::{Parameter, Search, search};
 use crate::paper::context::{Context, Decision, decide};
 use crate::published::Verdict;
@@ -41,7 +41,7 @@ fn special(
     rpm: f64,
     revolutions: u64,
     range: [f64; 2],
-    is: impl Fn(Kind) -> bool,
+    is: impl Fn(SpecialKind) -> bool,
 ) -> Result<BranchPoint, Box<dyn Error>> {
     let wanted = Search { revolutions, impacts: Some(revolutions as usize) };
     let orbits = search(&machine(context, rpm), &wanted)?;
@@ -54,7 +54,7 @@ fn special(
 
 /// The speed where a multiplier of the motion of one impact a revolution passes -1, rpm.
 fn flip(context: &Context<'_>) -> Result<f64, Box<dyn Error>> {
-    Ok(special(context, 700.0, 1, [690.0, 745.0], |kind| kind == Kind::Flip)?.rpm)
+    Ok(special(context, 700.0, 1, [690.0, 745.0], |kind| kind == SpecialKind::Flip)?.rpm)
 }
 
 pub(in crate::paper) fn period_one_above(context: &Context<'_>) -> Decision {
@@ -153,7 +153,7 @@ pub(in crate::paper) fn transitions_at_corners(context: &Context<'_>) -> Decisio
     let at = &context.findings.at;
     let flip = flip(context)?;
     // The line of the later impact meets Q where the motion of two revolutions ends.
-    let end = special(context, flip + 0.01, 2, [flip, 739.5], |kind| matches!(kind, Kind::Corner { .. }))?;
+    let end = special(context, flip + 0.01, 2, [flip, 739.5], |kind| matches!(kind, SpecialKind::Corner { .. }))?;
     let reached = end.orbit.impacts().map(|impact| impact.cam_angle).fold(f64::NAN, f64::max);
     let machine = machine(context, end.rpm + 0.1);
     let mut motion = from_x_star(context, &machine)?;

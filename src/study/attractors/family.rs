@@ -66,15 +66,15 @@ pub struct GridValue {
 }
 
 /// The values that were looked at, from the lowest up.
-pub type Grid = [GridValue];
+pub type ValueGrid = [GridValue];
 
 /// Matches what was found over a grid of values, which are a `step` apart next to a value; what begins or ends beyond a range does so
 /// somewhere between two values of the grid.
 pub fn families(
     over: &Over<'_>,
-    (grid, range): (&Grid, [f64; 2]),
+    (grid, range): (&ValueGrid, [f64; 2]),
     step: &(dyn Fn(f64) -> f64 + Sync),
-    runs: Asked<'_>,
+    runs: StartsAndBudget<'_>,
 ) -> Vec<AttractorFamily> {
     let mut families = linked(over, grid);
     let step = |family: &AttractorFamily| step(family.range[1]);
@@ -89,7 +89,7 @@ pub fn families(
 }
 
 /// Families by what one value and the next have in common.
-fn linked(over: &Over<'_>, grid: &Grid) -> Vec<AttractorFamily> {
+fn linked(over: &Over<'_>, grid: &ValueGrid) -> Vec<AttractorFamily> {
     let mut families: Vec<AttractorFamily> = Vec::new();
     for (index, GridValue { value, found }) in grid.iter().enumerate() {
         let (Ok(here), Ok(machine)) = (found, over.machine(*value)) else { continue };
@@ -206,7 +206,7 @@ fn joined(over: &Over<'_>, families: Vec<AttractorFamily>) -> Vec<AttractorFamil
 }
 
 impl AttractorFamily {
-    fn ending<'a>(&self, grid: &'a Grid, index: usize) -> Option<&'a LongRun> {
+    fn ending<'a>(&self, grid: &'a ValueGrid, index: usize) -> Option<&'a LongRun> {
         let here = grid.get(index)?.found.as_ref().ok()?;
         Some(&here.attractors.get(*self.at.get(&index)?)?.ending)
     }
@@ -225,7 +225,7 @@ impl AttractorFamily {
     }
 
     /// Follows the branch of an orbit to where it ceases to be stable.
-    fn follow(&mut self, over: &Over<'_>, grid: &Grid, step: f64) {
+    fn follow(&mut self, over: &Over<'_>, grid: &ValueGrid, step: f64) {
         let middle = self.at.keys().nth(self.at.len() / 2).copied();
         if let Some(index) = middle
             && let Some(LongRun::Orbit(orbit)) = self.ending(grid, index)
@@ -242,7 +242,7 @@ impl AttractorFamily {
 
     /// Makes its range that of the values at which runs have come to it, where the branch that it is on ends before: a run that has not left
     /// what is lost beyond is on it still.
-    fn reach(&mut self, over: &Over<'_>, grid: &Grid) {
+    fn reach(&mut self, over: &Over<'_>, grid: &ValueGrid) {
         let [Some(first), Some(last)] =
             [self.at.keys().next(), self.at.keys().last()].map(|index| index.map(|index| grid[*index].value))
         else {
@@ -257,7 +257,7 @@ impl AttractorFamily {
     }
 
     /// Narrows down where a motion that is no orbit begins and ends in a range, between two values of the grid.
-    fn narrow(&mut self, over: &Over<'_>, (grid, range): (&Grid, [f64; 2]), runs: Asked<'_>) {
+    fn narrow(&mut self, over: &Over<'_>, (grid, range): (&ValueGrid, [f64; 2]), runs: StartsAndBudget<'_>) {
         if self.stable.is_some() {
             return;
         }
@@ -280,7 +280,13 @@ impl AttractorFamily {
     }
 
     /// Between the value of an index, at which it is there, and the next.
-    fn ended(&self, (over, runs): (&Over<'_>, Asked<'_>), grid: &Grid, index: usize, ends: [f64; 2]) -> Transition {
+    fn ended(
+        &self,
+        (over, runs): (&Over<'_>, StartsAndBudget<'_>),
+        grid: &ValueGrid,
+        index: usize,
+        ends: [f64; 2],
+    ) -> Transition {
         /// Halvings of a step of the grid.
         const HALVINGS: u32 = 8;
         /// The same, of what could not be told: a longer budget would move its ends, and each look takes as long as that budget.
@@ -295,7 +301,7 @@ impl AttractorFamily {
 
     /// The speed, rpm, at which an end that is known by runs is on another machine, whose cam differs by little, of a family over speeds;
     /// none where it is not found near by.
-    pub fn moved(&self, other: &Machine, grid: &Grid, runs: Asked<'_>, side: usize) -> Option<f64> {
+    pub fn moved(&self, other: &Machine, grid: &ValueGrid, runs: StartsAndBudget<'_>, side: usize) -> Option<f64> {
         /// The first step, in brackets of the end: as narrow a bracket takes long, and steps are doubled.
         const FIRST: f64 = 16.0;
         /// How often.
@@ -324,7 +330,12 @@ impl AttractorFamily {
     }
 
     /// What it is at a value of the grid, to be looked for elsewhere.
-    fn wanted<'a>(&self, grid: &'a Grid, index: usize, (sample, budget): Asked<'_>) -> Option<(Wanted, &'a Attractor)> {
+    fn wanted<'a>(
+        &self,
+        grid: &'a ValueGrid,
+        index: usize,
+        (sample, budget): StartsAndBudget<'_>,
+    ) -> Option<(Wanted, &'a Attractor)> {
         let here = grid.get(index)?.found.as_ref().ok()?;
         let attractor = here.attractors.get(*self.at.get(&index)?)?;
         let of_class = here.attractors.iter().filter(|it| Class::of(&it.ending) == self.class);
@@ -347,7 +358,7 @@ impl AttractorFamily {
     }
 
     /// Its kind: that of most of its values.
-    pub fn kind(&self, grid: &Grid) -> Kind {
+    pub fn kind(&self, grid: &ValueGrid) -> Kind {
         let mut counts: BTreeMap<Kind, usize> = BTreeMap::new();
         for index in self.at.keys() {
             if let Some(ending) = self.ending(grid, *index) {
@@ -404,7 +415,7 @@ struct Wanted {
 }
 
 /// Where the runs of a survey begin, and for how long they are followed.
-pub type Asked<'a> = (&'a Sample, Budget);
+pub type StartsAndBudget<'a> = (&'a Sample, Budget);
 
 /// How many of a sample.
 const STARTS: usize = 12;

@@ -25,17 +25,17 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use rayon::prelude::*;
 
 use crate::bracket::{Width, halve};
+use crate::cancel;
 use crate::model::ModelError;
 use crate::orbit::FamilyError;
 use crate::orbit::long_run::Budget;
 use crate::progress::Watch;
-use crate::stop;
 use crate::study::design::contact::{Contact, Separation};
 use crate::study::survey::{Attractor, Over, OverError, RunError, Sample, Spacing};
 use crate::tolerance;
 pub use at_value::AttractorsAtValue;
 pub use detachment::detachment;
-pub use family::{Asked, AttractorFamily, Grid, GridValue, families};
+pub use family::{AttractorFamily, GridValue, StartsAndBudget, ValueGrid, families};
 pub use step::Step;
 pub use transition::{Cause, Transition};
 
@@ -83,7 +83,7 @@ impl Resolution {
 
 /// Two or more attractors at the same values.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Coexistence {
+pub struct FamilyCoexistence {
     /// Lowest and highest value.
     pub range: [f64; 2],
     /// The families, by their indices.
@@ -100,7 +100,7 @@ pub struct Attractors {
     /// The attractors, by rising value.
     pub families: Vec<AttractorFamily>,
     /// Where there are several.
-    pub coexistence: Vec<Coexistence>,
+    pub coexistence: Vec<FamilyCoexistence>,
     /// Where the follower first leaves the cam above the lowest speed, by the force between them; none where the speed does not vary.
     pub separation: Option<Separation>,
 }
@@ -148,7 +148,7 @@ pub fn attractors(
     let (done, total) = (AtomicU64::new(0), values.len() as u64);
     let at = |value: &f64| {
         // Work that is to end does not begin at each of the values that are left.
-        stop::ask();
+        cancel::check_now();
         watch.at("what runs end on", done.fetch_add(1, Ordering::Relaxed), total);
         let found = over.machine(*value).map_err(RunError::from).and_then(|machine| {
             let runs = (&resolution.sample, resolution.budget);
@@ -257,20 +257,20 @@ fn exchange(over: &Over<'_>, grid: &mut [GridValue]) {
 }
 
 /// Where families overlap, by more than where they begin and end is open by.
-fn coexistence(families: &[AttractorFamily], range: [f64; 2]) -> Vec<Coexistence> {
+fn coexistence(families: &[AttractorFamily], range: [f64; 2]) -> Vec<FamilyCoexistence> {
     let ends = families.iter().flat_map(|family| family.range.into_iter().zip(&family.ends));
     let open = |end: &Option<Transition>| end.as_ref().map_or(0.0, |end| end.bracket[1] - end.bracket[0]);
     let mut ends: Vec<(f64, f64)> = ends.map(|(value, end)| (value, open(end))).collect();
     ends.sort_by(|one, other| one.0.total_cmp(&other.0));
     // Of a speed, rpm; of a number with a range below 1 as much of that.
     let rounding = tolerance::SPEED_FOUND.value * (range[1] - range[0]).min(1.0);
-    let mut found: Vec<Coexistence> = Vec::new();
+    let mut found: Vec<FamilyCoexistence> = Vec::new();
     for pair in ends.windows(2) {
         let [(low, one), (high, other)] = [pair[0], pair[1]];
         let covers = |index: &usize| families[*index].range[0] <= low && high <= families[*index].range[1];
         let families: Vec<usize> = (0..families.len()).filter(covers).collect();
         if families.len() > 1 && high - low > one.max(other).max(rounding) {
-            found.push(Coexistence { range: [low, high], families });
+            found.push(FamilyCoexistence { range: [low, high], families });
         }
     }
     found

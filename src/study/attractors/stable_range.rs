@@ -2,7 +2,7 @@
 
 use super::by_runs;
 use super::transition::{Cause, Transition};
-use crate::orbit::branch::{self, Branch, BranchPoint, End, Following, Kind};
+use crate::orbit::branch::{self, Branch, BranchPoint, End, Following, SpecialKind};
 use crate::orbit::long_run::Budget;
 use crate::orbit::runs::{LongRuns, RunOutcome};
 use crate::orbit::symmetry;
@@ -147,7 +147,7 @@ impl StableRange {
     /// Its orbits with an impact at a corner where the acceleration jumps.
     pub fn corner_impacts(&self) -> impl Iterator<Item = &BranchPoint> {
         let is_corner = |point: &&BranchPoint| {
-            point.special.is_some_and(|special| matches!(special.kind, Kind::Corner { jump_order: 2, .. }))
+            point.special.is_some_and(|special| matches!(special.kind, SpecialKind::Corner { jump_order: 2, .. }))
         };
         self.points.iter().filter(is_corner)
     }
@@ -201,7 +201,8 @@ fn walk<'a>(
     let passed = |point: &&BranchPoint| point.special.is_some_and(|special| special.kind.is_smooth_corner());
     for point in points.filter(|point| !passed(point)) {
         if point.special.is_some() {
-            let is_corner = matches!(point.special, Some(special) if matches!(special.kind, Kind::Corner { .. }));
+            let is_corner =
+                matches!(point.special, Some(special) if matches!(special.kind, SpecialKind::Corner { .. }));
             // Two special points in a row, or one that ends the motion whatever is beyond.
             if let Some(before) = pending.or((!is_corner).then_some(point)) {
                 taken.push(before.clone());

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::orbit::branch::{BranchPoint, Kind};
+use crate::orbit::branch::{BranchPoint, SpecialKind};
 use crate::orbit::{Course, Parameter};
 use crate::study::survey::Place;
 
@@ -91,19 +91,25 @@ impl Transition {
         let Some(special) = point.special else { return Self::at(at, Cause::Runs) };
         let cause = match (special.kind, &point.orbit.course) {
             // Where another branch crosses, a multiplier passes 1 as well.
-            (Kind::Fold | Kind::Branching, _) => Cause::Fold,
-            (Kind::Flip, _) => Cause::Flip,
-            (Kind::Graze { before, after, .. }, _) => Cause::Graze { impacts: [before, after] },
-            (Kind::Corner { impact, jump_order, .. }, Course::Impacts(cycle)) => {
+            (SpecialKind::Fold | SpecialKind::Branching, _) => Cause::Fold,
+            (SpecialKind::Flip, _) => Cause::Flip,
+            (SpecialKind::Graze { before, after, .. }, _) => Cause::Graze { impacts: [before, after] },
+            (SpecialKind::Corner { impact, jump_order, .. }, Course::Impacts(cycle)) => {
                 let cam_angle = cycle.impacts.get(impact).map_or(f64::NAN, |impact| impact.cam_angle);
                 Cause::CornerImpact { cam_angle: cam_angle.rem_euclid(std::f64::consts::TAU), jump_order }
             }
-            (Kind::Detachment, _) => Cause::Detachment,
-            (Kind::Corner { .. } | Kind::Chatter, _) => Cause::Runs,
+            (SpecialKind::Detachment, _) => Cause::Detachment,
+            (SpecialKind::Corner { .. } | SpecialKind::Chatter, _) => Cause::Runs,
             // Of curves in two numbers.
-            (Kind::Type { .. } | Kind::Cusp | Kind::DegenerateGraze | Kind::Class(_) | Kind::Place | Kind::Turn, _) => {
-                Cause::Runs
-            }
+            (
+                SpecialKind::Type { .. }
+                | SpecialKind::Cusp
+                | SpecialKind::DegenerateGraze
+                | SpecialKind::Class(_)
+                | SpecialKind::Place
+                | SpecialKind::Turn,
+                _,
+            ) => Cause::Runs,
         };
         Self { at, bracket: special.bracket, cause, point: Some(Box::new(point.clone())), error: None }
     }

@@ -41,7 +41,7 @@ pub fn border(map: &StroboscopicMap, [from, to]: [State; 2], budget: Budget) -> 
 
 /// How near the unstable manifold of a saddle comes back to its stable one.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Approach {
+pub struct ManifoldApproach {
     /// The least distance, m.
     pub distance: f64,
     /// Where on the unstable manifold that is.
@@ -60,13 +60,13 @@ pub fn approach(
     curve: &Curve,
     away: f64,
     [samples, revolutions]: [u32; 2],
-) -> Result<Approach, SimulateError> {
+) -> Result<ManifoldApproach, SimulateError> {
     /// Where a start is, of `away`: the manifold is straight there to the square of it.
     const FIRST: f64 = 1e-5;
     let (multiplier, along) = saddle.unstable;
     let leaving = (-elementary::ln(FIRST) / elementary::ln(multiplier)).ceil() as u32;
     let bounds = curve.bounds();
-    let mut found = Approach { distance: f64::INFINITY, nearest: saddle.state };
+    let mut found = ManifoldApproach { distance: f64::INFINITY, nearest: saddle.state };
     for sample in 0..samples {
         let from = sign * FIRST * away * elementary::powf(multiplier, f64::from(sample) / f64::from(samples));
         let mut state = State {
@@ -79,7 +79,7 @@ pub fn approach(
             if revolution > leaving && bounds.distance(state) < found.distance {
                 let distance = curve.distance_below(found.distance, state);
                 if distance < found.distance {
-                    found = Approach { distance, nearest: state };
+                    found = ManifoldApproach { distance, nearest: state };
                 }
             }
         }

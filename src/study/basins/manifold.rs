@@ -216,11 +216,11 @@ impl Curve {
     }
 
     /// The rectangle that it lies in.
-    pub fn bounds(&self) -> Bounds {
+    pub fn bounds(&self) -> SectionBounds {
         let none = [f64::INFINITY, f64::NEG_INFINITY];
         let join = |[low, high]: [f64; 2], value: f64| [low.min(value), high.max(value)];
-        let bounds = Bounds { positions: none, scaled_velocities: none, omega: self.omega };
-        self.points().fold(bounds, |bounds, state| Bounds {
+        let bounds = SectionBounds { positions: none, scaled_velocities: none, omega: self.omega };
+        self.points().fold(bounds, |bounds, state| SectionBounds {
             positions: join(bounds.positions, state.position),
             scaled_velocities: join(bounds.scaled_velocities, state.velocity / self.omega),
             ..bounds
@@ -259,13 +259,13 @@ impl Curve {
 
 /// A rectangle of the section.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Bounds {
+pub struct SectionBounds {
     positions: [f64; 2],
     scaled_velocities: [f64; 2],
     omega: f64,
 }
 
-impl Bounds {
+impl SectionBounds {
     /// The distance of a state from it, m; 0 inside.
     pub fn distance(&self, state: State) -> f64 {
         let beyond = |value: f64, [low, high]: [f64; 2]| (low - value).max(value - high).max(0.0);

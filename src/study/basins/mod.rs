@@ -17,4 +17,4 @@ mod section;
 pub use grid::{Basin, Basins, Grid, GridError, SectionStarts, States};
 pub use manifold::{Curve, Extent, Reversed, Saddle};
 pub use over::{BasinsAt, BasinsOver, Begun, SharesOf};
-pub use section::{Border, Section, Summary};
+pub use section::{BasinBoundary, BasinSection, Summary};

@@ -2,12 +2,12 @@
 
 use std::time::Instant;
 
-use super::{Basin, Basins, Section, SectionStarts, States};
+use super::{Basin, BasinSection, Basins, SectionStarts, States};
 use crate::flight::State;
 use crate::orbit::long_run::{Budget, Kind};
 use crate::progress::{Unwatched, Watch};
 use crate::study::StudyError;
-use crate::study::survey::{Axis, Over, Place, Varied};
+use crate::study::survey::{Axis, Over, Place, VariedNumber};
 
 /// Where the starts are at each value.
 #[derive(Clone, Debug)]
@@ -24,7 +24,7 @@ pub struct BasinsOver {
     /// The model's name.
     pub model: String,
     /// What varies.
-    pub over: Varied,
+    pub over: VariedNumber,
     /// The lowest and the highest value.
     pub range: [f64; 2],
     /// The section, rad, in `[0, 2 pi)`.
@@ -78,13 +78,13 @@ impl BasinsAt {
 }
 
 /// A kind of motion, with its revolutions and impacts where it repeats.
-pub type Motion = (Kind, Option<(u64, u64)>);
+pub type MotionKind = (Kind, Option<(u64, u64)>);
 
 /// The share of the starts that end on motions of one kind and period, at each value: none where nothing was found.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SharesOf {
     /// The motion.
-    pub motion: Motion,
+    pub motion: MotionKind,
     /// The value, and the share.
     pub shares: Vec<[f64; 2]>,
 }
@@ -94,10 +94,10 @@ impl BasinsOver {
     pub fn shares(&self) -> Vec<SharesOf> {
         let found = || self.at.iter().filter_map(|at| Some((at.place.across(), &at.found.as_ref().ok()?.parts)));
         let of = |part: &Basin| (part.ending.kind(), part.ending.period());
-        let mut motions: Vec<Motion> = found().flat_map(|(_, parts)| parts.iter().map(of)).collect();
+        let mut motions: Vec<MotionKind> = found().flat_map(|(_, parts)| parts.iter().map(of)).collect();
         motions.sort_unstable();
         motions.dedup();
-        let shares = |motion: Motion| {
+        let shares = |motion: MotionKind| {
             let share = |parts: &[Basin]| -> f64 {
                 parts.iter().filter(|part| of(part) == motion).map(|part| part.share.value).sum()
             };
@@ -121,7 +121,7 @@ impl BasinsOver {
         let (clock, total) = (Instant::now(), axis.values.len() as u64);
         let one = |value: f64| -> Result<Basins, StudyError> {
             let (model, _) = over.model(value)?;
-            let section = Section::new(&model, over.place(value).rpm, cam_angle)?;
+            let section = BasinSection::new(&model, over.place(value).rpm, cam_angle)?;
             let starts = match begun {
                 Begun::Grid(cells, [positions, velocities]) => {
                     SectionStarts::Grid(section.grid(*cells, *positions, *velocities)?)

@@ -34,7 +34,7 @@ impl Summary {
 
 /// The section of a model at one cam angle, with the orbits of one impact a revolution.
 #[derive(Clone, Debug)]
-pub struct Section {
+pub struct BasinSection {
     follower: Follower,
     /// The map of the section.
     pub map: StroboscopicMap,
@@ -43,7 +43,7 @@ pub struct Section {
 
 /// What there is to see on a section beside the basins.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Border {
+pub struct BasinBoundary {
     /// Where the stable orbits that starts end on cross it.
     pub stable: Vec<State>,
     /// Where the saddles do.
@@ -52,7 +52,7 @@ pub struct Border {
     pub curves: Vec<Curve>,
 }
 
-impl Section {
+impl BasinSection {
     /// The section at `cam_angle`, rad, in `[0, 2 pi)`.
     pub fn new(model: &Model, rpm: f64, cam_angle: f64) -> Result<Self, StudyError> {
         let machine = machine(model, rpm)?;
@@ -98,7 +98,7 @@ impl Section {
     }
 
     /// What parts the basins, as finely as a picture of the grid shows it.
-    pub fn border(&self, grid: &Grid, basins: &Basins) -> Border {
+    pub fn border(&self, grid: &Grid, basins: &Basins) -> BasinBoundary {
         let cycles = self.orbits.iter().filter_map(|orbit| match &orbit.course {
             Course::Impacts(cycle) => Some(cycle),
             _ => None,
@@ -113,7 +113,7 @@ impl Section {
             LongRun::Orbit(orbit) => self.crossing(orbit),
             _ => None,
         });
-        Border {
+        BasinBoundary {
             stable: stable.collect(),
             curves: halves.filter_map(curve).collect(),
             saddles: saddles.iter().map(|saddle| saddle.state).collect(),

@@ -20,7 +20,7 @@ use crate::cam::{Cam, Side};
 use crate::corner::map::{Eigenvalue, Own, Sides};
 use crate::corner::range::{RangeError, Rejected, find_corner_impacts};
 use crate::corner::{CornerImpact, CornerMap, SideMap};
-use crate::known::Known;
+use crate::known::Evidence;
 use crate::model::{MOST_PROVED_ROWS, Model, ModelError, Study};
 use crate::progress::Watch;
 use crate::python::{self, PythonError};
@@ -55,7 +55,7 @@ document!(Certified as it {
     source: it.model.source,
     rpm: [it.range.rpm_min, it.range.rpm_max],
     bits: it.bits,
-    known: Known::proved_if(!it.corner_impacts.is_empty()),
+    known: Evidence::proved_if(!it.corner_impacts.is_empty()),
     corner_impacts: it.corner_impacts,
     refused: it.refused,
     hypotheses: it.hypotheses(),
@@ -105,7 +105,7 @@ document!(Unproved as it {
     speed_rpm: it.speed_rpm,
     cam_angle_rad: it.cam_angle,
     why: it.why,
-    known: Known::Sampled,
+    known: Evidence::Sampled,
     was_found: it.was_found,
 });
 

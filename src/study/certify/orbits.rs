@@ -5,7 +5,7 @@ use serde_json::json;
 
 use super::{Assumed, CertifyError, ask, hypotheses};
 use crate::ball::Ball;
-use crate::known::Known;
+use crate::known::Evidence;
 use crate::model::Model;
 
 /// The periodic orbits of one impact and of two in one revolution at a speed, found and proved by the script alone.
@@ -31,7 +31,7 @@ document!(ProvedOrbits as it {
     schema: "corner-impact/certify/1",
     speed_rpm: it.speed_rpm,
     bits: it.bits,
-    known: Known::proved_if(!(it.orbits.is_empty() && it.complete.is_empty())),
+    known: Evidence::proved_if(!(it.orbits.is_empty() && it.complete.is_empty())),
     orbits: it.orbits,
     complete: it.complete,
     undecided: it.undecided,
@@ -119,7 +119,7 @@ document!(ProvedCounts as it {
     schema: "corner-impact/certify/1",
     rpm: it.range_rpm,
     bits: it.bits,
-    known: Known::proved_if(!it.counts.is_empty()),
+    known: Evidence::proved_if(!it.counts.is_empty()),
     counts: it.counts,
     undecided: it.undecided,
     events: it.events,

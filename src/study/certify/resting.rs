@@ -5,7 +5,7 @@ use serde_json::json;
 
 use super::{Assumed, CertifyError, ask, hypotheses};
 use crate::ball::Ball;
-use crate::known::Known;
+use crate::known::Evidence;
 use crate::model::Model;
 
 /// What becomes of a follower that rests on the cam at a speed.
@@ -32,7 +32,7 @@ document!(ProvedResting as it {
     schema: "corner-impact/certify/1",
     speed_rpm: it.speed_rpm,
     bits: it.bits,
-    known: Known::Proved,
+    known: Evidence::Proved,
     pressed_rad: it.pressed_rad,
     releases: it.releases,
     looked_at: it.looked_at,

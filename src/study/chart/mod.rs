@@ -6,11 +6,11 @@ use std::ops::Range;
 
 use serde::Serialize;
 
-use crate::known::Known;
+use crate::known::Evidence;
 use crate::model::Model;
 use crate::orbit::long_run::{Budget, Kind};
 use crate::progress::Watch;
-use crate::study::survey::{Axis, Found, Point, Start, Survey, SurveyError, SweepError};
+use crate::study::survey::{Axis, GridResults, Point, Start, Survey, SurveyError, SweepError};
 
 /// A grid over two numbers of a model, and how it is run.
 #[derive(Clone, Debug)]
@@ -34,7 +34,7 @@ pub struct Charted {
     /// The grid.
     pub chart: Chart,
     /// Row by row, the first axis fastest; the reason where a point has no motion.
-    pub points: Found<Point>,
+    pub points: GridResults<Point>,
     /// Seconds of the threads that ran it, and from its beginning to its end.
     pub times: [f64; 2],
 }
@@ -87,7 +87,7 @@ document!(Charted as it {
     record: it.chart.budget.record,
     longest: it.chart.budget.longest,
     patience: it.chart.budget.patience,
-    known: Known::Sampled,
+    known: Evidence::Sampled,
     points: it.points.len(),
     revolutions: it.points.len() as u64 * (it.chart.budget.transient + it.chart.budget.record),
     followed: it.followed(),
@@ -153,7 +153,7 @@ impl Chart {
         part: [Range<usize>; 2],
         threads: Option<usize>,
         watch: &dyn Watch,
-    ) -> Result<(Found<Point>, [f64; 2]), SweepError> {
+    ) -> Result<(GridResults<Point>, [f64; 2]), SweepError> {
         self.survey.part(part, threads, watch, |_, machine| Point::from(machine, self.start, self.budget))
     }
 }

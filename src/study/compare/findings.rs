@@ -7,15 +7,15 @@ use nalgebra::Matrix3;
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use super::{NoVerdict, Verdict};
+use super::{CornerVerdict, NoVerdict};
 use crate::agreement::{Quantity, worse};
 use crate::border_collision::feigin::speeds_at;
 use crate::border_collision::validity::Range;
 use crate::border_collision::{LocalMap, LocalOutcome, classify, conditions, normal_form};
 use crate::cam::Cam;
-use crate::corner::map::{Line, rows};
+use crate::corner::map::{LinearForm, rows};
 use crate::corner::{self, CornerImpact, LocateError, Route, closed_form, variational};
-use crate::measured::Likely;
+use crate::measured::PlausibleCams;
 use crate::model::{Converted, Model, Units};
 use crate::progress::Watch;
 use crate::study::StudyError;
@@ -27,7 +27,7 @@ use crate::study::verify::{External, Verification, Whole, verify_watched};
 pub(super) type Numbers = BTreeMap<String, f64>;
 
 /// Numbers and words by their names.
-pub type Values = BTreeMap<String, Value>;
+pub type NamedValues = BTreeMap<String, Value>;
 
 /// As documents have it. What is flattened here has names for its fields, so that it can be one.
 fn document(found: &impl Serialize) -> Value {
@@ -36,7 +36,7 @@ fn document(found: &impl Serialize) -> Value {
 
 /// Puts numbers and words of a document beside others, in the units of a model: their names are made of those of fields and of
 /// indices, `A_minus_21`.
-fn flatten(before: &str, value: &Value, told: Option<Converted>, units: &Units, all: &mut Values) {
+fn flatten(before: &str, value: &Value, told: Option<Converted>, units: &Units, all: &mut NamedValues) {
     let name = || before.trim_end_matches('_').to_owned();
     match value {
         Value::Object(fields) => {
@@ -63,14 +63,14 @@ fn flatten(before: &str, value: &Value, told: Option<Converted>, units: &Units, 
 }
 
 /// The numbers and words of documents, the first that has one of that name.
-fn flattened(documents: &[Value], units: &Units) -> Values {
-    let mut all = Values::new();
+fn flattened(documents: &[Value], units: &Units) -> NamedValues {
+    let mut all = NamedValues::new();
     documents.iter().rev().for_each(|document| flatten("", document, None, units, &mut all));
     all
 }
 
 /// What follows from a map and its border.
-fn follows(route: &Route, border: Line, is_classified: bool) -> Vec<Value> {
+fn follows(route: &Route, border: LinearForm, is_classified: bool) -> Vec<Value> {
     let (map, c, (e, f)) = (&route.map, route.c(), route.own.border.unwrap_or(border));
     let entries = json!({
         "A": map.map(|side| rows(&side.a)),
@@ -97,7 +97,7 @@ fn follows(route: &Route, border: Line, is_classified: bool) -> Vec<Value> {
 }
 
 /// What depends on the cam and, where there is one, on the corner impact, as the closed form has it.
-fn computed(model: &Model, cam: &Cam, at: Option<(&CornerImpact, bool)>, units: &Units) -> Values {
+fn computed(model: &Model, cam: &Cam, at: Option<(&CornerImpact, bool)>, units: &Units) -> NamedValues {
     const NAMES: [&str; 3] = ["largest_velocity_m", "largest_acceleration_m", "largest_jerk_m"];
     // Both flanks of a cam may have it, one upwards and one downwards: which of them is rounding.
     let largest =
@@ -201,12 +201,12 @@ fn spreads(found: &Verification, units: &Units) -> Numbers {
 
 /// What is found of a model.
 pub(super) struct Findings {
-    pub verdict: Verdict,
+    pub verdict: CornerVerdict,
     /// Where its corner impact is, and whether it is classified.
     at: Option<(CornerImpact, bool)>,
     /// What the closed form and the cam tell, and what is known beside that.
-    pub computed: Values,
-    besides: Values,
+    pub computed: NamedValues,
+    besides: NamedValues,
     /// How far numbers may be off but for what a measured cam leaves open; not of those of one route alone.
     pub errors: Numbers,
 }
@@ -224,14 +224,14 @@ impl Findings {
                 let besides = flattened(&besides(&found), units);
                 let kind = found.classification.map(|kind| kind.scenario).map_err(NoVerdict::Refused);
                 let at = (found.at, kind.is_ok());
-                (Verdict { found: kind, agrees: found.agrees }, Some(at), besides)
+                (CornerVerdict { found: kind, agrees: found.agrees }, Some(at), besides)
             }
             Err(why) => {
                 let why = match why {
                     LocateError::Model(_) if model.study.is_none() => NoVerdict::NotLookedFor,
                     why => NoVerdict::NotThere(why),
                 };
-                (Verdict { found: Err(why), agrees: true }, None, Values::new())
+                (CornerVerdict { found: Err(why), agrees: true }, None, NamedValues::new())
             }
         };
         let computed = computed(model, &cam, at.as_ref().map(|(at, is_classified)| (at, *is_classified)), units);
@@ -239,7 +239,7 @@ impl Findings {
     }
 
     /// What the closed form and the cam tell of a model that may as well be meant; nothing where that has not this corner impact.
-    pub fn like(&self, model: &Model, cam: &Cam, units: &Units) -> Option<Values> {
+    pub fn like(&self, model: &Model, cam: &Cam, units: &Units) -> Option<NamedValues> {
         let Some((at, is_classified)) = &self.at else { return Some(computed(model, cam, None, units)) };
         let (first, others) = corner::locate(model, cam).ok()?;
         let found = std::iter::once(first).chain(others).find(|found| at.is_near(found))?;
@@ -256,26 +256,30 @@ impl Findings {
 }
 
 /// What `compare` has of one model, in its own units: of its cam, and of its corner impact where that is known.
-pub(crate) fn values(model: &Model, cam: &Cam, found: Option<&Verification>) -> Values {
+pub(crate) fn values(model: &Model, cam: &Cam, found: Option<&Verification>) -> NamedValues {
     let at = found.map(|found| (&found.at, found.classification.is_ok()));
-    let mut all = found.map_or_else(Values::new, |found| flattened(&besides(found), &model.units));
+    let mut all = found.map_or_else(NamedValues::new, |found| flattened(&besides(found), &model.units));
     all.extend(computed(model, cam, at, &model.units));
     all
 }
 
 /// The numbers among values.
-pub(super) fn numbers(values: &Values) -> Numbers {
+pub(super) fn numbers(values: &NamedValues) -> Numbers {
     values.iter().filter_map(|(name, value)| Some((name.clone(), value.as_f64()?))).collect()
 }
 
 /// Numbers less others of the same names.
-pub(super) fn differences(b: &Values, a: &Values) -> Numbers {
+pub(super) fn differences(b: &NamedValues, a: &NamedValues) -> Numbers {
     let a = numbers(a);
     numbers(b).into_iter().filter_map(|(name, number)| Some((name.clone(), number - a.get(&name)?))).collect()
 }
 
 /// How far a measured cam leaves numbers open; not a number where that is not known.
-pub(super) fn open(likely: &Likely, numbers: &Numbers, of: impl Fn(&Model, &Cam) -> Option<Numbers> + Sync) -> Numbers {
+pub(super) fn open(
+    likely: &PlausibleCams,
+    numbers: &Numbers,
+    of: impl Fn(&Model, &Cam) -> Option<Numbers> + Sync,
+) -> Numbers {
     let of = |model: &Model, cam: &Cam| {
         let found = of(model, cam)?;
         Some(numbers.keys().map(|name| found.get(name).copied().unwrap_or(f64::NAN)).collect())

@@ -18,13 +18,13 @@ use crate::border_collision::Refusal;
 use crate::border_collision::feigin::Scenario;
 use crate::cam::Cam;
 use crate::corner::LocateError;
-use crate::known::Known;
-use crate::measured::Likely;
+use crate::known::Evidence;
+use crate::measured::PlausibleCams;
 use crate::model::Model;
 use crate::progress::Watch;
 use crate::tolerance;
 use findings::{Findings, differences, numbers, open};
-pub(crate) use findings::{Values, values};
+pub(crate) use findings::{NamedValues, values};
 
 /// Something of each of the two models.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -37,11 +37,11 @@ pub struct Pair<T> {
 
 /// What moved: the document `corner-impact/compare/1`, in the units of the first model.
 #[derive(Clone, Debug)]
-pub struct Comparison {
+pub struct ModelComparison {
     /// Which models.
     pub models: Pair<ModelLabel>,
     /// What happens at the corner impact of either.
-    pub verdict: Pair<Verdict>,
+    pub verdict: Pair<CornerVerdict>,
     /// The fields of the model files that differ.
     pub fields: Vec<FieldChange>,
     /// What differs by more than its error: words, then numbers, the speeds first and then those that moved most in parts of their size,
@@ -51,9 +51,9 @@ pub struct Comparison {
     pub unchanged: Vec<Change>,
 }
 
-document!(Comparison as it {
+document!(ModelComparison as it {
     schema: "corner-impact/compare/1",
-    known: Known::Computed,
+    known: Evidence::Computed,
     models: it.models,
     verdict: it.verdict,
     verdict_changed: it.verdict_changed(),
@@ -62,7 +62,7 @@ document!(Comparison as it {
     unchanged: it.unchanged,
 });
 
-impl Comparison {
+impl ModelComparison {
     /// Whether something else happens, or is known; that nothing is there is the same whatever the file and the corners.
     pub fn verdict_changed(&self) -> bool {
         let Pair { a, b } = &self.verdict;
@@ -82,7 +82,7 @@ impl Comparison {
 
 /// What happens at a corner impact, and whether its verification agrees.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Verdict {
+pub struct CornerVerdict {
     /// What happens, or why that is not known.
     pub found: Result<Scenario, NoVerdict>,
     /// Whether the routes that ran agree; they do where none had to run.
@@ -103,7 +103,7 @@ pub enum NoVerdict {
     Refused(Refusal),
 }
 
-impl fmt::Display for Verdict {
+impl fmt::Display for CornerVerdict {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match &self.found {
             Ok(scenario) => write!(f, "{scenario}")?,
@@ -113,7 +113,7 @@ impl fmt::Display for Verdict {
     }
 }
 
-impl Serialize for Verdict {
+impl Serialize for CornerVerdict {
     fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
         to.collect_str(self)
     }
@@ -214,7 +214,7 @@ fn fields(a: &Model, b: &Model) -> Vec<FieldChange> {
 }
 
 /// What moved from one model to another; without `external`, by the routes of this program alone.
-pub fn compare(a: &Model, b: &Model, external: External, watch: &dyn Watch) -> Result<Comparison, StudyError> {
+pub fn compare(a: &Model, b: &Model, external: External, watch: &dyn Watch) -> Result<ModelComparison, StudyError> {
     let lengths = [a, b].map(|model| model.units.length.name().to_owned());
     if lengths[0] != lengths[1] {
         let [a, b] = lengths;
@@ -224,7 +224,7 @@ pub fn compare(a: &Model, b: &Model, external: External, watch: &dyn Watch) -> R
     let units = &a.units;
     let (of_a, of_b) = (Findings::new(a, units, external, watch)?, Findings::new(b, units, external, watch)?);
     watch.at("what a measured cam leaves open", 0, 0);
-    let noisy = |model| Likely::of(model).map(|likely| likely.filter(|likely| likely.best.is_some()));
+    let noisy = |model| PlausibleCams::of(model).map(|likely| likely.filter(|likely| likely.best.is_some()));
     let opens = match (noisy(a)?, noisy(b)?) {
         // Of one cam under both followers it leaves open what the difference is, and less than of two.
         (Some(likely), Some(_)) if a.cam == b.cam => {
@@ -235,7 +235,7 @@ pub fn compare(a: &Model, b: &Model, external: External, watch: &dyn Watch) -> R
             vec![open(&likely, &differences(&of_b.computed, &of_a.computed), of)]
         }
         (one, other) => {
-            let of = |(likely, found): (Option<Likely>, &Findings)| {
+            let of = |(likely, found): (Option<PlausibleCams>, &Findings)| {
                 let of = |model: &Model, cam: &Cam| found.like(model, cam, units).as_ref().map(numbers);
                 likely.map(|likely| open(&likely, &numbers(&found.computed), of))
             };
@@ -253,7 +253,7 @@ pub fn compare(a: &Model, b: &Model, external: External, watch: &dyn Watch) -> R
     let (mut changes, unchanged): (Vec<Change>, Vec<Change>) = all.partition(|change| change.is_one);
     changes.sort_by(|one, other| one.rank().partial_cmp(&other.rank()).unwrap_or(Ordering::Equal));
     let verdict = Pair { a: of_a.verdict, b: of_b.verdict };
-    Ok(Comparison { models, verdict, fields, changes, unchanged })
+    Ok(ModelComparison { models, verdict, fields, changes, unchanged })
 }
 
 #[cfg(test)]
@@ -279,7 +279,7 @@ mod tests {
 
     #[test]
     fn a_verdict_says_that_it_is_not_verified() {
-        let verdict = |agrees| Verdict { found: Ok(Scenario::Persistence), agrees }.to_string();
+        let verdict = |agrees| CornerVerdict { found: Ok(Scenario::Persistence), agrees }.to_string();
         assert_eq!(verdict(true), "persistence");
         assert!(verdict(false).contains("not verified"));
     }

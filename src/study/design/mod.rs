@@ -13,8 +13,8 @@ use serde::Serialize;
 use super::{ModelLabel, StudyError};
 use crate::bracket::{Width, halve};
 use crate::cam::{Cam, Least};
-use crate::known::Known;
-use crate::measured::{Likely, Measured};
+use crate::known::Evidence;
+use crate::measured::{Measured, PlausibleCams};
 use crate::model::{CORNER_ROUNDING, Model, Units};
 use crate::orbit::long_run::Budget;
 use crate::progress::{Pieces, Watch};
@@ -133,7 +133,7 @@ document!(Passed as it {
 
 /// The value of one number that meets a need, at one value of another number.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Pair {
+pub struct RequiredPair {
     /// Value of the given number.
     pub given: f64,
     /// Value of the number that is found.
@@ -166,9 +166,9 @@ pub struct Trade {
     /// Unit of the given number.
     pub against_unit: String,
     /// Pairs of a given and a found value; the found value is none if no value meets the need.
-    pub pairs: Vec<Pair>,
+    pub pairs: Vec<RequiredPair>,
     /// How the values are known, as for the need alone.
-    pub known: Known,
+    pub known: Evidence,
 }
 
 document!(Design as it {
@@ -181,7 +181,7 @@ document!(Design as it {
     contact_force: it.forces,
     force_round_the_cam: it.told_round(),
     loads: it.loads,
-    loads_known: Known::Sampled,
+    loads_known: Evidence::Sampled,
     attractors: it.attractors,
     budget: it.budget,
     limits: it.limits,
@@ -286,7 +286,7 @@ struct RoundEntry {
 }
 
 /// Adds the uncertainty of a measured cam to a separation's speed and angle; NaN if that uncertainty is unknown.
-pub fn known(separation: Separation, likely: Option<&Likely>) -> Separation {
+pub fn known(separation: Separation, likely: Option<&PlausibleCams>) -> Separation {
     let Some(likely) = likely.filter(|likely| likely.best.is_some()) else { return separation };
     let Separation::At { rpm, error, cam_angle, .. } = separation else { return separation };
     // An angle on the other side of angle 0 counts as near.
@@ -307,7 +307,7 @@ pub fn design(model: &Model, asked: &Asked, watch: &dyn Watch) -> Result<Design,
     const USUAL: [f64; 2] = [0.5, 1.5];
     let cam = Cam::new(model)?;
     let contact = Contact::new(&cam, model.follower);
-    let likely = Likely::of(model)?;
+    let likely = PlausibleCams::of(model)?;
     let separation = known(contact.separation(), likely.as_ref());
     // To meet a need for certain, its speed is raised by the relative uncertainty of the separation.
     let uncertain = match separation {
@@ -421,14 +421,14 @@ pub fn design(model: &Model, asked: &Asked, watch: &dyn Watch) -> Result<Design,
             for parameter in Lever::ALL.into_iter().filter(|lever| *lever != against) {
                 watch.at(&format!("the {parameter} against the {against} for \"{text}\""), 0, 0);
                 let value = |index: u32| from + (to - from) * f64::from(index) / f64::from(count.max(2) - 1);
-                let pair = |index: u32| -> Result<Pair, StudyError> {
+                let pair = |index: u32| -> Result<RequiredPair, StudyError> {
                     let changed = changed.with(against, inside(value(index)));
                     let found = needs::answer(&changed, (need, text), parameter, uncertain)?;
                     let given = value(index);
                     let Answer { value, error, other, other_error, again, .. } = found;
                     // For a number with an upper bound, the least value that will do comes first; it is 0 if no lower limit was found.
                     Ok(match found.is_upper_bound && !parameter.is_upper_bound() {
-                        true => Pair {
+                        true => RequiredPair {
                             given,
                             found: Some(other.unwrap_or(0.0)),
                             error: other_error,
@@ -436,7 +436,7 @@ pub fn design(model: &Model, asked: &Asked, watch: &dyn Watch) -> Result<Design,
                             other_error: error,
                             again,
                         },
-                        false => Pair { given, found: value, error, other, other_error, again },
+                        false => RequiredPair { given, found: value, error, other, other_error, again },
                     })
                 };
                 let pairs = (0..count).into_par_iter().map(pair).collect::<Result<_, _>>()?;

@@ -9,11 +9,11 @@ use serde::Serialize;
 use super::contact::Contact;
 use super::loads::{Load, Loads};
 use crate::bracket::{Width, halve};
-use crate::foreign;
-use crate::known::Known;
+use crate::known::Evidence;
 use crate::model::{Follower, Model};
 use crate::simulate::{Machine, SimulateError, angular_velocity};
 use crate::tolerance;
+use crate::untrusted;
 
 /// A requirement that a machine must meet up to a speed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,8 +35,8 @@ pub enum What {
 
 impl Need {
     /// How the answer to this need is known: separation is computed, loads are sampled by runs.
-    pub(super) fn known(&self) -> Known {
-        if self.what == What::NoSeparation { Known::Computed } else { Known::Sampled }
+    pub(super) fn known(&self) -> Evidence {
+        if self.what == What::NoSeparation { Evidence::Computed } else { Evidence::Sampled }
     }
 }
 
@@ -63,7 +63,7 @@ impl FromStr for Need {
         let like = "must be like \"no separation to 4500 rpm\" or \"impact speed below 0.5 m/s to 6000 rpm\" (also gap, energy)";
         let number = |word: &str| {
             let number = word.parse().ok().filter(|number: &f64| number.is_finite() && *number > 0.0);
-            number.ok_or_else(|| format!("\"{}\" is not a number above 0; {like}", foreign::value(word)))
+            number.ok_or_else(|| format!("\"{}\" is not a number above 0; {like}", untrusted::value(word)))
         };
         let words: Vec<&str> = text.split_whitespace().collect();
         match words.as_slice() {
@@ -87,7 +87,7 @@ pub fn in_si(load: Load, unit: &str) -> Result<f64, String> {
     let found = of_load().find(|(_, name, _)| *name == unit).map(|(_, _, one)| *one);
     found.ok_or_else(|| {
         let names: Vec<&str> = of_load().map(|(_, name, _)| *name).collect();
-        let (unit, name) = (foreign::value(unit), load.to_string().replace('-', " "));
+        let (unit, name) = (untrusted::value(unit), load.to_string().replace('-', " "));
         match names.as_slice() {
             [] => format!("\"{unit}\": {name} is in the model's unit, which is not written"),
             names => format!("\"{unit}\": {name} is in one of: {}", names.join(", ")),
@@ -224,7 +224,7 @@ pub struct Answer {
     /// Why there is no value, or a further remark.
     pub note: String,
     /// Computed for a separation; sampled for a load.
-    pub known: Known,
+    pub known: Evidence,
 }
 
 document!(Answer as it {
@@ -262,7 +262,7 @@ pub(super) fn answer(
     let error = |of: fn(&Found) -> Option<f64>| {
         let apart = (of(certain.as_ref()?)? - of(&found)?).abs();
         // At least as wide as the resolution of the runs.
-        let width = if known == Known::Sampled { tolerance::NEEDED_BY_RUNS.value * of(&found)?.abs() } else { 0.0 };
+        let width = if known == Evidence::Sampled { tolerance::NEEDED_BY_RUNS.value * of(&found)?.abs() } else { 0.0 };
         Some(told(apart.max(width)))
     };
     let (now, unit) = of.told(lever, of.value(lever));

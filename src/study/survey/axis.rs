@@ -145,7 +145,7 @@ impl Parameter {
 
 /// The number that varies, and the fixed speed if it is another number.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Varied {
+pub struct VariedNumber {
     /// Name of the number: `rpm`, or its dotted path.
     pub name: String,
     /// Unit of its values; empty for a pure number.
@@ -156,7 +156,7 @@ pub struct Varied {
     pub spacing: Spacing,
 }
 
-impl Varied {
+impl VariedNumber {
     /// Whether the speed varies.
     pub fn is_speed(&self) -> bool {
         self.rpm.is_none()

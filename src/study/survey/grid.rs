@@ -58,7 +58,7 @@ pub enum RunError {
 }
 
 /// Results at the points, row by row, the first axis fastest; the reason where there is no machine.
-pub type Found<T> = Vec<Result<T, String>>;
+pub type GridResults<T> = Vec<Result<T, String>>;
 
 impl Survey {
     /// Largest number of points.
@@ -127,7 +127,7 @@ impl Survey {
         threads: Option<usize>,
         watch: &dyn Watch,
         one: impl Fn(usize, &Machine) -> Result<T, String> + Sync,
-    ) -> Result<Found<T>, SweepError> {
+    ) -> Result<GridResults<T>, SweepError> {
         Ok(self.part([0..self.count(), 0..1], threads, watch, |[index, _], machine| one(index, machine))?.0)
     }
 
@@ -139,7 +139,7 @@ impl Survey {
         threads: Option<usize>,
         watch: &dyn Watch,
         one: impl Fn([usize; 2], &Machine) -> Result<T, String> + Sync,
-    ) -> Result<(Found<T>, [f64; 2]), SweepError> {
+    ) -> Result<(GridResults<T>, [f64; 2]), SweepError> {
         let clock = Instant::now();
         let pool = super::threads::threads(threads)?;
         // Rows, or the columns of the only row.
@@ -167,7 +167,7 @@ impl Survey {
         columns: Range<usize>,
         rows: Range<usize>,
         one: &impl Fn([usize; 2], &Machine) -> Result<T, String>,
-    ) -> Found<T> {
+    ) -> GridResults<T> {
         // The speed is set below.
         let value = |axis: &Axis, index: usize| match axis.parameter {
             Parameter::Speed => self.rpm,

@@ -28,14 +28,14 @@ mod starts;
 mod sweep;
 mod threads;
 
-pub use axis::{Axis, Place, Spacing, Values, Varied};
+pub use axis::{Axis, Place, Spacing, Values, VariedNumber};
 pub use ensemble::{Attractor, Ensemble, Failed, Judged, Wandering, attractors_of, long_run};
-pub use grid::{Found, RunError, Survey, SurveyError};
+pub use grid::{GridResults, RunError, Survey, SurveyError};
 pub use over::{Over, OverError};
-pub use pipeline::{Block, Counted, Tally};
+pub use pipeline::{Counted, RecordBlock, SweepTally};
 pub use places::Places;
 pub use point::{Point, growth};
 pub use starts::{Placed, Sample, Start, Starts};
 pub(crate) use sweep::recurrence;
-pub use sweep::{Beginning, Find, Following, Growth, Row, Section, Seen, Sweep, settled_impacts};
+pub use sweep::{Beginning, Find, Growth, RecordRow, Section, Seen, Sweep, SweepStart, settled_impacts};
 pub use threads::{SweepError, threads};

@@ -1,6 +1,6 @@
 //! The machines of a model over one of its numbers, at any value.
 
-use super::axis::{Place, Spacing, Varied};
+use super::axis::{Place, Spacing, VariedNumber};
 use crate::cam::Cam;
 use crate::model::Model;
 use crate::orbit::{Family, FamilyError, Parameter};
@@ -79,10 +79,10 @@ impl<'a> Over<'a> {
     }
 
     /// Describes the number that varies, with values of this spacing.
-    pub fn varied(&self, spacing: Spacing) -> Varied {
+    pub fn varied(&self, spacing: Spacing) -> VariedNumber {
         let name = self.parameter.name();
         let rpm = (!self.is_speed()).then_some(self.rpm);
-        Varied { name: name.into(), unit: self.model.units.of_number(name), rpm, spacing }
+        VariedNumber { name: name.into(), unit: self.model.units.of_number(name), rpm, spacing }
     }
 
     /// Place of a value.

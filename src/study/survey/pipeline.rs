@@ -10,14 +10,14 @@ use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use serde::Serialize;
 
 use super::grid::RunError;
-use super::sweep::{Beginning, Following, Row, Seen, Sweep};
+use super::sweep::{Beginning, RecordRow, Seen, Sweep, SweepStart};
 use super::threads::SweepError;
 use crate::simulate::EventKind;
 
 /// A part of a record, made by a worker.
-pub trait Block: Default + Send {
+pub trait RecordBlock: Default + Send {
     /// Adds a row.
-    fn push(&mut self, row: &Row);
+    fn push(&mut self, row: &RecordRow);
 
     /// Whether the block should be sent.
     fn is_full(&self) -> bool;
@@ -32,8 +32,8 @@ pub trait Block: Default + Send {
 #[derive(Debug, Default)]
 pub struct Counted;
 
-impl Block for Counted {
-    fn push(&mut self, _row: &Row) {}
+impl RecordBlock for Counted {
+    fn push(&mut self, _row: &RecordRow) {}
 
     fn is_full(&self) -> bool {
         false
@@ -42,7 +42,7 @@ impl Block for Counted {
 
 /// Totals of a sweep.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Tally {
+pub struct SweepTally {
     /// Rows recorded.
     pub points: u64,
     /// Impacts among them.
@@ -51,7 +51,7 @@ pub struct Tally {
     pub revolutions: u64,
 }
 
-impl Tally {
+impl SweepTally {
     fn add(&mut self, other: Self) {
         self.points += other.points;
         self.impacts += other.impacts;
@@ -61,7 +61,7 @@ impl Tally {
 
 enum Message<B> {
     Block(B),
-    Done(Result<Tally, SweepError>),
+    Done(Result<SweepTally, SweepError>),
 }
 
 /// Batches of messages of one task that may wait to be taken.
@@ -75,17 +75,17 @@ const REVOLUTIONS_PER_TASK: u64 = 10_000;
 impl Sweep {
     /// Runs the sweep on `threads` threads (all there are for `None`). `take` gets every block in order, and after each value its index
     /// with an empty block.
-    pub fn run<B: Block, E: From<SweepError>>(
+    pub fn run<B: RecordBlock, E: From<SweepError>>(
         &self,
         threads: Option<usize>,
         mut take: impl FnMut(usize, B) -> Result<(), E>,
-    ) -> Result<Tally, E> {
-        let mut tally = Tally::default();
-        if self.following != Following::Nothing {
+    ) -> Result<SweepTally, E> {
+        let mut tally = SweepTally::default();
+        if self.following != SweepStart::Nothing {
             // Each value needs the end of its neighbour, so the values run one after the other, here.
             let mut from = None;
             for step in 0..self.over.count() {
-                let index = if self.following == Following::Up { step } else { self.over.count() - 1 - step };
+                let index = if self.following == SweepStart::Up { step } else { self.over.count() - 1 - step };
                 let mut failed = None;
                 let mut send = |block| match take(index, block) {
                     Ok(()) => ControlFlow::Continue(()),
@@ -138,7 +138,7 @@ impl Sweep {
     }
 
     /// Runs a few values on a worker; stops when the receiver is gone.
-    fn work<B: Block>(&self, values: Range<usize>, sender: &SyncSender<Vec<Message<B>>>) {
+    fn work<B: RecordBlock>(&self, values: Range<usize>, sender: &SyncSender<Vec<Message<B>>>) {
         let mut lot = Vec::new();
         for index in values {
             let mut is_wanted = true;
@@ -160,16 +160,16 @@ impl Sweep {
         let _ = sender.send(lot);
     }
 
-    fn one<B: Block>(
+    fn one<B: RecordBlock>(
         &self,
         index: usize,
         from: Option<crate::simulate::Motion>,
         send: &mut dyn FnMut(B) -> ControlFlow<()>,
-    ) -> Result<(Option<crate::simulate::Motion>, Tally), SweepError> {
+    ) -> Result<(Option<crate::simulate::Motion>, SweepTally), SweepError> {
         let value = self.over.value(index);
-        let mut tally = Tally::default();
+        let mut tally = SweepTally::default();
         let mut block = B::default();
-        let mut keep = |row: Row| {
+        let mut keep = |row: RecordRow| {
             tally.points += 1;
             tally.impacts += u64::from(matches!(&row.seen, Seen::Event(event) if event.kind == EventKind::Impact));
             block.push(&row);
@@ -205,12 +205,12 @@ impl Sweep {
 }
 
 /// Takes all blocks of a task's values.
-fn drain<B: Block, E: From<SweepError>>(
+fn drain<B: RecordBlock, E: From<SweepError>>(
     mut values: Range<usize>,
     receiver: &Receiver<Vec<Message<B>>>,
     take: &mut impl FnMut(usize, B) -> Result<(), E>,
-) -> Result<Tally, E> {
-    let mut tally = Tally::default();
+) -> Result<SweepTally, E> {
+    let mut tally = SweepTally::default();
     while !values.is_empty() {
         let Ok(lot) = receiver.recv() else {
             return Err(SweepError::Threads("a worker is gone".into()).into());

@@ -1,7 +1,7 @@
 //! Positions of a sweep's points: impacts on the cam, or the follower at the section, without the rest of each row.
 
-use super::pipeline::Block;
-use super::sweep::{Row, Seen};
+use super::pipeline::RecordBlock;
+use super::sweep::{RecordRow, Seen};
 use crate::simulate::EventKind;
 
 /// Points of a diagram, as produced by a worker.
@@ -16,8 +16,8 @@ pub struct Places {
 /// Number of points after which a block is sent.
 const FULL: usize = 1024;
 
-impl Block for Places {
-    fn push(&mut self, row: &Row) {
+impl RecordBlock for Places {
+    fn push(&mut self, row: &RecordRow) {
         self.exponent = row.growth.map(|growth| [row.value, growth.value]);
         match row.seen {
             Seen::Event(event) if event.kind == EventKind::Impact => self.places.push([row.value, event.cam_angle]),

@@ -2,7 +2,7 @@
 
 use crate::estimate::Estimate;
 use crate::orbit::long_run::{Budget, Kind, LongRun};
-use crate::simulate::{Machine, Met, Motion, SimulateError};
+use crate::simulate::{ImpactTally, Machine, Motion, SimulateError};
 
 use super::ensemble::{Judged, long_run};
 use super::starts::Start;
@@ -40,14 +40,14 @@ impl Point {
         let (revolutions, impacts) = ending.period().unwrap_or_default();
         // Number of revolutions that the impacts are counted over.
         let (met, of) = match &ending {
-            LongRun::PermanentContact => (Met::default(), 1),
+            LongRun::PermanentContact => (ImpactTally::default(), 1),
             LongRun::Orbit(orbit) => {
-                let mut met = Met::default();
+                let mut met = ImpactTally::default();
                 orbit.impacts().for_each(|impact| met.take(impact));
                 (met, orbit.revolutions)
             }
             LongRun::Sticking(orbit) => {
-                (Met { impacts: orbit.impacts, impact_speed: orbit.impact_speed }, orbit.revolutions)
+                (ImpactTally { impacts: orbit.impacts, impact_speed: orbit.impact_speed }, orbit.revolutions)
             }
             LongRun::Chaotic(recorded) | LongRun::Undecided(recorded) => (recorded.met, recorded.revolutions),
         };

@@ -26,7 +26,7 @@ pub enum Section {
 
 /// Start of each value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Following {
+pub enum SweepStart {
     /// From the same start.
     Nothing,
     /// From the end of the next lower value.
@@ -68,7 +68,7 @@ pub struct Sweep {
     /// Start of each machine's runs.
     pub starts: Beginning,
     /// Whether each value continues from its neighbour.
-    pub following: Following,
+    pub following: SweepStart,
     /// Revolutions before recording.
     pub transient: u64,
     /// Revolutions recorded.
@@ -81,7 +81,7 @@ pub struct Sweep {
 
 /// One row of a record.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Row {
+pub struct RecordRow {
     /// Value of the number that varies; for the speed, rpm.
     pub value: f64,
     /// How often the cam has passed angle 0 since the start at this value.
@@ -132,11 +132,11 @@ impl Sweep {
         value: f64,
         mut motion: Motion,
         which: Option<usize>,
-        mut keep: impl FnMut(Row) -> ControlFlow<()>,
+        mut keep: impl FnMut(RecordRow) -> ControlFlow<()>,
     ) -> Result<(Motion, ControlFlow<()>), SimulateError> {
         let growth = self.growth.as_ref().map(|growth| growth(machine, motion)).transpose()?;
         machine.revolve(&mut motion, self.transient)?;
-        let row = |revolution, seen| Row { value, revolution, motion: which, seen, growth };
+        let row = |revolution, seen| RecordRow { value, revolution, motion: which, seen, growth };
         let goal = motion.after(self.record);
         let flow = match self.section {
             Section::Impacts => machine

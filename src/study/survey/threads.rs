@@ -1,6 +1,6 @@
 //! The threads that a survey runs on, and why it stops.
 
-use crate::stop;
+use crate::cancel;
 
 /// Why a sweep stopped.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -19,6 +19,6 @@ pub fn threads(count: Option<usize>) -> Result<rayon::ThreadPool, SweepError> {
     // For 0, the builder makes as many threads as there are cores.
     let builder = rayon::ThreadPoolBuilder::new().num_threads(count.unwrap_or(0));
     let builder = builder
-        .spawn_handler(|thread| std::thread::Builder::new().spawn(stop::carried(move || thread.run())).map(drop));
+        .spawn_handler(|thread| std::thread::Builder::new().spawn(cancel::carry(move || thread.run())).map(drop));
     builder.build().map_err(|error| SweepError::Threads(error.to_string()))
 }

@@ -6,20 +6,20 @@ use crate::measured::Measured;
 use crate::pages::report::html::{HtmlError, plates};
 use crate::pages::speeds::{measured_speed, together};
 use crate::report::Report;
-use crate::show::block::{Block, Mark, Section, Span, Words, about, words};
+use crate::show::block::{Block, PageSection, Span, TextMark, Words, about, words};
 use crate::show::digits::Digits;
 use crate::show::words::{accuracy, hypotheses};
 use crate::study::design::contact::Separation;
 
-pub(crate) fn section(report: &Report) -> Result<Section, HtmlError> {
+pub(crate) fn section(report: &Report) -> Result<PageSection, HtmlError> {
     let picture = report.overview.as_ref().map(|plate| plates::plate(plate, report)).transpose()?;
     let said = [Some(separates(report)), margin(report), impacts(report), coexistence(report), Some(proved(report))];
     let blocks = picture.into_iter().chain([Block::List(said.into_iter().flatten().collect())]).collect();
-    Ok(Section { id: "answer", title: "In brief".into(), blocks })
+    Ok(PageSection { id: "answer", title: "In brief".into(), blocks })
 }
 
 fn headed(head: &str, what: &str, sentence: Words) -> Words {
-    words![(Mark::Strong, head), " ", about(what, sentence)]
+    words![(TextMark::Strong, head), " ", about(what, sentence)]
 }
 
 fn separates(report: &Report) -> Words {

@@ -9,7 +9,7 @@ use crate::pages::explain::behind;
 use crate::pages::report::html::HtmlError;
 use crate::published::Verdict;
 use crate::report::Report;
-use crate::show::block::{Block, Section};
+use crate::show::block::{Block, PageSection};
 use crate::show::formula::sentence;
 use crate::show::html::words;
 use crate::show::words::{slips, verdict, verdict_word};
@@ -28,7 +28,7 @@ fn anchors<'a>(ids: impl Iterator<Item = &'a str>) -> Vec<String> {
     ids.map(anchor).collect()
 }
 
-pub(crate) fn section(report: &Report) -> Result<Option<Section>, HtmlError> {
+pub(crate) fn section(report: &Report) -> Result<Option<PageSection>, HtmlError> {
     let Some(ledger) = report.claims.as_ref() else { return Ok(None) };
     let links = Links::read()?;
     let behind_claims = links.of_claims();
@@ -79,5 +79,5 @@ pub(crate) fn section(report: &Report) -> Result<Option<Section>, HtmlError> {
         }
         }
     };
-    Ok(Some(Section { id: "claims", title: "The paper's claims".into(), blocks: vec![Block::Markup(body)] }))
+    Ok(Some(PageSection { id: "claims", title: "The paper's claims".into(), blocks: vec![Block::Markup(body)] }))
 }

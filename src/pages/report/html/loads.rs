@@ -4,7 +4,7 @@ use crate::pages::design::speeds;
 use crate::pages::report::html::HtmlError;
 use crate::pages::report::html::plates::plate;
 use crate::report::Report;
-use crate::show::block::{Block, Section, Span, about, words};
+use crate::show::block::{Block, PageSection, Span, about, words};
 use crate::show::digits::Digits;
 use crate::study::speeds::SpeedSurvey;
 
@@ -12,7 +12,7 @@ use crate::study::speeds::SpeedSurvey;
 /// scatter.
 const SHARED: f64 = 1.1;
 
-pub(crate) fn section(report: &Report) -> Result<Option<Section>, HtmlError> {
+pub(crate) fn section(report: &Report) -> Result<Option<PageSection>, HtmlError> {
     let Some((found, picture)) = report.design.as_ref().zip(report.loads.as_ref()) else { return Ok(None) };
     // Skip the heading: the page has its own.
     let table = Block::About("contact_force".into(), speeds(found).into_iter().skip(1).collect());
@@ -33,5 +33,5 @@ pub(crate) fn section(report: &Report) -> Result<Option<Section>, HtmlError> {
         ];
         blocks.push(Block::Note(about("impact_speed", harder)));
     }
-    Ok(Some(Section { id: "loads", title: "How hard it presses and hits".into(), blocks }))
+    Ok(Some(PageSection { id: "loads", title: "How hard it presses and hits".into(), blocks }))
 }

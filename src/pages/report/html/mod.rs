@@ -25,12 +25,12 @@ use maud::{DOCTYPE, PreEscaped, html};
 
 use crate::draw::svg::SvgError;
 use crate::explain::ExplainError;
-use crate::foreign;
 use crate::pages::{local_map, verify};
 use crate::report::{Report, VERSION};
-use crate::show::block::{Block, Section, in_units};
+use crate::show::block::{Block, PageSection, in_units};
 use crate::show::html::{blocks, words};
 use crate::study::verify::Verification;
+use crate::untrusted;
 
 const STYLE: &str = include_str!("page.css");
 const SCRIPTS: [&str; 5] = [
@@ -64,9 +64,9 @@ pub fn render(report: &Report) -> Result<String, HtmlError> {
     // Drops the heading of the blocks: the page has its own.
     let titled = |id, title: &str, of: fn(&Verification) -> Vec<Block>| {
         let blocks = found.map(of).filter(|blocks| !blocks.is_empty())?;
-        Some(Section { id, title: title.into(), blocks: blocks.into_iter().skip(1).collect() })
+        Some(PageSection { id, title: title.into(), blocks: blocks.into_iter().skip(1).collect() })
     };
-    let mut sections: Vec<Section> = [
+    let mut sections: Vec<PageSection> = [
         Some(answer::section(report)?),
         slider::section(report)?,
         loads::section(report)?,
@@ -122,7 +122,7 @@ pub fn render(report: &Report) -> Result<String, HtmlError> {
             }
         }
     };
-    Ok(foreign::visible(&page.into_string()).into_owned())
+    Ok(untrusted::visible(&page.into_string()).into_owned())
 }
 
 /// Compresses text in the form that a browser unpacks.

@@ -5,14 +5,14 @@ use maud::{Markup, html};
 use crate::pages::cam;
 use crate::pages::report::html::{HtmlError, plates};
 use crate::report::Report;
-use crate::show::block::{Block, Column, Section, Span, Table, Words, about, words};
+use crate::show::block::{Block, Column, PageSection, Span, Table, Words, about, words};
 use crate::show::digits::Digits;
 use crate::show::words::symbol;
 
 /// Most rows of a table that is not folded.
 const LONG: usize = 24;
 
-pub(crate) fn section(report: &Report) -> Result<Section, HtmlError> {
+pub(crate) fn section(report: &Report) -> Result<PageSection, HtmlError> {
     let sheet = &report.model;
     let motion = "A follower of mass _m_ on a spring, slack at _q₀_, flies above a cam of lift _c_(_θ_), hits it with _v^−_ where the \
                   cam has the velocity _c′_, and leaves it with _v^+_:";
@@ -31,7 +31,7 @@ pub(crate) fn section(report: &Report) -> Result<Section, HtmlError> {
     if let Some(plate) = report.plates.iter().find(|plate| plate.id == plates::CAM) {
         blocks.push(plates::plate(plate, report)?);
     }
-    Ok(Section { id: "model", title: "The model".into(), blocks })
+    Ok(PageSection { id: "model", title: "The model".into(), blocks })
 }
 
 /// The flight and the impact, typeset: `m q'' + b q' + k (q - q0) = -m g` and `v+ = (1 + r) c' - r v-`.

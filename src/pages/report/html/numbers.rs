@@ -6,11 +6,11 @@ use crate::explain::{Findings, Links};
 use crate::pages::explain::explained;
 use crate::pages::report::html::HtmlError;
 use crate::report::Report;
-use crate::show::block::{Block, Section, Span, Words, in_units, words};
+use crate::show::block::{Block, PageSection, Span, Words, in_units, words};
 use crate::show::html::blocks;
 
 /// Section with an explanation for every name in these sections.
-pub(crate) fn section(report: &Report, sections: &[Section]) -> Result<Section, HtmlError> {
+pub(crate) fn section(report: &Report, sections: &[PageSection]) -> Result<PageSection, HtmlError> {
     let mut names: Vec<&str> = Vec::new();
     sections.iter().for_each(|section| of_blocks(&section.blocks, &mut names));
     let (links, found) = (Links::read()?, report.verification.as_ref().ok());
@@ -28,7 +28,7 @@ pub(crate) fn section(report: &Report, sections: &[Section]) -> Result<Section, 
             details.explanation id={ "explain-" (name) } { summary { code { (name) } } (blocks(&inside)) }
         }));
     }
-    Ok(Section { id: "numbers", title: words!["Where each number comes from"], blocks: parts })
+    Ok(PageSection { id: "numbers", title: words!["Where each number comes from"], blocks: parts })
 }
 
 /// Adds a name that is not in the list yet, which keeps the order of the page.

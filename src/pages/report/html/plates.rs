@@ -3,18 +3,18 @@
 use maud::{Markup, PreEscaped, html};
 
 use crate::draw::{Look, svg};
-use crate::figures::{Drawn, Plate};
+use crate::figures::{Captioned, RenderedFigure};
 use crate::pages::report::html::{HtmlError, packed};
 use crate::report::Report;
-use crate::show::block::{Block, Section};
+use crate::show::block::{Block, PageSection};
 use crate::show::csv;
 
 /// Name of the figure beside the model.
 pub(crate) const CAM: &str = "cam";
 
 /// Section of the available figures; `None` if the only one is beside the model.
-pub(crate) fn section(report: &Report) -> Result<Option<Section>, HtmlError> {
-    let there: Vec<&Plate> = report.plates.iter().filter(|plate| plate.drawn.is_ok()).collect();
+pub(crate) fn section(report: &Report) -> Result<Option<PageSection>, HtmlError> {
+    let there: Vec<&RenderedFigure> = report.plates.iter().filter(|plate| plate.drawn.is_ok()).collect();
     if there.iter().all(|plate| plate.id == CAM) {
         return Ok(None);
     }
@@ -23,10 +23,10 @@ pub(crate) fn section(report: &Report) -> Result<Option<Section>, HtmlError> {
         _ => self::plate(plate, report),
     });
     let blocks = drawn.collect::<Result<Vec<_>, _>>()?;
-    Ok(Some(Section { id: "figures", title: "Figures".into(), blocks }))
+    Ok(Some(PageSection { id: "figures", title: "Figures".into(), blocks }))
 }
 
-fn elsewhere(plate: &Plate, report: &Report) -> Markup {
+fn elsewhere(plate: &RenderedFigure, report: &Report) -> Markup {
     html! { p.note { (place(plate, report)) a href={ "#plate-" (plate.id) } { (plate.title) } " stands with the model." } }
 }
 
@@ -38,14 +38,14 @@ fn narrow() -> Look {
 }
 
 /// Number of the paper's figure, shown only for the paper's model.
-fn place(plate: &Plate, report: &Report) -> Markup {
+fn place(plate: &RenderedFigure, report: &Report) -> Markup {
     html! { @if report.is_paper && !plate.place.is_empty() { span.place { (plate.place) ". " } } }
 }
 
 /// A figure with its caption, the number of the paper's figure, and the command that draws it.
-pub(crate) fn plate(plate: &Plate, report: &Report) -> Result<Block, HtmlError> {
+pub(crate) fn plate(plate: &RenderedFigure, report: &Report) -> Result<Block, HtmlError> {
     let (drawing, caption) = match &plate.drawn {
-        Ok(Drawn { figure, caption }) => {
+        Ok(Captioned { figure, caption }) => {
             let [broad, narrow] = [Look::default(), narrow()].map(|look| svg::render(figure, &look));
             let drawing = html! {
                 div.drawing.broad { (PreEscaped(broad?)) }

@@ -1,9 +1,9 @@
 //! Commands that reproduce the report.
 
 use crate::report::{Report, VERSION};
-use crate::show::block::{Block, Section, Span, Words, words};
+use crate::show::block::{Block, PageSection, Span, Words, words};
 
-pub(crate) fn section(report: &Report) -> Section {
+pub(crate) fn section(report: &Report) -> PageSection {
     let code = |text: &str| Words::from(Span::Code(text.into()));
     let commands = report.commands.iter().map(|(command, what)| (code(command), (*what).into()));
     let written = "This page was written by corner-impact {} from {}. Its numbers are one document, which the first command \
@@ -18,5 +18,5 @@ pub(crate) fn section(report: &Report) -> Section {
     if let Err(why) = &report.verification {
         blocks.push(Block::Note(words!["No corner impact is verified here: ", why.as_str()]));
     }
-    Section { id: "reproduce", title: "How to do it again".into(), blocks }
+    PageSection { id: "reproduce", title: "How to do it again".into(), blocks }
 }

@@ -5,20 +5,20 @@ use maud::{Markup, html};
 use crate::pages::report::html::{HtmlError, packed};
 use crate::report::Report;
 use crate::report::through::ThroughCorner;
-use crate::show::block::{Block, Column, Section, Span, Table, Words, words};
+use crate::show::block::{Block, Column, PageSection, Span, Table, Words, words};
 use crate::show::digits::Digits;
 use crate::show::html::wide;
 use crate::show::words;
 
 /// Section of the slider; `None` if there is no motion through a corner impact.
-pub(crate) fn section(report: &Report) -> Result<Option<Section>, HtmlError> {
+pub(crate) fn section(report: &Report) -> Result<Option<PageSection>, HtmlError> {
     let Ok(through) = &report.through else { return Ok(None) };
     let blocks = vec![
         Block::Markup(player(through, &report.units.spelled("m/s"))).about("through"),
         Block::Details("The same as a table".into(), vec![Block::Table(table(through)).about("through")]),
         Block::Markup(data(through)?),
     ];
-    Ok(Some(Section { id: "through", title: "Through the corner impact".into(), blocks }))
+    Ok(Some(PageSection { id: "through", title: "Through the corner impact".into(), blocks }))
 }
 
 /// Data for the script.

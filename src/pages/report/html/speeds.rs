@@ -4,10 +4,10 @@ use crate::pages::report::html::HtmlError;
 use crate::pages::report::html::plates::plate;
 use crate::pages::speeds::{cam, dangers, detachment, how, rests, table, together};
 use crate::report::Report;
-use crate::show::block::{self, Block, Section, Words, words};
+use crate::show::block::{self, Block, PageSection, Words, words};
 use crate::study::speeds::SpeedSurvey;
 
-pub(crate) fn section(report: &Report) -> Result<Section, HtmlError> {
+pub(crate) fn section(report: &Report) -> Result<PageSection, HtmlError> {
     let mut blocks = match &report.speeds {
         Ok(found) => attractors(found),
         Err(why) => vec![Block::paragraph(format!("Not known: {why}."))],
@@ -15,7 +15,7 @@ pub(crate) fn section(report: &Report) -> Result<Section, HtmlError> {
     if let Some(picture) = &report.attractors {
         blocks.push(plate(picture, report)?);
     }
-    Ok(Section { id: "speeds", title: "At each speed".into(), blocks })
+    Ok(PageSection { id: "speeds", title: "At each speed".into(), blocks })
 }
 
 fn attractors(found: &SpeedSurvey) -> Vec<Block> {

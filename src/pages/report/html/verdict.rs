@@ -5,13 +5,13 @@ use maud::html;
 use crate::pages::verify::tally;
 use crate::published::Verdict;
 use crate::report::Report;
-use crate::show::block::{Block, Mark, Section, Words, about, words};
+use crate::show::block::{Block, PageSection, TextMark, Words, about, words};
 use crate::show::digits::Digits;
 use crate::show::words::{self, quantity, route, slips, spoken};
 use crate::study::verify::Verification;
 
 /// The headline; `None` if there was nothing to verify.
-pub(crate) fn section(report: &Report) -> Option<Section> {
+pub(crate) fn section(report: &Report) -> Option<PageSection> {
     let found = report.verification.as_ref().ok()?;
     let (class, verdict) = match report.agrees {
         true => ("verdict agrees", "Everything that was checked agrees."),
@@ -23,12 +23,12 @@ pub(crate) fn section(report: &Report) -> Option<Section> {
             blocks.extend([Block::Heading(title.into()), Block::List(items)]);
         }
     }
-    Some(Section { id: "findings", title: "Findings".into(), blocks })
+    Some(PageSection { id: "findings", title: "Findings".into(), blocks })
 }
 
 /// Emphasized words in a sentence.
 fn strong(text: &str) -> Words {
-    (Mark::Strong, text).into()
+    (TextMark::Strong, text).into()
 }
 
 fn findings(report: &Report, found: &Verification) -> Vec<Words> {

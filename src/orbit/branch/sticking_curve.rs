@@ -4,13 +4,13 @@ use std::f64::consts::{PI, TAU};
 
 use nalgebra::{DVector, Matrix2};
 
-use super::contact::{Contact, MANY_IMPACTS, Nowhere, Reached, Rest, contact};
-use super::{BranchPoint, End, Following, HalfBranch, Kind, OnCurve, Special};
+use super::sticking_event::{Contact, MANY_IMPACTS, Nowhere, Reached, Rest, contact};
+use super::{BranchPoint, End, Following, HalfBranch, OnCurve, Special, SpecialKind};
 use crate::bracket::{Width, halve};
 use crate::cam::{Corner, apart};
 use crate::elementary;
 use crate::flight::State;
-use crate::known::Known;
+use crate::known::Evidence;
 use crate::orbit::curve::{self, CurvePoint, NoPoint};
 use crate::orbit::{Course, Family, FamilyError, Judgement, OrbitError, PeriodicOrbit, sticking};
 use crate::simulate::{Event, Machine};
@@ -128,7 +128,7 @@ impl Walk<'_> {
         let [before, beyond] = [reach(ends[0])?, reach(ends[1])?];
         let mut bracket = [value(&before), value(&beyond)];
         bracket.sort_by(f64::total_cmp);
-        let special = Special { kind: Kind::Place, bracket, residual: ends[1] - ends[0] };
+        let special = Special { kind: SpecialKind::Place, bracket, residual: ends[1] - ends[0] };
         let contact = Contact::first(&self.rest.machine(&beyond.unknowns)?.0).ok_or(Nowhere::OtherWay)?;
         let other = Rest { contact, ..self.rest };
         let tangent = curve::first_tangent(&other, &beyond.unknowns)?;
@@ -205,14 +205,14 @@ impl Walk<'_> {
     }
 
     /// The corner that an impact on the way is at, and how near, rad.
-    fn at_corner(&self) -> Option<(Kind, f64)> {
+    fn at_corner(&self) -> Option<(SpecialKind, f64)> {
         let (machine, _) = self.rest.machine(&self.from.unknowns).ok()?;
         let reached = self.rest.contact.reached(&machine)?;
         let corners: Vec<Corner> = kinks(&machine).collect();
         let pairs = told(&reached).iter().enumerate().flat_map(|at| corners.iter().map(move |corner| (at, corner)));
         let off = pairs.map(|((impact, event), corner)| (impact, corner, apart(corner.angle, event.cam_angle)));
         let (impact, corner, off) = off.min_by(|one, two| one.2.total_cmp(&two.2))?;
-        let kind = Kind::Corner { impact, segment: corner.segment, jump_order: corner.jump_order };
+        let kind = SpecialKind::Corner { impact, segment: corner.segment, jump_order: corner.jump_order };
         (off < tolerance::KINK.value).then_some((kind, off))
     }
 
@@ -344,7 +344,7 @@ impl Rest<'_> {
             judgement: Judgement::of_rest(&machine),
             residual: off.abs(),
             course: Course::Sticking(anchor),
-            known: Known::Computed,
+            known: Evidence::Computed,
         };
         let held = Some(OnCurve { cam_angle, sides: vec![Matrix2::zeros()], class: None });
         Ok(BranchPoint { rpm, value: unknowns[1] * self.spans[1], orbit, held, special })

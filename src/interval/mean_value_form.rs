@@ -13,45 +13,45 @@
 use std::ops::{Add, Mul, Neg, Sub};
 
 use super::Interval;
-use super::varied::Varied;
+use super::dual::Dual;
 
 /// A number over a box, with N unknowns.
 #[derive(Clone, Copy, Debug)]
-pub struct Centred<'a, const N: usize> {
+pub struct MeanValueForm<'a, const N: usize> {
     /// What holds it at the centre.
     pub centre: Interval,
     /// What holds it, and its derivatives, all over the box.
-    pub whole: Varied<N>,
+    pub whole: Dual<N>,
     /// X - m, for each unknown.
     over: &'a [Interval; N],
 }
 
-impl<'a, const N: usize> Centred<'a, N> {
-    fn new(centre: Interval, whole: Varied<N>, over: &'a [Interval; N]) -> Self {
+impl<'a, const N: usize> MeanValueForm<'a, N> {
+    fn new(centre: Interval, whole: Dual<N>, over: &'a [Interval; N]) -> Self {
         let away = whole.by.iter().zip(over).map(|(by, over)| *by * *over);
         let value = whole.value.and(away.fold(centre, Interval::add));
-        Self { centre, whole: Varied { value, ..whole }, over }
+        Self { centre, whole: Dual { value, ..whole }, over }
     }
 
     /// A number that the unknowns leave as it is.
     pub fn fixed(self, value: Interval) -> Self {
-        Self { centre: value, whole: Varied { value, by: [Interval::from(0.0); N] }, ..self }
+        Self { centre: value, whole: Dual { value, by: [Interval::from(0.0); N] }, ..self }
     }
 
     /// One of the unknowns, with what it is at the centre.
     pub fn unknown(which: usize, centre: Interval, over: &'a [Interval; N]) -> Self {
         let by = std::array::from_fn(|unknown| Interval::from(if unknown == which { 1.0 } else { 0.0 }));
-        Self::new(centre, Varied { value: Interval::EVERYTHING, by }, over)
+        Self::new(centre, Dual { value: Interval::EVERYTHING, by }, over)
     }
 
     /// A number that solves an equation: what it is at the centre and all over the box, and its derivatives.
     pub fn solved(self, centre: Interval, whole: Interval, by: [Interval; N]) -> Self {
-        Self::new(centre, Varied { value: whole, by }, self.over)
+        Self::new(centre, Dual { value: whole, by }, self.over)
     }
 
     /// A function of this number: its values at the centre and all over the box, and its derivative there.
     pub fn of(self, centre: Interval, whole: Interval, derivative: Interval) -> Self {
-        Self::new(centre, Varied::of(whole, derivative, self.whole.by), self.over)
+        Self::new(centre, Dual::of(whole, derivative, self.whole.by), self.over)
     }
 
     /// What holds it all over the box.
@@ -60,7 +60,7 @@ impl<'a, const N: usize> Centred<'a, N> {
     }
 }
 
-impl<const N: usize> Neg for Centred<'_, N> {
+impl<const N: usize> Neg for MeanValueForm<'_, N> {
     type Output = Self;
 
     fn neg(self) -> Self {
@@ -68,7 +68,7 @@ impl<const N: usize> Neg for Centred<'_, N> {
     }
 }
 
-impl<const N: usize> Add for Centred<'_, N> {
+impl<const N: usize> Add for MeanValueForm<'_, N> {
     type Output = Self;
 
     fn add(self, other: Self) -> Self {
@@ -76,7 +76,7 @@ impl<const N: usize> Add for Centred<'_, N> {
     }
 }
 
-impl<const N: usize> Sub for Centred<'_, N> {
+impl<const N: usize> Sub for MeanValueForm<'_, N> {
     type Output = Self;
 
     fn sub(self, other: Self) -> Self {
@@ -84,7 +84,7 @@ impl<const N: usize> Sub for Centred<'_, N> {
     }
 }
 
-impl<const N: usize> Mul for Centred<'_, N> {
+impl<const N: usize> Mul for MeanValueForm<'_, N> {
     type Output = Self;
 
     fn mul(self, other: Self) -> Self {
@@ -92,7 +92,7 @@ impl<const N: usize> Mul for Centred<'_, N> {
     }
 }
 
-impl<const N: usize> Mul<Interval> for Centred<'_, N> {
+impl<const N: usize> Mul<Interval> for MeanValueForm<'_, N> {
     type Output = Self;
 
     fn mul(self, number: Interval) -> Self {
@@ -100,11 +100,11 @@ impl<const N: usize> Mul<Interval> for Centred<'_, N> {
     }
 }
 
-impl<const N: usize> Add<Interval> for Centred<'_, N> {
+impl<const N: usize> Add<Interval> for MeanValueForm<'_, N> {
     type Output = Self;
 
     fn add(self, number: Interval) -> Self {
-        let whole = Varied { value: self.whole.value + number, ..self.whole };
+        let whole = Dual { value: self.whole.value + number, ..self.whole };
         Self { centre: self.centre + number, whole, ..self }
     }
 }

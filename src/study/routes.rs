@@ -7,7 +7,7 @@ use serde::Serialize;
 use crate::agreement::{Agreement, Quantity, compare_routes, worse};
 use crate::border_collision::{Classification, Danger, LocalMap, Refusal, classify};
 use crate::cam::{Cam, Side};
-use crate::corner::map::{Line, RouteName, Uncertainty};
+use crate::corner::map::{LinearForm, RouteName, Uncertainty};
 use crate::corner::one_sided::SampleError;
 use crate::corner::varied::Varied;
 use crate::corner::{CornerImpact, CornerMap, Route, SideMap};
@@ -82,7 +82,11 @@ pub(super) fn routes(model: &Model, cam: &Cam, at: &CornerImpact, log: &mut Log)
 }
 
 /// What happens at a corner impact whose map is `map`, if next to it the follower flies off the cam on both sides.
-pub(super) fn classified(map: &CornerMap, border: Line, sticking: Option<Side>) -> Result<Classification, Refusal> {
+pub(super) fn classified(
+    map: &CornerMap,
+    border: LinearForm,
+    sticking: Option<Side>,
+) -> Result<Classification, Refusal> {
     match sticking {
         Some(side) => Err(Refusal::Sticking { side }),
         None => Ok(classify(map, border)?),

@@ -21,7 +21,7 @@ use std::ops::ControlFlow;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::Kind;
+use super::SpecialKind;
 use crate::bracket::{Width, halve};
 use crate::cam::{Lift, Segment, Side, apart, within_a_turn};
 use crate::orbit::curve::Equations;
@@ -365,9 +365,9 @@ impl Equations for Rest<'_> {
 }
 
 /// What happens at a special point of a branch of orbits that rest.
-pub(super) fn contact(kind: Kind, orbit: &PeriodicOrbit, machine: &Machine) -> Option<Contact> {
+pub(super) fn contact(kind: SpecialKind, orbit: &PeriodicOrbit, machine: &Machine) -> Option<Contact> {
     let Course::Sticking(anchor) = orbit.course else { return None };
-    if kind == Kind::Detachment {
+    if kind == SpecialKind::Detachment {
         return Contact::first(machine);
     }
     // The rest around the anchor is the one that goes: from the release before it to that after it.

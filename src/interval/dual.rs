@@ -6,14 +6,14 @@ use super::Interval;
 
 /// A number, and what it changes by with each unknown.
 #[derive(Clone, Copy, Debug)]
-pub struct Varied<const N: usize> {
+pub struct Dual<const N: usize> {
     /// What holds the number.
     pub value: Interval,
     /// What holds its derivative by each.
     pub by: [Interval; N],
 }
 
-impl<const N: usize> Varied<N> {
+impl<const N: usize> Dual<N> {
     /// A function of something that changes by `by`: its value and its derivative.
     pub fn of(value: Interval, derivative: Interval, by: [Interval; N]) -> Self {
         Self { value, by: by.map(|by| derivative * by) }
@@ -24,7 +24,7 @@ impl<const N: usize> Varied<N> {
     }
 }
 
-impl<const N: usize> Neg for Varied<N> {
+impl<const N: usize> Neg for Dual<N> {
     type Output = Self;
 
     fn neg(self) -> Self {
@@ -32,7 +32,7 @@ impl<const N: usize> Neg for Varied<N> {
     }
 }
 
-impl<const N: usize> Add for Varied<N> {
+impl<const N: usize> Add for Dual<N> {
     type Output = Self;
 
     fn add(self, other: Self) -> Self {
@@ -40,7 +40,7 @@ impl<const N: usize> Add for Varied<N> {
     }
 }
 
-impl<const N: usize> Sub for Varied<N> {
+impl<const N: usize> Sub for Dual<N> {
     type Output = Self;
 
     fn sub(self, other: Self) -> Self {
@@ -48,7 +48,7 @@ impl<const N: usize> Sub for Varied<N> {
     }
 }
 
-impl<const N: usize> Mul for Varied<N> {
+impl<const N: usize> Mul for Dual<N> {
     type Output = Self;
 
     #[expect(clippy::suspicious_arithmetic_impl, reason = "the derivative of a product is a sum")]
@@ -58,7 +58,7 @@ impl<const N: usize> Mul for Varied<N> {
     }
 }
 
-impl<const N: usize> Mul<Interval> for Varied<N> {
+impl<const N: usize> Mul<Interval> for Dual<N> {
     type Output = Self;
 
     fn mul(self, number: Interval) -> Self {

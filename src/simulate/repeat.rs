@@ -6,7 +6,7 @@
 use std::f64::consts::{PI, TAU};
 
 use super::ahead::Again;
-use super::motion::Known;
+use super::motion::LastLift;
 use super::{Machine, Motion};
 use crate::flight::{Flight, Response, State};
 use crate::tolerance;
@@ -75,7 +75,7 @@ impl Machine {
         // Near a place of known lift, its Taylor sum is as accurate as an evaluation.
         let is_near = (cam_angle - motion.known.angle).abs() <= tolerance::LAST_TURN.value;
         if !(is_near && motion.known.segment == motion.segment) {
-            motion.known = Known { segment: motion.segment, angle: cam_angle, lift: segment.law.lift(cam_angle) };
+            motion.known = LastLift { segment: motion.segment, angle: cam_angle, lift: segment.law.lift(cam_angle) };
         }
         Some(Again {
             time: time + step,

@@ -2,8 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use super::held::{Held, Pinned};
-use super::problem::{Problem, Units};
+use super::constraint::{Held, Pinned};
+use super::problem::{BranchScales, Problem};
 use super::{BranchPoint, switch};
 use crate::cam::{Cam, apart, within_a_turn};
 use crate::model::Model;
@@ -107,7 +107,7 @@ fn solved(family: &Family, cycle: &Cycle, held: Held, rpm: f64) -> Option<(Cycle
     /// Steps of Newton's method; where it needs more, the event is elsewhere or gone.
     const STEPS: usize = 20;
     let machine = family.machine(&[rpm]).ok()?.0;
-    let problem = Problem::new(family, cycle, Units::of(cycle, &machine), &[rpm], Some(held));
+    let problem = Problem::new(family, cycle, BranchScales::of(cycle, &machine), &[rpm], Some(held));
     let mut unknowns = problem.unknowns(cycle, &machine, &[rpm]);
     for _ in 0..STEPS {
         let (residual, jacobian) = problem.linear(&unknowns).ok()?;

@@ -2,10 +2,10 @@
 
 use nalgebra::DVector;
 
-use super::held::Held;
-use super::problem::{Problem, Units};
+use super::constraint::Held;
+use super::problem::{BranchScales, Problem};
 use super::switch::{self, Exit};
-use super::{BranchPoint, Following, Kind, OnCurve, Special, gap, halved, special};
+use super::{BranchPoint, Following, OnCurve, Special, SpecialKind, least_gap, period_halving, special};
 use crate::bracket::{Seen, regula_falsi};
 use crate::orbit::curve::{self, CurvePoint, NoPoint};
 use crate::orbit::{Cycle, Departure, Family, FamilyError, PeriodicOrbit};
@@ -49,7 +49,7 @@ pub(super) struct Located {
 pub(super) struct Stride<'a> {
     pub(super) family: &'a Family,
     pub(super) following: &'a Following,
-    pub(super) units: Units,
+    pub(super) units: BranchScales,
     pub(super) spans: Vec<f64>,
     pub(super) held: Option<Held>,
     pub(super) pattern: Cycle,
@@ -102,11 +102,12 @@ impl Stride<'_> {
             values
         };
         let machine_at = |value: f64| self.family.machine_of_cycles(&values(value)).ok().map(|(machine, _)| machine);
-        let Some(flipped) = halved::flip(machine_at, ends) else { return Ok(None) };
+        let Some(flipped) = period_halving::flip(machine_at, ends) else { return Ok(None) };
         let Some(machine) = machine_at(flipped.value) else { return Ok(None) };
         let unknowns = problem.unknowns(&flipped.cycle, &machine, &values(flipped.value));
         let point = CurvePoint { unknowns, ..self.from.clone() };
-        let part = halved::apart(&one).zip(halved::apart(&two)).map_or(0.0, |(one, two)| one / (one - two));
+        let part =
+            period_halving::apart(&one).zip(period_halving::apart(&two)).map_or(0.0, |(one, two)| one / (one - two));
         let (bracket, residual) = (flipped.bracket, flipped.residual);
         Ok(Some(Located { step: part * self.step, cut: Cut::Halved, point, bracket, residual }))
     }
@@ -178,7 +179,7 @@ impl Stride<'_> {
             }
             Cut::Exit(Exit::Tangent { impact }) => cycle.approach(&machine, impact),
             Cut::Exit(Exit::Touch { impact, turned }) => {
-                gap::least(&cycle, &machine, impact, turned).ok_or(NoPoint::NotClosed)?.0
+                least_gap::least(&cycle, &machine, impact, turned).ok_or(NoPoint::NotClosed)?.0
             }
             Cut::Fold => at.tangent[at.tangent.len() - 1],
             // Its own equations are singular there: `halved` locates it.
@@ -250,22 +251,22 @@ impl Stride<'_> {
         let (cycle, machine, _) = problem.unpack(&located.point.unknowns)?;
         let kind = match located.cut {
             Cut::Range(_) => return Ok(None),
-            Cut::Fold if self.held.is_some() => Kind::Turn,
-            Cut::Fold => Kind::Fold,
-            Cut::Cusp => Kind::Cusp,
-            Cut::Degenerate => Kind::DegenerateGraze,
-            Cut::Flip | Cut::Halved => Kind::Flip,
-            Cut::Branching => Kind::Branching,
+            Cut::Fold if self.held.is_some() => SpecialKind::Turn,
+            Cut::Fold => SpecialKind::Fold,
+            Cut::Cusp => SpecialKind::Cusp,
+            Cut::Degenerate => SpecialKind::DegenerateGraze,
+            Cut::Flip | Cut::Halved => SpecialKind::Flip,
+            Cut::Branching => SpecialKind::Branching,
             Cut::Type { side, multiplier } => {
                 let after_corner = matches!(self.held, Some(Held::Corner(_))).then_some(side == 1);
-                Kind::Type { after_corner, multiplier }
+                SpecialKind::Type { after_corner, multiplier }
             }
             Cut::Exit(exit) => match (exit, self.order(exit, &cycle, &machine)) {
                 (Exit::Corner { .. }, None) => return Ok(None),
                 // Contacts are numbered as those of the orbit, from angle 0 on.
                 (_, order) => match switch::kind(exit, &cycle, &machine, order.unwrap_or(0)) {
-                    Kind::Corner { impact, segment, jump_order } => {
-                        Kind::Corner { impact: cycle.place_in_order(impact), segment, jump_order }
+                    SpecialKind::Corner { impact, segment, jump_order } => {
+                        SpecialKind::Corner { impact: cycle.place_in_order(impact), segment, jump_order }
                     }
                     other => other,
                 },
