@@ -1,6 +1,6 @@
-//! Routes pairwise, quantity by quantity, against the one table of tolerances.
+//! Pairwise comparison of routes, quantity by quantity, against the one table of tolerances.
 //!
-//! Nothing is compared with itself, nothing that did not run is compared at all, and what is not a number disagrees.
+//! A route is never compared with itself or with one that did not run. A value that is not a number disagrees.
 
 use nalgebra::Vector2;
 use std::fmt;
@@ -12,7 +12,7 @@ use crate::corner::map::{Eigenvalue, Route, RouteName};
 use crate::elementary;
 use crate::tolerance::{Bound, Comparison, agreement_bound};
 
-/// What is compared. The letters are the paper's, and a hat is its own estimate.
+/// Quantity that is compared. The letters are the paper's, and a hat marks its own estimate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(missing_docs)]
 pub enum Quantity {
@@ -81,18 +81,18 @@ impl Serialize for Quantity {
 pub struct Agreement {
     /// The two routes.
     pub routes: [RouteName; 2],
-    /// What was compared.
+    /// Quantity compared.
     pub quantity: Quantity,
-    /// Whether both routes take it from their A and B by one function, so that it agrees where these do and tests nothing more.
+    /// Whether both routes compute it from their A and B by one function. It then agrees where these do, and tests nothing more.
     pub follows: bool,
     /// Largest absolute difference of any entry.
     pub max_abs_diff: f64,
     /// Largest difference of any entry, over that entry.
     pub max_rel_diff: f64,
-    /// Most that `max_abs_diff` may be, and why.
+    /// Largest allowed `max_abs_diff`, and the reason.
     #[serde(flatten)]
     pub bound: Bound,
-    /// Whether it is less.
+    /// Whether `max_abs_diff` is within the bound.
     pub agrees: bool,
 }
 
@@ -139,18 +139,18 @@ fn compare_on_scale(
     }
 }
 
-/// What a route finds of a quantity.
+/// Result of a route for one quantity.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RouteValue {
     /// The quantity.
     pub quantity: Quantity,
     /// Its entries, rows first.
     pub entries: Vec<f64>,
-    /// Whether the route finds it by means of its own, and does not take it from its A and B as others do.
+    /// Whether the route finds it by its own method, and not from its A and B as others do.
     pub is_own: bool,
 }
 
-/// The quantities that routes are compared in, as one of them finds them.
+/// Quantities in which routes are compared, with the values of one route.
 pub fn quantities(route: &Route) -> Vec<RouteValue> {
     let (map, own) = (&route.map, &route.own);
     let rows = |matrix: nalgebra::Matrix2<f64>| matrix.transpose().as_slice().to_vec();
@@ -206,7 +206,7 @@ pub fn compare_routes(routes: &[Route]) -> Vec<Agreement> {
         .collect()
 }
 
-/// Whether a route steps a differential equation through time, and so has an integrator's error.
+/// Whether a route integrates a differential equation through time, and so has an integrator's error.
 fn is_integrated(route: RouteName) -> bool {
     route == RouteName::Scipy
 }

@@ -13,13 +13,13 @@ use crate::corner::SideMap;
 use crate::elementary;
 use crate::tolerance::{self, Tolerance};
 
-/// What rests on a condition.
+/// Result that depends on a condition.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Decides {
-    /// The classification: without it there is none.
+    /// The classification, which does not exist without it.
     Classification,
-    /// Whether fixed points are stable; where they are stands without it.
+    /// The stability of fixed points; their places do not depend on it.
     Stability,
     /// The normal form alone.
     NormalForm,
@@ -30,17 +30,17 @@ pub enum Decides {
 /// One condition.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Condition {
-    /// What must not vanish, as a formula; for continuity what must.
+    /// Formula of the quantity that must not vanish; for continuity, of the one that must vanish.
     pub name: &'static str,
-    /// What its failing would mean.
+    /// Consequence of a failure.
     pub meaning: &'static str,
     /// The quantity, in the map's own units.
     pub value: f64,
-    /// How far from failing, without units.
+    /// Distance from failing, without units.
     pub distance: f64,
-    /// What the distance must exceed.
+    /// Value that the distance must exceed.
     pub least: Tolerance,
-    /// What rests on it.
+    /// Result that depends on it.
     pub decides: Decides,
 }
 
@@ -56,7 +56,7 @@ document!(Condition as condition {
 });
 
 impl Condition {
-    /// Whether it holds; not where the distance is not a number.
+    /// Whether it holds; false where the distance is not a number.
     pub fn holds(&self) -> bool {
         self.distance > self.least.value
     }
@@ -121,7 +121,7 @@ fn jump(map: &LocalMap) -> (f64, f64) {
 }
 
 /// The largest minor of `[A+ - A-, B+ - B-]` and `[e, f]` over its terms, 0 where each row is a multiple of `[e, f]`; and the
-/// part of what is allowed that it leaves.
+/// share of the allowance that is not used up.
 fn continuity(map: &LocalMap) -> (f64, f64) {
     let (e, f) = map.border;
     let border = [e[0], e[1], f];

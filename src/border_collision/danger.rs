@@ -39,9 +39,9 @@ named!(DangerKind);
 /// A danger at a corner impact, as the local map has it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Danger {
-    /// Its kind; dangerous where it is both.
+    /// Its kind; dangerous where both apply.
     pub kind: DangerKind,
-    /// How the kind is known: as well as the weakest of what it rests on.
+    /// Evidence for the kind: that of its weakest premise.
     pub known: Evidence,
     /// The motions that diverge at omega*; none where there are several attractors alone.
     pub divergence: Option<Divergence>,
@@ -59,12 +59,12 @@ document!(Danger as danger {
 /// Motions of the local map that diverge at omega*.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Divergence {
-    /// The share of directions that they start in, in the map's natural units: at least so much where it is computed or proved, and
-    /// then 1 stands for the motions of every start but the corner impact itself.
+    /// The share of directions, in the map's natural units, in which motions diverge. Where computed or proved it is a lower bound, and 1
+    /// then means that the motions of every start but the corner impact itself diverge.
     pub share: f64,
     /// Computed by intervals on the doubles of the map; proved where these hold the matrices of a certificate.
     pub known: Evidence,
-    /// The word that one of them repeats, and by which factor it grows each time.
+    /// The word that one of them repeats, and the factor by which it grows with each repetition.
     pub follows: Option<(Word, f64)>,
 }
 
@@ -78,13 +78,13 @@ document!(Divergence as it {
 /// An attractor of the local map.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LocalAttractor {
-    /// At which speeds.
+    /// Speeds at which it exists.
     pub speeds: Speeds,
-    /// How that it is one is known.
+    /// Evidence that it is an attractor.
     pub known: Evidence,
     /// The motion.
     pub end: LocalLongRun,
-    /// Which disturbances of it return; none of chaos, and none where the basin is not looked at.
+    /// Its disturbances that return; none for chaos, and none where the basin is not examined.
     pub returns: Option<Returns>,
 }
 
@@ -96,7 +96,7 @@ document!(LocalAttractor as it {
     returns: it.returns,
 });
 
-/// The disturbances of a periodic orbit that return to it: each that is smaller does, as far as was sampled. All are per distance of
+/// Disturbances of a periodic orbit that return to it: every smaller one does, as far as was sampled. All are per unit of the distance of
 /// the speed from omega*, with which they grow; none where every disturbance that was tried returns.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Returns {
@@ -139,7 +139,8 @@ impl Danger {
         self.attractors.iter().filter(move |attractor| attractor.speeds == speeds)
     }
 
-    /// Takes note of what is proved: the share of directions in which motions diverge, and that every attractor is one.
+    /// Records a proof: the share of directions in which motions diverge. With `is_attracting` the attractors count as proved, too, if all
+    /// are fixed points.
     pub fn prove(&mut self, share: f64, is_attracting: bool) {
         if let Some(divergence) = self.divergence.as_mut().filter(|_| share > 0.0) {
             (divergence.share, divergence.known) = (share, Evidence::Proved);
@@ -152,7 +153,7 @@ impl Danger {
 }
 
 impl LocalMap {
-    /// The danger at a corner impact whose period is `period`, s, from what the local map does on either side of it and at it.
+    /// The danger at a corner impact whose period is `period`, s, from the motions of the local map on either side of it and at it.
     pub fn danger(&self, outcomes: &[LocalOutcome], period: f64) -> Option<Danger> {
         let mut attractors: Vec<LocalAttractor> = outcomes.iter().flat_map(attractors).collect();
         let count = |speeds| attractors.iter().filter(|attractor| attractor.speeds == speeds).count();
@@ -175,7 +176,7 @@ impl LocalMap {
 
     /// The motions that diverge at mu = 0, if any do.
     pub fn divergence(&self) -> Option<Divergence> {
-        /// Directions that motions start in.
+        /// Directions in which motions start.
         const SAMPLED: u32 = 64;
         let scales = self.scales();
         let end = |index: u32| {
@@ -227,7 +228,7 @@ impl LocalMap {
 
     /// The smallest disturbance of a point of a stable orbit, in one direction, that does not return to the orbit.
     fn first_lost(&self, orbit: &MapOrbit, point: Vector2<f64>, along: Vector2<f64>, mu: f64) -> Option<f64> {
-        /// By how much each disturbance is larger than the one before.
+        /// Ratio of each disturbance to the one before.
         const GROWTH: f64 = 1.25;
         /// The largest that is tried, in the map's natural units.
         const MOST: f64 = 1e3;
@@ -252,7 +253,7 @@ impl LocalMap {
     }
 }
 
-/// The attractors of the local map at one sign of mu: the stable orbits that are listed, and what motions end on besides.
+/// The attractors of the local map at one sign of mu: the stable orbits listed, and further ends of motions.
 fn attractors(outcome: &LocalOutcome) -> Vec<LocalAttractor> {
     let Some(speeds) = Speeds::of(outcome.mu) else { return Vec::new() };
     let attractor = |end, known| LocalAttractor { speeds, known, end, returns: None };

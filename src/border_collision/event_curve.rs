@@ -1,4 +1,4 @@
-//! A curve of one kind of event in the plane of the speed and a number of the model; of corner impacts also what happens at each.
+//! A curve of one kind of event in the plane of the speed and a number of the model, with the scenario at each corner impact.
 
 use serde::Serialize;
 
@@ -30,18 +30,18 @@ named!(Happening);
 pub struct EventPoint {
     /// Its speed, rpm.
     pub rpm: f64,
-    /// What the other number is.
+    /// Value of the other number.
     pub value: f64,
-    /// Where the impact is that is at the corner, or the touch, or the first impact, rad.
+    /// Cam angle of the impact at the corner, of the touch, or of the first impact, rad.
     pub cam_angle: f64,
     /// Turns of the cam in one period.
     pub revolutions: u64,
     pub impacts: usize,
-    /// At a corner impact, and at the graze of an orbit without impacts.
+    /// Scenario of a corner impact, or class of the graze of an orbit without impacts.
     pub happening: Option<Happening>,
-    /// Two of the orbit; at a corner impact two with the law before the corner, then two with the law after it.
+    /// Multipliers: two of the orbit; at a corner impact two with the law before the corner, then two with the law after it.
     pub multipliers: Vec<Eigenvalue>,
-    /// What changes along the curve here, if anything.
+    /// Change along the curve at this point, if any.
     pub special: Option<Special>,
 }
 
@@ -71,21 +71,21 @@ impl EventPoint {
 /// A curve of one kind of event.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EventCurve {
-    /// The event where the model is as it is.
+    /// The event at the model's own number.
     pub kind: SpecialKind,
     pub points: Vec<EventPoint>,
-    /// Why it starts and ends where it does.
+    /// Reasons for its start and its end.
     pub ends: [End; 2],
 }
 
 impl EventCurve {
-    /// The events along a curve of what is `kind` where the model is as it is.
+    /// The events along a curve whose event is `kind` at the model's own number.
     pub fn new(curve: &Branch, kind: SpecialKind) -> Self {
         let points = curve.points.iter().map(|point| EventPoint::new(point, kind)).collect();
         Self { kind, points, ends: curve.ends.clone() }
     }
 
-    /// Whether both go through the same events, in whatever direction: they end where the other does, for the same reasons.
+    /// Whether both curves go through the same events, in either direction: their ends agree, and so do the reasons for them.
     pub fn is_same(&self, other: &Self) -> bool {
         let ends = |curve: &Self| -> Option<[(f64, f64, End); 2]> {
             let [first, last] = [curve.points.first()?, curve.points.last()?].map(|point| (point.value, point.rpm));
@@ -101,7 +101,7 @@ impl EventCurve {
         })
     }
 
-    /// From each point to the next, with what happens in between: as at the end that is no point of change.
+    /// Pairs of neighbouring points, with the happening between them: that of an end at which nothing changes along the curve.
     pub fn pieces(&self) -> impl Iterator<Item = ([&EventPoint; 2], Option<Happening>)> {
         self.points.windows(2).filter_map(|pair| {
             let [from, to] = pair else { return None };

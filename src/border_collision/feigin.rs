@@ -16,20 +16,20 @@ use crate::elementary;
 use crate::orbit::{Stability, eigenvalues};
 use crate::tolerance;
 
-/// What happens to the fixed point at the border.
+/// Scenario of the fixed point at the border.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Scenario {
-    /// It crosses to the other side.
+    /// The fixed point crosses to the other side.
     Persistence,
-    /// It meets the other side's fixed point, and both vanish.
+    /// The fixed point meets the other side's fixed point, and both vanish.
     NonsmoothFold,
-    /// It crosses, and an orbit of period two is born.
+    /// The fixed point crosses, and an orbit of period two is born.
     NonsmoothFlip,
 }
 
 impl Scenario {
-    /// By the numbers of real eigenvalues above 1 and below -1, of both sides together.
+    /// Scenario by the numbers of real eigenvalues above 1 and below -1, of both sides together.
     pub fn of_counts(above_one: usize, below_minus_one: usize) -> Self {
         match (above_one % 2, below_minus_one % 2) {
             (1, _) => Self::NonsmoothFold,
@@ -52,7 +52,7 @@ pub enum Speeds {
 }
 
 impl Speeds {
-    /// Where the period changes by `mu`; none where it does not.
+    /// Speeds at which the period changes by `mu`; none where it does not change.
     pub fn of(mu: f64) -> Option<Self> {
         if mu == 0.0 { None } else { Some(if mu < 0.0 { Self::Faster } else { Self::Slower }) }
     }
@@ -63,7 +63,7 @@ pub(crate) fn speeds_at(mu: f64) -> String {
     Speeds::of(mu).map_or("at".into(), |speeds| speeds.to_string())
 }
 
-/// What one side contributes.
+/// Contribution of one side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SideCounts {
     /// Real eigenvalues above 1.
@@ -78,11 +78,11 @@ pub struct SideCounts {
     pub fixed_point: Vector2<f64>,
     /// `det(I - A)`.
     pub determinant: f64,
-    /// Where the fixed point lies on its own side of the border.
+    /// Speeds at which the fixed point lies on its own side of the border.
     pub exists_for: Speeds,
 }
 
-/// Feigin's verdict with what it rests on.
+/// Feigin's verdict, with the counts and the border that it follows from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Classification {
     /// The verdict.
@@ -98,7 +98,7 @@ pub struct Classification {
 }
 
 impl Classification {
-    /// Something of each side's counts.
+    /// Applies a function to the counts of each side.
     fn sides<T>(&self, of: impl Fn(&SideCounts) -> T) -> Sides<T> {
         Sides { minus: of(&self.minus), plus: of(&self.plus) }
     }

@@ -1,6 +1,6 @@
 //! The local map itself: `x' = A x + B mu` with the matrices of the side that x is on, and its periodic orbits.
 //!
-//! The map looks the same at every scale: for k > 0, x moves at mu as k x moves at k mu. So mu = 1, -1 and 0 are all there is.
+//! The map looks the same at every scale: for k > 0, x moves at mu as k x moves at k mu. So the cases mu = 1, -1 and 0 suffice.
 //! A map of the line is the case where the second coordinate stays 0.
 
 use nalgebra::{Matrix2, RowVector2, Vector2};
@@ -26,7 +26,7 @@ pub struct LocalMap {
 /// An orbit that repeats a word, wherever its points lie.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MapOrbit {
-    /// The sides it is to visit.
+    /// Sides of the word.
     pub word: Word,
     /// Its points, one for each letter.
     pub points: Vec<Vector2<f64>>,
@@ -58,7 +58,7 @@ impl MapOrbit {
         self.stability() == Stability::Stable
     }
 
-    /// What becomes of small deviations from it.
+    /// Stability: the behaviour of small deviations from the orbit.
     pub fn stability(&self) -> Stability {
         stability(&self.multipliers)
     }
@@ -131,7 +131,7 @@ impl LocalMap {
     }
 }
 
-/// What becomes of small deviations under a matrix with these eigenvalues.
+/// Behaviour of small deviations under a matrix with these eigenvalues.
 pub(super) fn stability(eigenvalues: &[Eigenvalue; 2]) -> Stability {
     let [one, two] = eigenvalues.map(|value| elementary::hypot(value.re, value.im));
     let modulus = if one > two { one } else { two };

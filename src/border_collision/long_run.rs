@@ -1,8 +1,8 @@
 //! Where motions of the local map end: on a periodic orbit, in chaos, or nowhere.
 //!
 //! Whether a motion ends on an orbit or escapes is not guessed from its size. Once the sides that it visits repeat a word,
-//! the rest is known: it tends to the orbit of that word where this orbit is stable and visits those sides, and it escapes
-//! where a sufficient condition holds. For a motion that repeats no word the largest Lyapunov exponent is measured, or known to
+//! the rest follows: it converges to the orbit of that word where this orbit is stable and visits those sides, and it escapes
+//! where a sufficient condition holds. For a motion that repeats no word the largest Lyapunov exponent is measured, or proved to
 //! be above 0; it is called chaotic where a region that the map sends into itself shows that it stays.
 
 use nalgebra::{Matrix2, Vector2};
@@ -23,8 +23,8 @@ pub enum LocalLongRun {
     Periodic(MapOrbit),
     /// In chaos.
     Chaotic(LocalChaos),
-    /// In a motion that has not left yet, with its exponent: on a closed curve, not settled, or with no region found that it
-    /// stays in, so that it may be a long transient.
+    /// Undecided, with its exponent: the motion is on a closed curve, is not settled, or may be a long transient because no region
+    /// was found that traps it.
     Undecided(Estimate),
     /// At the corner impact itself: at mu = 0 the motion shrinks to nothing.
     Corner,
@@ -32,50 +32,50 @@ pub enum LocalLongRun {
     Escapes(EscapeReason),
 }
 
-/// A motion that stays and parts neighbours.
+/// A motion that stays bounded and separates neighbours.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LocalChaos {
     /// Its largest Lyapunov exponent a step, a natural logarithm.
     pub exponent: Estimate,
-    /// What the exponent of no motion is below, by [`super::robust_chaos`]; none where its saddles are not there, and then the
-    /// exponent is above 0 as a measured number is.
+    /// Lower bound of the exponent of every motion, by [`super::robust_chaos`]; none where its saddles do not exist. Then
+    /// only the measured exponent shows that it is above 0.
     pub least_exponent: Option<f64>,
-    /// Where it stays.
+    /// Region in which it stays.
     pub region: TrappingRegion,
 }
 
 /// Why a motion is taken to escape.
 #[derive(Clone, Debug, PartialEq)]
 pub enum EscapeReason {
-    /// It follows a word for ever and grows by a factor each time.
+    /// The motion follows a word for ever and grows by a factor with each repetition.
     Follows {
         /// The word.
         word: Word,
         /// The multiplier above 1.
         multiplier: f64,
     },
-    /// It has grown past `1/tolerance::ESCAPED` times its scale.
+    /// The motion has grown past `1/tolerance::ESCAPED` times its scale.
     Grown,
 }
 
-/// Steps after which a motion is looked at, and that each of the means is taken over that an exponent is the mean of.
+/// Steps between two checks of a motion. An exponent is a mean of means over this many steps.
 const PART: usize = 1024;
-/// Parts that are no longer looked at for a mean: the transient.
+/// Parts before the first mean: the transient.
 const TRANSIENT: usize = 8;
-/// Parts of such a run.
+/// Parts of a run that repeats no word.
 const PARTS: usize = 40;
 /// Steps of a run that repeats no word.
 pub(super) const STEPS: usize = PARTS * PART;
-/// Steps that an exponent's mean is taken over.
+/// Steps over which an exponent is averaged.
 pub(super) const MEASURED: usize = (PARTS - TRANSIENT) * PART;
-/// Parts that a region which the motion stays in is made around.
+/// Parts around which a trapping region is built.
 const AROUND: usize = 8;
-/// How often a word must have been repeated to be one.
+/// Repetitions that a word needs to count.
 const REPEATED: usize = 8;
 
 impl LocalMap {
-    /// What each coordinate grows to in the first steps from 0: its natural unit at mu = 1, positive or 0 where x is never
-    /// moved along it.
+    /// Largest size of each coordinate in the first steps from 0: its natural unit at mu = 1, positive or 0 where x is never moved
+    /// along it.
     pub fn scales(&self) -> Vector2<f64> {
         let mut scales = Vector2::<f64>::zeros();
         for mu in [1.0, -1.0] {
@@ -158,7 +158,7 @@ impl LocalMap {
     ///
     /// After m repetitions a point is `c + l1^m d1 + l2^m d2` with the word's fixed point c and the parts of x - c along the
     /// eigenvectors. With l1 > 1 and l1 > |l2| it stays on the side s = -1, 1 for every m where
-    /// `s e d1 > |e d2| + max(0, -s (e c + f mu))`, which is asked of each rotation of the word.
+    /// `s e d1 > |e d2| + max(0, -s (e c + f mu))`, which is checked for each rotation of the word.
     pub fn follows_for_ever(&self, word: &Word, x: Vector2<f64>, mu: f64) -> Option<f64> {
         let (mut point, mut growth) = (x, None);
         for (by, side) in word.sides().iter().enumerate() {
@@ -183,7 +183,7 @@ impl LocalMap {
         growth
     }
 
-    /// The escape of a motion that has visited `sides` and is at `x` now, if it provably goes on like that.
+    /// The escape of a motion that has visited `sides` and is at `x` now, if it provably continues in the same way.
     fn escape(&self, sides: &[Side], x: Vector2<f64>, mu: f64) -> Option<EscapeReason> {
         // What follows is proved, so that a word seen twice is worth trying.
         let word = Word::repeated(&sides[sides.len() / 2..], 2)?;

@@ -1,18 +1,18 @@
-//! What the piecewise-linear map predicts: its normal form, Feigin's classification, its own motions on either side of the
-//! corner impact; and how far from it the prediction holds.
+//! Predictions of the piecewise-linear map: its normal form, Feigin's classification, its own motions on either side of the
+//! corner impact; and the distance from it up to which they are valid.
 //!
-//! | module | what it holds |
+//! | module | contents |
 //! |---|---|
-//! | [`mod@conditions`], [`feigin`] | what a classification rests on, and the classification |
+//! | [`mod@conditions`], [`feigin`] | conditions of a classification, and the classification |
 //! | [`mod@normal_form`] | the map with its parameter out of the border |
 //! | [`local_map`], [`word`] | the map itself; the sides that its orbits visit |
 //! | [`trapping`] | regions that it sends into themselves |
 //! | [`mod@robust_chaos`] | when chaos is a theorem |
 //! | [`long_run`], `outcome` | where its motions end, on either side of the corner impact |
-//! | [`directions`], [`danger`] | directions in which motions diverge at the corner impact; basins that shrink to nothing there, and attractors that meet |
-//! | [`validity`], [`passage`] | how far it holds; how the machine leaves the place where its orbit was |
+//! | [`directions`], [`danger`] | directions of divergence at the corner impact; basins that vanish there; attractors that meet there |
+//! | [`validity`], [`passage`] | range in which the map holds; departure of the machine from the place of its former orbit |
 //! | [`mod@rounded`] | how far a fold moves where the corner is rounded |
-//! | `event_curve` | curves of corner impacts, folds, flips, grazes in two numbers of the model; what happens at a corner impact |
+//! | `event_curve` | curves of corner impacts, folds, flips, grazes in two numbers of the model; scenarios of corner impacts |
 
 pub mod conditions;
 pub mod danger;
@@ -43,7 +43,7 @@ pub use rounded::{RoundedCorner, rounded};
 
 use crate::cam::Side;
 
-/// A map that the classification says nothing about, and why.
+/// A map that cannot be classified, and the reason.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[expect(missing_docs, reason = "the message says what each number is")]
 pub enum Degenerate {

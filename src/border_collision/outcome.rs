@@ -1,4 +1,4 @@
-//! What the local map predicts next to the corner impact, for mu = 1, -1 and 0.
+//! Predictions of the local map next to the corner impact, for mu = 1, -1 and 0.
 
 use nalgebra::Vector2;
 
@@ -29,7 +29,7 @@ pub struct LocalOutcome {
     pub orbits: Vec<MapOrbit>,
     /// The theorem of robust chaos, where its saddles are there.
     pub robust_chaos: Option<RobustChaos>,
-    /// Where motions end, each kind once; first the one that x = 0 has, the state of the corner impact.
+    /// Ends of motions, each kind once. The first is that of x = 0, the state of the corner impact.
     pub fates: Vec<Fate>,
 }
 
@@ -71,7 +71,7 @@ impl LocalOutcome {
 }
 
 impl LocalMap {
-    /// What the map does on either side of the corner impact, and at it.
+    /// Motions of the map on either side of the corner impact, and at it.
     pub fn outcomes(&self) -> [LocalOutcome; 3] {
         [-1.0, 1.0, 0.0].map(|mu| self.outcome(mu))
     }
@@ -126,7 +126,7 @@ impl LocalLongRun {
         }
     }
 
-    /// What it was decided by.
+    /// Basis of the decision.
     pub fn basis(&self) -> String {
         match self {
             Self::Periodic(orbit) => {
@@ -166,7 +166,7 @@ impl LocalLongRun {
         }
     }
 
-    /// Whether both are one kind of end, at one place as far as that can be told.
+    /// Whether both are one kind of end, at one place up to rounding.
     pub(super) fn is_like(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Periodic(one), Self::Periodic(other)) => one.word == other.word,

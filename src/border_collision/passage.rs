@@ -1,4 +1,4 @@
-//! How a motion leaves the place where its periodic orbit was, when the speed has just passed the corner impact.
+//! Departure of a motion from the place where its periodic orbit was, when the speed has just passed the corner impact.
 //!
 //! Past a nonsmooth fold neither side of the piecewise-linear map has its fixed point on its own side of the border. Next to
 //! the border the map still moves little, by an amount that is proportional to dT, and then the multiplier of A above 1
@@ -30,7 +30,7 @@ pub fn linear(map: &LocalMap, dt: f64, reach: f64, most: u64) -> Option<u64> {
     })
 }
 
-/// The same by simulation, from `start`, the state x* on the section.
+/// Revolutions until the position is farther than `reach`, m, from that of `start`, the state x* on the section, by simulation.
 pub fn simulated(map: &StroboscopicMap, start: State, reach: f64, most: u64) -> Result<Option<u64>, SimulateError> {
     let mut motion = map.machine.start(map.cam_angle, start)?;
     for revolution in 1..=most {
@@ -56,7 +56,7 @@ pub fn revolutions_per_decade(map: &LocalMap) -> Option<f64> {
     Some(std::f64::consts::LN_10 / elementary::ln(multiplier))
 }
 
-/// Whether both left, and after about as many revolutions.
+/// Whether both motions left, after about as many revolutions.
 pub fn agree(linear: Option<u64>, simulated: Option<u64>) -> bool {
     let near = |(linear, simulated): (u64, u64)| {
         linear.abs_diff(simulated) as f64 <= 1.0 + tolerance::PASSAGE.value * linear as f64

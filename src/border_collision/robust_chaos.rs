@@ -9,14 +9,14 @@
 //! ```
 //!
 //! Then there is a bounded region that the map sends into itself (Banerjee, Yorke and Grebogi 1998; proved by Glendinning and
-//! Simpson 2021). And both matrices send one cone of directions into itself and stretch it, in companion coordinates along x, at
-//! least l-fold on L and k-fold on R, -k the eigenvalue of A_R below -1 (`derivations/border_collision.py`): so of no motion is
-//! the Lyapunov exponent below ln min(l, k), and no orbit of any period is stable. The cone needs no phi.
+//! Simpson 2021). Both matrices also send one cone of directions into itself and stretch it, in companion coordinates along x, at
+//! least l-fold on L and k-fold on R; -k is the eigenvalue of A_R below -1 (`derivations/border_collision.py`). So every motion's
+//! Lyapunov exponent is at least ln min(l, k), and no orbit of any period is stable. The cone does not need phi.
 //!
 //! For the follower the linear map is the limit of small |dT|. Where both sides are twice continuously differentiable up to the
-//! border, what is left out is of the size of |dT|, in the first derivatives too; a region that goes into its inside and a cone
-//! that is stretched stay so under it (Simpson and Glendinning 2021, on terms of higher order). How small |dT| must be is not
-//! said.
+//! border, the terms left out are of the size of |dT|, in the first derivatives too. A region that is mapped into its interior and a
+//! cone that is stretched remain so under them (Simpson and Glendinning 2021, on terms of higher order). The theorem does not
+//! say how small |dT| must be.
 
 use super::conditions::{Condition, Decides};
 use super::local_map::LocalMap;
@@ -34,11 +34,11 @@ use crate::tolerance;
 pub struct RobustChaos {
     /// The side L.
     pub saddle: Side,
-    /// What must be positive.
+    /// Quantities that must be positive.
     pub hypotheses: [Condition; 5],
-    /// `ln min(l, k)`, below which no motion's Lyapunov exponent is, a step.
+    /// `ln min(l, k)` per step, a lower bound of every motion's Lyapunov exponent.
     pub least_exponent: f64,
-    /// How the signs of the hypotheses are known.
+    /// Evidence for the signs of the hypotheses.
     pub known: Evidence,
 }
 
@@ -57,7 +57,7 @@ impl RobustChaos {
     }
 }
 
-/// What must be positive, each with the sum of its terms' sizes, from the traces and determinants of L and of R.
+/// Quantities that must be positive, each with the sum of its terms' sizes, from the traces and determinants of L and of R.
 fn hypotheses<N: Number>([tau_l, tau_r]: [N; 2], [delta_l, delta_r]: [N; 2]) -> [(N, f64); 5] {
     let one = N::from(1.0);
     // l = (tau_L + sqrt(tau_L^2 - 4 delta_L))/2
@@ -73,7 +73,7 @@ fn hypotheses<N: Number>([tau_l, tau_r]: [N; 2], [delta_l, delta_r]: [N; 2]) -> 
     ]
 }
 
-/// Name of each, and what its failing would mean.
+/// Name of each, and the consequence of its failure.
 const NAMES: [[&str; 2]; 5] = [
     ["delta_L", "the map does not keep the sense of turning"],
     ["delta_R", "the map does not keep the sense of turning"],
@@ -83,7 +83,7 @@ const NAMES: [[&str; 2]; 5] = [
 ];
 
 impl RobustChaos {
-    /// Says that it is proved, where it is so for all matrices A of L and of R, by rows, whose entries lie in these intervals.
+    /// Marks the hypotheses as proved, if they hold for all matrices A of L and of R, by rows, whose entries lie in these intervals.
     pub fn prove(&mut self, matrices: [[[Interval; 2]; 2]; 2]) {
         let traces = matrices.map(|[[a, _], [_, d]]| a + d);
         let determinants = matrices.map(|[[a, b], [c, d]]| a * d - b * c);

@@ -1,4 +1,4 @@
-//! A corner that is rounded: how far that moves the end of a nonsmooth fold.
+//! Effect of a rounded corner: the shift of the end of a nonsmooth fold.
 //!
 //! No cam has a corner to the last digit. Let the lift around it, over an angle epsilon, be the polynomial of fifth degree that
 //! meets both laws with their slopes and curvatures; its acceleration goes from one to the other as J phi(sigma), sigma from -1 to 1:
@@ -25,12 +25,12 @@ use crate::bracket::{Width, halve};
 use crate::corner::CornerImpact;
 use crate::tolerance;
 
-/// What rounding the corner does to a nonsmooth fold.
+/// Effect of rounding the corner on a nonsmooth fold.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RoundedCorner {
-    /// By how much the speed at which the fixed points meet moves, rpm for each degree that the corner is rounded over.
+    /// Shift of the speed at which the fixed points meet, rpm for each degree over which the corner is rounded.
     pub rpm_per_degree: f64,
-    /// The angle over which the corner may be rounded for that to be [`tolerance::ROUNDED_AWAY`], degrees.
+    /// Angle of rounding at which that shift is [`tolerance::ROUNDED_AWAY`], degrees.
     pub degrees: f64,
 }
 
@@ -40,7 +40,7 @@ document!(RoundedCorner as it {
     for_rpm: tolerance::ROUNDED_AWAY.value,
 });
 
-/// The first order in the angle, of a corner impact that is a nonsmooth fold; none of another.
+/// Effect to first order in the angle, for a corner impact that is a nonsmooth fold; none for another.
 pub fn rounded(kind: &Classification, at: &CornerImpact) -> Option<RoundedCorner> {
     if kind.scenario != Scenario::NonsmoothFold {
         return None;

@@ -1,6 +1,6 @@
 //! Whether a motion of the local map stays: regions that the map sends into themselves.
 //!
-//! That a motion has not left for some thousand steps says little: next to where an attractor ends, motions stay for millions
+//! That a motion has not left for some thousand steps proves little: next to where an attractor ends, motions stay for millions
 //! of steps and then leave. A region that the map sends into its own inside settles it. Here it is made of convex polygons, one
 //! for each of the words of the last few sides visited: a side's part of a polygon has a convex image, so that its corners
 //! alone decide. A polygon starts as the hull of where the motion was, and takes in what is sent out of it, until nothing is.
@@ -12,7 +12,7 @@ use super::local_map::LocalMap;
 use crate::cam::Side;
 use crate::tolerance;
 
-/// The longest word of sides that polygons are told apart by.
+/// The longest word of sides by which polygons are distinguished.
 const LONGEST_MEMORY: u32 = 3;
 /// Rounds of taking in after which a region is given up.
 const ROUNDS: usize = 400;
@@ -31,7 +31,7 @@ pub struct TrappingRegion {
 
 impl LocalMap {
     /// A region around the `visited` points of one motion, in their order and all at `mu`, that the map sends into its inside
-    /// by [`tolerance::TRAPPED`]: so the motion stays in it for ever. `None` says nothing: there may be one that is not found.
+    /// by [`tolerance::TRAPPED`]: so the motion stays in it for ever. With `None` such a region may still exist: it was not found.
     pub fn region(&self, visited: &[Vector2<f64>], mu: f64) -> Option<TrappingRegion> {
         let scaled = Scaled { map: self, mu, units: self.units() };
         (0..=LONGEST_MEMORY).find_map(|memory| scaled.region(visited, memory))
@@ -45,9 +45,9 @@ struct Scaled<'a> {
 }
 
 impl Scaled<'_> {
-    /// The same with one polygon for each word of `memory` sides.
+    /// A region with one polygon for each word of `memory` sides.
     fn region(&self, visited: &[Vector2<f64>], memory: u32) -> Option<TrappingRegion> {
-        // Of too few points no word is known, and where nothing is, nothing is held.
+        // Too few points give no word, and so no region.
         if visited.len() <= memory as usize {
             return None;
         }
@@ -125,7 +125,7 @@ impl Scaled<'_> {
     }
 }
 
-/// The edges of a polygon; of a point one that goes nowhere.
+/// The edges of a polygon; for a point, one of length 0.
 fn edges(polygon: &Polygon) -> impl Iterator<Item = (Vector2<f64>, Vector2<f64>)> {
     polygon.iter().zip(polygon.iter().cycle().skip(1)).map(|(from, to)| (*from, *to))
 }

@@ -1,9 +1,9 @@
-//! How far from the corner impact the local map holds: measured against the simulated machine on its own cam.
+//! Validity range of the local map around the corner impact, measured against the simulated machine on its own cam.
 //!
 //! The real map has terms of second order that the local one leaves out. For a period T* + dT the machine is run, and its
 //! displacement from x* is compared with the one that A and B predict; |dT| grows from almost nothing until they differ by a
-//! tenth of the prediction. The same with the terms of second order of [`crate::corner::second_order`], until a tenth and until
-//! a ten-thousandth. Velocities count over the cam's angle, `|(q, v/omega)|`.
+//! tenth of the prediction. The comparison is repeated with the terms of second order of [`crate::corner::second_order`], until they
+//! differ by a tenth, and by a ten-thousandth. Velocities count over the cam's angle, `|(q, v/omega)|`.
 
 use std::convert::Infallible;
 use std::f64::consts::TAU;
@@ -26,7 +26,7 @@ use crate::section::StroboscopicMap;
 use crate::simulate::{Event, EventKind, Machine};
 use crate::tolerance;
 
-/// What is compared.
+/// Quantity that is compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ComparedMotion {
@@ -40,36 +40,36 @@ pub enum ComparedMotion {
 
 named!(ComparedMotion);
 
-/// What ends the range.
+/// Reason for the end of the range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Ends {
     /// The two differ by as much as is allowed.
     Differs,
-    /// The real motion is not there any more, or has not one impact.
+    /// The real motion does not exist any more, or has not one impact.
     OtherMotion,
     /// Nothing, up to half and twice the speed.
     Nothing,
 }
 
-/// How far one prediction holds.
+/// Range over which one prediction holds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Range {
-    /// Of what.
+    /// Quantity compared.
     pub compared: ComparedMotion,
-    /// To which order in dT, 1 or 2.
+    /// Order in dT, 1 or 2.
     pub order: u32,
-    /// By how much the two may differ, of the prediction.
+    /// Largest allowed difference, relative to the prediction.
     pub within: f64,
-    /// Of dT: -1 for speeds above that of the corner impact, 1 for those below.
+    /// Sign of dT: -1 for speeds above that of the corner impact, 1 for those below.
     pub sign: f64,
     /// The last change of the period for which it holds, s, with its sign; 0 where it never does.
     pub period_change: f64,
     /// The speed there, rpm.
     pub speed_rpm: f64,
-    /// The relative difference there; none where it holds nowhere.
+    /// The relative difference there; none where the prediction holds nowhere.
     pub difference: Option<f64>,
-    /// What ends it.
+    /// Reason for its end.
     pub ends: Ends,
 }
 
@@ -126,7 +126,7 @@ pub fn ranges(model: &Model, cam: &Cam, at: &CornerImpact, map: &LocalMap, curve
 }
 
 impl Range {
-    /// One that is still to be found: it holds nowhere yet.
+    /// A range that is still to be found: it holds nowhere yet.
     fn asked(compared: ComparedMotion, order: u32, within: f64, sign: f64) -> Self {
         let (period_change, speed_rpm, difference, ends) = (0.0, f64::NAN, None, Ends::Nothing);
         Self { compared, order, within, sign, period_change, speed_rpm, difference, ends }
@@ -139,7 +139,7 @@ struct Real<'a> {
 }
 
 impl Real<'_> {
-    /// By how much |dT| grows from one comparison to the next.
+    /// Factor by which |dT| grows from one comparison to the next.
     const GROWTH: f64 = 1.15;
 
     fn map(&self, dt: f64) -> StroboscopicMap {
@@ -181,7 +181,7 @@ impl Real<'_> {
     /// The first |dT| at which a comparison fails, growing from [`tolerance::LINEAR_FROM`], then by halving.
     fn range(&self, asked: Range, compare: impl Fn(f64, Option<(Vector2<f64>, f64)>) -> Difference) -> Range {
         let (period, Range { sign, within, .. }) = (self.at.period, asked);
-        // The last dT that held with what was found there.
+        // The last dT for which the prediction held, with the real displacement and the difference there.
         let mut last: Option<(f64, Vector2<f64>, f64)> = None;
         let mut ends = Ends::Nothing;
         let mut fails = |dt: f64| {
@@ -200,7 +200,7 @@ impl Real<'_> {
         let most = if sign > 0.0 { period } else { 0.5 * period };
         while dt.abs() < most {
             let Ok(false) = fails(dt) else {
-                // Where nothing held there is no range to close in.
+                // If the prediction held nowhere, there is no range to narrow down.
                 if let Some(held) = held {
                     let Ok(_) = halve([held, dt], Width::Relative(tolerance::LINEAR_BRACKET.value), &mut fails);
                 }

@@ -33,7 +33,7 @@ impl Arc {
         self.lift_by(sin, cos, self.root_squared(sin).sqrt())
     }
 
-    /// The same from the sine and cosine of phi, and w.
+    /// Lift and derivatives from the sine and cosine of phi, and w.
     #[inline]
     fn lift_by<N: Number>(&self, sin: N, cos: N, w: N) -> Lift<N> {
         let kappa = N::from(self.distance);
@@ -56,7 +56,7 @@ impl Arc {
         self.climb(from, turn).0
     }
 
-    /// The same, and the lift where it ends.
+    /// [`Arc::rise`], and the lift where it ends.
     #[inline]
     pub fn climb(&self, from: f64, turn: f64) -> (f64, Lift) {
         let half = 0.5 * turn;
@@ -131,7 +131,7 @@ impl Arc {
         Jet::of_sinusoid(-kappa * sin, kappa * cos, 1.0).plus(&Jet::from_series(square_root(squared)))
     }
 
-    /// The same arc in the mirror theta -> 2 pi - theta.
+    /// This arc in the mirror theta -> 2 pi - theta.
     pub(super) fn mirrored(self) -> Self {
         Self { direction: TAU - self.direction, ..self }
     }

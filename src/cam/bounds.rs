@@ -11,17 +11,17 @@ use crate::tolerance;
 /// Ranges over a segment, lowest and highest; infinite where the law does not reach.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
-    /// Of c, m.
+    /// Range of c, m.
     pub lift: [f64; 2],
-    /// Of c', m/rad.
+    /// Range of c', m/rad.
     pub slope: [f64; 2],
-    /// Of c'', m/rad^2.
+    /// Range of c'', m/rad^2.
     pub curvature: [f64; 2],
-    /// On `|c'''|`, m/rad^3.
+    /// Bound on `|c'''|`, m/rad^3.
     pub third: f64,
 }
 
-/// A range as it grows: what was sampled, and what may lie between.
+/// A range as it grows: the sampled part, and the certain range including what may lie between.
 #[derive(Clone, Copy)]
 struct Range {
     sampled: [f64; 2],
@@ -51,7 +51,7 @@ fn hull(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
 }
 
 impl Bounds {
-    /// Of `law` over `[start, end]`, from at most `most` pieces.
+    /// Bounds of `law` over `[start, end]`, from at most `most` pieces.
     pub(super) fn new(law: &Law, start: f64, end: f64, most: usize) -> Self {
         if let Law::Dwell(value) = law {
             return Self { lift: [*value; 2], slope: [0.0; 2], curvature: [0.0; 2], third: 0.0 };

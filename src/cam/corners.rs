@@ -31,7 +31,7 @@ pub struct Corner {
     pub segment: usize,
     /// The lowest derivative that jumps: 1 velocity, 2 acceleration, 3 jerk, and so on.
     pub jump_order: usize,
-    /// What that derivative jumps by, after less before, m/rad^order.
+    /// Jump of that derivative, after less before, m/rad^order.
     pub jump: f64,
     /// Lift and derivatives in the limit from before.
     pub minus: Lift,
@@ -147,7 +147,8 @@ impl Cam {
 }
 
 impl Segment {
-    /// The lowest order of a derivative that is not 0 at an extremum of the lift, rad; none where the lift stays, as far as can be told.
+    /// The lowest order of a derivative that is not 0 at an extremum of the lift, rad; none where the lift is constant as far as rounding
+    /// shows.
     ///
     /// Where derivatives up to n - 1 vanish, the extremum is found to about the nth root of the lift's rounding. That far beside it
     /// lower derivatives are not 0. So an order counts only if its term of the Taylor series decides the lift where it exceeds rounding:

@@ -14,7 +14,7 @@ pub(super) struct Cyclic<const K: usize> {
     pub right: Vec<SVector<f64, K>>,
 }
 
-/// Of the inverse, for each i the blocks (i, i) and (i, i + 1).
+/// Blocks (i, i) and (i, i + 1) of the inverse, for each i.
 pub(super) type Blocks<const K: usize> = Vec<[SMatrix<f64, K, K>; 2]>;
 
 /// An eliminated unknown: `x_i = y - N x_{i+1} - W x_last`, everything already divided by its pivot.
@@ -22,7 +22,7 @@ struct Eliminated<const K: usize> {
     y: SVector<f64, K>,
     next: SMatrix<f64, K, K>,
     last: SMatrix<f64, K, K>,
-    /// Of its pivot.
+    /// Inverse of its pivot.
     inverse: SMatrix<f64, K, K>,
 }
 
@@ -37,7 +37,7 @@ impl<const K: usize> Cyclic<K> {
         self.factored().map(|(solution, _)| solution)
     }
 
-    /// The solution, and of the inverse what a neighbour's equation meets: for each i the blocks (i, i) and (i, i + 1).
+    /// The solution, and the blocks (i, i) and (i, i + 1) of the inverse, for each i.
     pub fn solve_and_invert(self) -> Option<(Vec<SVector<f64, K>>, Blocks<K>)> {
         let (solution, (eliminated, corner)) = self.factored()?;
         let last = eliminated.len();
@@ -60,7 +60,7 @@ impl<const K: usize> Cyclic<K> {
         Some((solution, blocks))
     }
 
-    /// The solution, the eliminated unknowns, and the inverse of what is left of the last equation.
+    /// The solution, the eliminated unknowns, and the inverse of the remainder of the last equation.
     #[expect(clippy::type_complexity, reason = "its two users take it apart at once")]
     fn factored(self) -> Option<(Vec<SVector<f64, K>>, (Vec<Eliminated<K>>, SMatrix<f64, K, K>))> {
         let Self { diagonal, next, right } = self;

@@ -1,11 +1,11 @@
 //! Corners and dwells, found in the rows of a table.
 //!
-//! A dwell is a stretch over which rows stay within their noise, so long that a curvature which noise could hide there is a small
-//! part of the cam's largest. It is taken to end a little inside: a motion leaves it too slowly to be seen at first.
+//! A dwell is a stretch over which rows stay within their noise. It must be so long that a curvature hidden by noise is a small part
+//! of the cam's largest. It is taken to end a little inside: a motion leaves it too slowly to be seen at first.
 //!
-//! At a corner the rows on both sides are one cubic and that cubic with a jump of the second derivative and the third; elsewhere they
-//! are as well a quartic with a jump of the third alone, with as many coefficients. A corner is where the first leaves much less than
-//! the second, each with its jump where it leaves the least, and the jump is no small part of the largest curvature.
+//! At a corner the rows on both sides fit a cubic plus a jump of its second and third derivatives. Elsewhere a quartic with a
+//! jump of the third alone, which has as many coefficients, fits equally well. A corner is where the first fit leaves much less than the
+//! second, each with its jump where it leaves the least. The jump must also be no small part of the largest curvature.
 
 use std::f64::consts::TAU;
 
@@ -25,14 +25,14 @@ struct Rows<'a> {
     gap: f64,
     /// The standard deviation of the noise, m.
     noise: f64,
-    /// The largest second derivative, as far as rows some degrees apart tell, m/rad^2.
+    /// The largest second derivative, estimated from rows some degrees apart, m/rad^2.
     curvature: f64,
 }
 
-/// More rows than this are looked at one in so many: what is looked for is some degrees long.
+/// With more rows than this, one in so many is examined: the features are some degrees long.
 const MOST_ROWS: usize = 1000;
 
-/// The features that a model gives, and those that it leaves to be found; `half_step` is half of what the lifts are rounded to.
+/// The features that a model gives, and those that it leaves to be found; `half_step` is half of the rounding step of the lifts.
 pub(super) fn of(smoothing: &Smoothing, angles: &[f64], lifts: &[f64], half_step: f64) -> Features {
     let given = |degrees: &Vec<f64>| degrees.iter().map(|angle| angle.to_radians()).collect();
     let mut corners: Option<Vec<f64>> = smoothing.corners_deg.as_ref().map(given);
@@ -59,35 +59,35 @@ pub(super) fn of(smoothing: &Smoothing, angles: &[f64], lifts: &[f64], half_step
     Features { corners: corners.unwrap_or_default(), dwells: dwells.unwrap_or_default() }
 }
 
-/// A row of a table that is far from where the rows beside it say.
+/// A row of a table that is far from the value that the rows beside it give.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Stray {
-    /// Where it stands in the file of the table, or of the model; of rows that came without a file, which one it is.
+    /// Its line in the file of the table or of the model; for rows without a file, its index.
     pub line: usize,
     /// Its angle, degrees.
     pub cam_angle_deg: f64,
     /// Its lift, m.
     pub lift_m: f64,
-    /// How far that is above what the rows beside it say, m.
+    /// Its distance above the value that the rows beside it give, m.
     pub off_m: f64,
 }
 
-/// What the rows of a table are off by where each is told by those beside it, m: their noise, or what they are rounded to.
+/// Standard deviation of the rows of a table from the values that the rows beside them give, m: their noise, or their rounding.
 pub(crate) fn spread(profile: &TableProfile) -> f64 {
     let (angles, lifts): (Vec<f64>, Vec<f64>) =
         profile.rows.iter().map(|row| (row.angle_deg.to_radians(), row.lift)).unzip();
     Rows::new(&angles, &lifts, profile.reading.half_step()).noise
 }
 
-/// What a slip of a hand or a gauge leaves in a table, in order: a spline follows it, or half follows where it smooths. A cam that turns
-/// sharply between two rows has such, too.
+/// Stray rows of a table, such as a slip of a hand or a gauge leaves, in order. An interpolating spline follows them, a smoothing spline
+/// half follows them. A cam that turns sharply between two rows has such rows, too.
 pub(crate) fn strays(profile: &TableProfile) -> Vec<Stray> {
-    /// More than noise makes of any row, in its standard deviations.
+    /// Distance beyond any that noise gives a row, in its standard deviations.
     const FAR: f64 = 8.0;
-    /// Of what the largest second derivative bends from one row to the next: at a jump of it, which is at most twice as large,
-    /// a polynomial through both sides is off by a tenth of that.
+    /// Part of the bend that the largest second derivative makes from one row to the next. At a jump of that derivative, at most
+    /// twice as large, a polynomial through both sides is off by a tenth of that.
     const BENT: f64 = 0.25;
-    /// How often rows are looked at again.
+    /// Largest number of rounds over the rows.
     const ROUNDS: usize = 20;
     if !profile.may_be_smoothed() {
         return Vec::new();
@@ -125,7 +125,7 @@ pub(crate) fn strays(profile: &TableProfile) -> Vec<Stray> {
 
 impl<'a> Rows<'a> {
     fn new(angles: &'a [f64], lifts: &'a [f64], half_step: f64) -> Self {
-        /// Over which angle curvatures are taken, rad.
+        /// Angle over which curvatures are taken, rad.
         const REACH: f64 = 0.14;
         let gap = TAU / angles.len() as f64;
         let mut rows = Self { angles, lifts, gap, noise: 0.0, curvature: 0.0 };
@@ -138,7 +138,7 @@ impl<'a> Rows<'a> {
         let mut misses: Vec<f64> = all().map(|row| rows.miss(row).1.abs()).filter(|miss| *miss > rounding).collect();
         let middle = misses.len() / 2;
         let median = if misses.is_empty() { 0.0 } else { *misses.select_nth_unstable_by(middle, f64::total_cmp).1 };
-        /// The standard deviation over the median of what is normally distributed.
+        /// Ratio of the standard deviation of a normal distribution to the median of its absolute value.
         const NORMAL: f64 = 1.4826;
         rows.noise = (NORMAL * median).max(half_step / 3.0_f64.sqrt());
         rows
@@ -159,7 +159,8 @@ impl<'a> Rows<'a> {
         2.0 * (slope(here, after) - slope(before, here)) / (after.0 - before.0)
     }
 
-    /// How far a row is from the polynomial of fifth degree through three rows on either side, m; and by how far noise of 1 would be.
+    /// Distance of a row from the polynomial of fifth degree through three rows on either side, m; and that divided by the one from noise
+    /// of 1.
     fn miss(&self, row: isize) -> (f64, f64) {
         let (at, lift) = self.row(row);
         let others = [-3, -2, -1, 1, 2, 3].map(|away| self.row(row + away));
@@ -173,13 +174,13 @@ impl<'a> Rows<'a> {
         (off, off / (1.0 + weights.iter().map(|weight| weight * weight).sum::<f64>()).sqrt())
     }
 
-    /// Stretches of one lift, and where they end; `corners` are where one may end at once.
+    /// Stretches of one lift, by their ends; at one of `corners` a stretch may end abruptly.
     fn dwells(&self, corners: &[f64]) -> Vec<[f64; 2]> {
-        /// How far noise takes a row, in standard deviations.
+        /// Largest deviation of a row by noise, in standard deviations.
         const FAR: f64 = 3.0;
         /// The fewest rows of a dwell.
         const FEWEST: isize = 6;
-        /// In what angle the acceleration of a motion rises to its largest, rad.
+        /// Angle in which the acceleration of a motion rises to its largest, rad.
         const RISE: f64 = 0.2;
         let count = self.angles.len() as isize;
         let room = FAR * self.noise;
@@ -227,14 +228,14 @@ impl<'a> Rows<'a> {
 
     /// Where the second derivative jumps, by rising angle.
     fn corners(&self) -> Vec<f64> {
-        /// Rows on either side that are looked at, a scale at a time.
+        /// Rows examined on either side, a scale at a time.
         const SCALES: [isize; 3] = [6, 12, 24];
         let count = self.angles.len() as isize;
         let mut found: Vec<f64> = Vec::new();
         let apart = |one: f64, two: f64| ((one - two + 0.5 * TAU).rem_euclid(TAU) - 0.5 * TAU).abs();
         for reach in SCALES.into_iter().filter(|reach| 4 * reach < count) {
             let half = reach / 2;
-            // One-sided second differences tell cheaply where a look is worth it: where they differ most.
+            // One-sided second differences cheaply show where a corner is likely: where they differ most.
             let differ = |row: isize| (self.bend(row + half, half) - self.bend(row - half, half)).abs();
             let least = 0.5 * tolerance::CORNER_SHARE.value * self.curvature;
             let is_most = |row: &isize| {
@@ -255,8 +256,8 @@ impl<'a> Rows<'a> {
         found
     }
 
-    /// By how much a corner leaves less of the rows around one than a jump of the third derivative does, or a steep rise of the second,
-    /// in squares of the noise, and where it is; none where that is too little, or the corner is.
+    /// Advantage of a corner over a jump of the third derivative, or over a steep rise of the second, in the squares that it leaves of the
+    /// rows around one, over the squares of the noise; and its place. None where the advantage or the corner is too small.
     fn corner(&self, row: isize, reach: isize) -> Option<(f64, f64)> {
         /// Parts of the rows on one side, over half of which the acceleration may as well rise.
         const RISES: [f64; 2] = [0.25, 0.5];
@@ -275,7 +276,7 @@ impl<'a> Rows<'a> {
         is_one.then_some((gained, at))
     }
 
-    /// The least that is left of the rows around one, where the jump is then, and the jump.
+    /// The least sum of squares left of the rows around one, the place of the jump then, and the jump.
     fn best(&self, row: isize, reach: isize, rise: f64) -> (f64, f64, f64) {
         /// Parts of the stretch that are tried, at first and after each round.
         const PARTS: i32 = 6;
@@ -294,9 +295,9 @@ impl<'a> Rows<'a> {
         best
     }
 
-    /// The sum of squares that a cubic with a jump of its second derivative and its third at `at` leaves of the rows around one, and the
-    /// jump of the second; where that rises over a part of the rows on either side, or, where it is not a number, as a quartic with a
-    /// jump of the third.
+    /// The sum of squares that a cubic with a jump of its second and third derivatives at `at` leaves of the rows around one, and the jump
+    /// of the second. With a `rise`, the second derivative rises over that part of the rows on either side instead. Where `rise` is not a
+    /// number, the fit is a quartic with a jump of the third.
     fn fitted(&self, at: f64, row: isize, reach: isize, rise: f64) -> Option<(f64, f64)> {
         let unit = reach as f64 * self.gap;
         let rows: Vec<(f64, f64)> = (row - reach..=row + reach).map(|row| self.row(row)).collect();

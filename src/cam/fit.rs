@@ -1,13 +1,14 @@
-//! How closely a smoothing spline follows the rows of a table, and what the rows say of their own noise.
+//! Distance of a smoothing spline from the rows of a table, and the noise that the rows show.
 //!
-//! With a tolerance the weight is the one at which the largest distance from a row is the tolerance. Without one it is that of the
-//! least generalised cross-validation (Craven and Wahba 1978; the factor: Kim and Gu 2004), what a row would be missed by if it were left out:
+//! With a tolerance, the weight makes the largest distance from a row equal to it. Without one, the weight minimises generalised
+//! cross-validation (Craven and Wahba 1978; the factor: Kim and Gu 2004), an estimate of the error at a row that is left out:
 //!
 //! ```text
 //! V = n sum of residuals^2 / (n - 1.4 p)^2      p what the spline has taken from the n rows, noise^2 = sum of residuals^2 / (n - p)
 //! ```
 //!
-//! of the rows outside of dwells, but no closer than half of the step that the lifts are rounded to, since a true lift may be as far from its row.
+//! over the rows outside of dwells. The fit is no closer than half of the rounding step of the lifts, since a true lift may be as far from
+//! its row.
 
 use std::f64::consts::TAU;
 
@@ -27,7 +28,7 @@ pub(crate) struct Fit {
     pub weight: f64,
     /// Corners and dwells, given or found.
     features: Features,
-    /// The standard deviation of what the rows are off a smooth motion by, m; not a number where the spline goes through them.
+    /// The standard deviation of the rows from a smooth motion, m; not a number where the spline goes through them.
     pub noise: f64,
 }
 
@@ -40,7 +41,7 @@ impl Fit {
         largest(&self.spline.residuals)
     }
 
-    /// What it has at the rows, m.
+    /// Lifts of the spline at the rows, m.
     pub fn lifts(&self, profile: &TableProfile) -> Vec<f64> {
         profile.rows.iter().zip(&self.spline.residuals).map(|(row, residual)| row.lift - residual).collect()
     }
@@ -61,7 +62,7 @@ impl Fit {
     }
 }
 
-/// What was chosen for the smoothing spline of a model, for one that is laid by other means; none where its cam is no such spline.
+/// Choices made for the smoothing spline of a model, for programs that compute it by other means; none where its cam is no such spline.
 pub(crate) fn fitted(model: &Model) -> Result<Option<Fitted>, ModelError> {
     let smoothed = model.table().and_then(|table| Some((table, table.spline.smoothing()?)));
     let fitted = smoothed.map(|(table, smoothing)| {
@@ -112,7 +113,7 @@ fn overflow(model: &Model, profile: &TableProfile) -> ModelError {
     model.reject(profile.place(), "has lifts too large, or angles too close, for a spline near them")
 }
 
-/// Corners that were found, one by one put where the spline has the least of what it is the least of, within a gap.
+/// Found corners, each moved within a gap to where the functional that the spline minimises is least.
 fn polished(mut features: Features, gap: f64, least: impl Fn(&Features) -> Option<f64>) -> Features {
     /// Parts of a gap that a corner is moved by, at first, and how often they are halved.
     const PARTS: f64 = 0.25;
@@ -134,7 +135,7 @@ fn polished(mut features: Features, gap: f64, least: impl Fn(&Features) -> Optio
     features
 }
 
-/// The logarithm of the weight that a tolerance asks for.
+/// The logarithm of the weight that meets a tolerance.
 fn weight(
     model: &Model,
     profile: &TableProfile,
@@ -171,13 +172,13 @@ fn weight(
     }
 }
 
-/// Where a limit is kept.
+/// Weights at which a limit is kept.
 enum Kept {
     /// From this weight on, its logarithm.
     At(f64),
     /// With every weight.
     Always,
-    /// With none: what is left with the largest.
+    /// With no weight; the distance left at the largest weight.
     Never(f64),
 }
 
@@ -201,17 +202,17 @@ fn within(at: &impl Fn(f64) -> Option<Smoothed>, limit: f64) -> Option<Kept> {
 
 /// The weight, its logarithm, of the least generalised cross-validation.
 fn cross_validated(at: &impl Fn(f64) -> Option<Smoothed>) -> Option<f64> {
-    /// From one weight that is tried to the next.
+    /// Step between the weights tried, in their logarithm.
     const STEP: f64 = 0.75;
-    /// What is taken from the rows counts for more: once in so many tables plain cross-validation follows the noise.
+    /// Factor on the degrees of freedom. Without it cross-validation follows the noise in some tables.
     const CHARGED: f64 = 1.4;
-    /// The most that is taken from the rows, of them: well below where what counts for more is all of them.
+    /// Largest ratio of degrees of freedom to rows: well below where the charged degrees of freedom equal the rows.
     const MOST: f64 = 0.6;
-    /// Parts of the golden section: the logarithm is known to a hundredth then.
+    /// Steps of the golden section; they give the logarithm to a hundredth.
     const SECTIONS: u32 = 10;
     let score = |weight: f64| {
         let spline = at(weight)?;
-        // Of what goes through the rows nothing is left to tell by.
+        // A spline that goes through the rows leaves no residuals to judge it by.
         if spline.freedom > MOST * spline.moving {
             return Some(f64::INFINITY);
         }

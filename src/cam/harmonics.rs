@@ -47,7 +47,7 @@ impl Harmonics {
         Self { offset: profile.offset, terms, bounds }
     }
 
-    /// How many waves its highest cosine has in a turn.
+    /// Number of waves of its highest cosine in a turn.
     pub(super) fn highest(&self) -> usize {
         self.terms.len()
     }

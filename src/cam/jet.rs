@@ -1,14 +1,14 @@
-//! Derivatives of a lift law of any order, by power series: they tell which derivative jumps where two laws meet.
+//! Derivatives of a lift law of any order, by power series: they show which derivative jumps where two laws meet.
 
 /// Lift and its derivatives at an angle, order 0 first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Jet(pub [f64; Jet::ORDERS]);
 
 impl Jet {
-    /// Orders held: 0 to 12, the last one only to judge the rounding of the one before.
+    /// Number of orders: 0 to 12, the last one only to judge the rounding of the one before.
     pub const ORDERS: usize = 13;
 
-    /// The highest order at which a jump is looked for; laws that agree up to it meet smoothly as far as can be told.
+    /// The highest order at which a jump is looked for; laws that agree up to it are taken to meet smoothly.
     pub const HIGHEST_JUMP: usize = Self::ORDERS - 2;
 
     pub(super) fn constant(value: f64) -> Self {

@@ -1,4 +1,4 @@
-//! A lift law: one smooth formula, its derivatives, and what is certain about them over a stretch of angle.
+//! A lift law: one smooth formula, its derivatives, and certain bounds on them over a stretch of angle.
 
 use super::arc::Arc;
 use super::harmonics::Harmonics;
@@ -23,7 +23,7 @@ pub enum Law {
     Harmonics(Harmonics),
 }
 
-/// What a law gives: a dwell, or whichever of the others it is.
+/// Dispatches on a law: a dwell, or any of the other kinds.
 macro_rules! of_law {
     ($law:expr, $lift:ident => $dwell:expr, $other:ident => $given:expr) => {
         match $law {
@@ -37,7 +37,7 @@ macro_rules! of_law {
 }
 
 impl Law {
-    /// What kind of law it is, in a word.
+    /// Name of the kind of law.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Dwell(_) => "dwell",
@@ -54,10 +54,10 @@ impl Law {
         of_law!(self, value => Lift::constant(*value), law => law.lift(angle))
     }
 
-    /// What certainly holds lift and derivatives over a range of angles, rad; everything where the law does not reach.
+    /// Enclosure of lift and derivatives over a range of angles, rad; everything where the law does not reach.
     ///
-    /// The formula fed with a range takes each angle in it for another and gives too much. So each derivative is asked for in the
-    /// middle m as well, from where it cannot get further than the next one takes it: `c(m + x) = c(m) + x c'(...)`.
+    /// The formula on an interval overestimates, because it takes each occurrence of the angle for a different one. So each derivative is
+    /// also evaluated at the middle m and extended by the next derivative: `c(m + x) = c(m) + x c'(...)`.
     pub fn lift_over(&self, angles: Interval) -> Lift<Interval> {
         let (whole, middle) = (self.lift(angles), self.lift(Interval::from(angles.middle())));
         let away = angles - angles.middle();
@@ -72,7 +72,7 @@ impl Law {
         of_law!(self, _still => 0.0, law => law.rise(from, turn))
     }
 
-    /// [`Law::rise`], and [`Law::lift`] where it ends, with what the two share computed once.
+    /// [`Law::rise`], and [`Law::lift`] where it ends, with their common terms computed once.
     #[inline]
     pub fn climb(&self, from: f64, turn: f64) -> (f64, Lift) {
         match self {
@@ -97,7 +97,7 @@ impl Law {
         of_law!(self, value => Jet::constant(*value), law => law.jet(angle))
     }
 
-    /// The sizes of what the derivatives at `angle` are sums of; their own where nothing can cancel.
+    /// Sizes of the terms that the derivatives at `angle` are sums of; sizes of the derivatives themselves where nothing can cancel.
     pub(super) fn terms(&self, angle: f64) -> Jet {
         match self {
             Self::Polynomial(polynomial) => polynomial.terms(angle),
@@ -105,7 +105,7 @@ impl Law {
         }
     }
 
-    /// The same law a revolution on: at `angle + turn` what this one is at `angle`, for `turn` of 2 pi or -2 pi.
+    /// This law a revolution on: its value at `angle + turn` is that of this one at `angle`, for `turn` of 2 pi or -2 pi.
     ///
     /// Where the two meet, at 0 and 2 pi, the distance from the law's start rounds to the same bits.
     pub(super) fn turned(&self, turn: f64) -> Self {

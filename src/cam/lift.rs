@@ -1,4 +1,4 @@
-//! Lift and derivatives at one angle: what every law gives.
+//! Lift and derivatives at one angle: the result of every law.
 
 use crate::interval::Interval;
 
@@ -18,14 +18,14 @@ pub struct Lift<N = f64> {
 }
 
 impl<N: From<f64>> Lift<N> {
-    /// The same lift everywhere, m.
+    /// Constant lift, m.
     pub fn constant(value: f64) -> Self {
         Self { value: value.into(), slope: 0.0.into(), curvature: 0.0.into(), third: 0.0.into() }
     }
 }
 
 impl Lift<Interval> {
-    /// What holds both.
+    /// Hull of both.
     pub(crate) fn hull(self, other: Self) -> Self {
         Self {
             value: self.value.hull(other.value),
@@ -37,7 +37,7 @@ impl Lift<Interval> {
 }
 
 impl Lift {
-    /// The lift `turn`, rad, further on by the Taylor sum of what is known here; the third derivative stays.
+    /// The lift `turn`, rad, further on, by the Taylor sum of these derivatives; the third derivative is kept constant.
     #[inline]
     pub fn after(&self, turn: f64) -> Self {
         let Self { value, slope, curvature, third } = *self;

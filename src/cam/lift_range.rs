@@ -6,11 +6,11 @@ use super::{Cam, Lift};
 use crate::interval::Interval;
 
 impl Cam {
-    /// What certainly holds lift, slope and curvature over a range of angles, rad, with as many turns as they like; everything
-    /// where that is no range, and for the curvature where it passes a corner at which the velocity jumps.
+    /// Enclosure of lift, slope and curvature over a range of angles, rad, of any number of turns. It is everything where that is no range.
+    /// The curvature is everything where the range passes a corner at which the velocity jumps.
     ///
-    /// `sharp` are the segments that begin at such a corner. At any other, both sides' slopes are taken for one: that a lift law
-    /// goes on where the last one ends is how a model means it, and only rounding has it otherwise.
+    /// `sharp` are the segments that begin at such a corner. At any other corner the slopes of both sides are taken to be one: a model
+    /// means its lift law to continue the one before, and only rounding makes them differ.
     pub fn lift_over(&self, angles: Interval, sharp: &[usize]) -> Lift<Interval> {
         let everything = Interval::EVERYTHING;
         let mut over = Lift { value: everything, slope: everything, curvature: everything, third: everything };

@@ -13,13 +13,13 @@ pub struct Least {
     pub segment: usize,
     /// Cam angle, rad.
     pub angle: f64,
-    /// What is least.
+    /// Least value.
     pub value: f64,
     /// Lift and derivatives there, of that segment.
     pub lift: Lift,
 }
 
-/// Angles of a turn that are looked at, and of a segment at least; of a cosine, in each of its periods.
+/// Angles examined in a turn, and at least in a segment; for a cosine, in each of its periods.
 const OF_A_TURN: f64 = 1440.0;
 const OF_A_SEGMENT: usize = 8;
 
@@ -55,8 +55,8 @@ impl Cam {
         tops
     }
 
-    /// Where `a_0 c + a_1 c' + a_2 c'' + a_3 c'''` is least: from the sign of its derivative between neighbouring angles, of which the
-    /// shortest wave of the cam has eight.
+    /// Place where `a_0 c + a_1 c' + a_2 c'' + a_3 c'''` is least: from the sign of its derivative between neighbouring angles. The
+    /// shortest wave of the cam has eight of these.
     pub fn least(&self, weights: [f64; 4]) -> Least {
         let segments = self.segments().iter().enumerate();
         let of_segments = segments.map(|(index, segment)| of_segment(index, segment, weights));

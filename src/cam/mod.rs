@@ -2,7 +2,7 @@
 //!
 //! A [`Cam`] is an ordered list of [`Segment`]s that cover `[0, 2 pi]`. Each segment's [`Law`] gives lift and
 //! derivatives with respect to the angle, and goes on smoothly past its ends, so that a corner has values on both
-//! sides and a map can be continued past it. Nothing here knows time or the follower.
+//! sides and a map can be continued past it. Nothing here depends on time or the follower.
 
 mod arc;
 mod arcs;
@@ -55,7 +55,7 @@ pub struct Segment {
     pub law: Law,
     /// Ranges of its lift and derivatives.
     pub bounds: Bounds,
-    /// What certainly holds them.
+    /// Enclosures of its lift and derivatives.
     pub(crate) over: Lift<Interval>,
 }
 
@@ -85,14 +85,14 @@ document!(Segment as it {
     lift_m: it.extremes(),
 });
 
-/// What is known of where segments meet before looking.
+/// Prior knowledge of how segments meet.
 #[derive(Clone, Debug, PartialEq)]
 enum Joint {
-    /// Nothing: the laws tell.
+    /// None: the laws decide.
     Free,
     /// Pieces of a spline: derivatives below `degree` agree by construction, but for those of `breaks`, by angle, rad, and order.
     Spline { degree: usize, breaks: std::sync::Arc<[(f64, usize)]> },
-    /// The same of a cam on which a law goes on past its corner up to this angle, rad, where the next one has another lift.
+    /// A cam on which a law goes on past its corner up to this angle, rad, where the next law has another lift.
     Continued { up_to: f64 },
 }
 
@@ -109,7 +109,7 @@ pub fn apart(one: f64, two: f64) -> f64 {
     turned.min(TAU - turned)
 }
 
-/// A periodic lift profile; clones share what it is made of.
+/// A periodic lift profile; clones share its data.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cam {
     segments: std::sync::Arc<Vec<Segment>>,
@@ -140,12 +140,12 @@ impl Cam {
         cam
     }
 
-    /// Whether a corner is where two pieces of a spline meet, no more: a knot, and nothing of the cam that was measured.
+    /// Whether a corner is only where two pieces of a spline meet: a knot, which is no feature of the cam that was measured.
     pub fn is_knot(&self, corner: &Corner) -> bool {
         matches!(self.joint, Joint::Spline { degree, .. } if corner.jump_order >= degree)
     }
 
-    /// Whether a segment begins where a continued law ends: however near the two lifts are there, they are two.
+    /// Whether a segment begins where a continued law ends. The two lifts there count as different, however close they are.
     pub(crate) fn ends_a_continued_law(&self, segment: &Segment) -> bool {
         matches!(self.joint, Joint::Continued { up_to } if up_to == segment.start)
     }
@@ -187,7 +187,7 @@ impl Cam {
         self.segments.iter().fold(f64::NEG_INFINITY, |top, segment| top.max(segment.bounds.lift[1]))
     }
 
-    /// The index of the segment that holds `angle`, rad, in `[0, 2 pi)`.
+    /// The index of the segment that contains `angle`, rad, in `[0, 2 pi)`.
     pub fn segment_at(&self, angle: f64) -> usize {
         // Where all are as long, as those of a table.
         let guess = (angle / TAU * self.segments.len() as f64) as usize;

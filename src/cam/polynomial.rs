@@ -14,13 +14,13 @@ pub struct Polynomial {
 }
 
 impl Polynomial {
-    /// From where `u` is 0, rad, and `a_k`, k from 0; powers past the 31st are cut off.
+    /// Polynomial from the angle where `u` is 0, rad, and `a_k`, k from 0; powers past the 31st are cut off.
     pub fn new(start: f64, coefficients: &[f64]) -> Self {
         let kept = coefficients.len().min(MOST_COEFFICIENTS);
         Self { start, coefficients: coefficients[..kept].into() }
     }
 
-    /// The same with this value and these derivatives added where `u` is 0.
+    /// A copy with this value and these derivatives added where `u` is 0.
     pub(super) fn plus(&self, derivatives: &[f64]) -> Self {
         let mut coefficients = self.coefficients.to_vec();
         let mut factorial = 1.0;
@@ -75,7 +75,7 @@ impl Polynomial {
         self.high_bound::<3>(start, end)
     }
 
-    /// The same of `|c''''|`.
+    /// A bound on `|c''''|` over `[start, end]`, likewise.
     pub fn fourth_bound(&self, start: f64, end: f64) -> f64 {
         self.high_bound::<4>(start, end)
     }

@@ -75,9 +75,9 @@ fn polynomial(model: &Model, segments: &[PolynomialSegment]) -> Result<Cam, Mode
 /// Derivatives that polynomials are joined in, from the lift on.
 const JOINED: usize = 4;
 
-/// Polynomials of numbers that were typed to ten digits miss each other by the tenth where they meet: two cams to whoever asks on either
-/// side, on which no two routes to a map agree, with corners that nobody meant. What they miss in the lift or a derivative, up to
-/// [`tolerance::CAM_CLOSURE`] of the terms, is taken out, and spread over the turn. `None` where it is rounding.
+/// Polynomials with numbers typed to ten digits miss each other by the tenth digit where they meet. Each side then sees another cam: no two
+/// routes to a map agree, and there are corners that nobody meant. A mismatch of the lift or a derivative, up to [`tolerance::CAM_CLOSURE`]
+/// of the terms, is therefore removed and spread over the turn. `None` where it is rounding.
 ///
 /// ```text
 /// c_i(u) + sum_n e_{n,i} u^n/n!,    e_{n,i+1} = sum_{k >= n} e_{k,i} h_i^{k-n}/(k-n)! - (c_{i+1}^(n)(0) - c_i^(n)(h_i))

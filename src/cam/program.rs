@@ -12,7 +12,7 @@ use super::{Cam, Joint};
 use crate::model::{Model, ModelError, MotionSegment, ProgramProfile, StandardMotion};
 use crate::tolerance;
 
-/// One motion laid on the cam: where it starts, rad, what it takes, rad, where its lift starts and ends, m.
+/// One motion placed on the cam: its start, rad, its span, rad, and its lift at start and end, m.
 #[derive(Clone, Copy)]
 struct Placed {
     start: f64,

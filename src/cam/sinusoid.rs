@@ -8,7 +8,7 @@ use crate::tolerance;
 
 /// `c = value + tilt u + sine (phi - sin phi) + cosine (1 - cos phi)`, `phi = frequency u`, `u = theta - start`.
 ///
-/// Written with what is left of sine and cosine near phi = 0, so that motions that start there at rest keep their digits.
+/// Written with the remainders of sine and cosine near phi = 0, so that motions that start there at rest keep their digits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sinusoid {
     /// Where `u` is 0, rad; need not lie on the segment.
@@ -17,9 +17,9 @@ pub struct Sinusoid {
     pub value: f64,
     /// Slope there, m/rad.
     pub tilt: f64,
-    /// Of `phi - sin phi`, m.
+    /// Coefficient of `phi - sin phi`, m.
     pub sine: f64,
-    /// Of `1 - cos phi`, m.
+    /// Coefficient of `1 - cos phi`, m.
     pub cosine: f64,
     /// dphi/dtheta.
     pub frequency: f64,

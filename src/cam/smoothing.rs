@@ -1,13 +1,13 @@
 //! Periodic quintic smoothing splines: near the rows of a table, and as smooth as that allows.
 //!
-//! Of all periodic curves the spline has the least `integral of c'''^2 + weight sum of (c(row) - lift)^2`. Its unknowns are lift f,
-//! slope s and curvature k at every knot; the integral over a piece is a form in those at its ends, and setting the derivatives
-//! to zero gives a positive definite system of neighbours. Nothing else is asked for at a knot: derivatives up to the fourth are
-//! continuous there of themselves, unless a row is between it and the next one.
+//! Among all periodic curves the spline minimises `integral of c'''^2 + weight sum of (c(row) - lift)^2`. Its unknowns are lift f,
+//! slope s and curvature k at every knot. The integral over a piece is a quadratic form in those at its ends, and setting the derivatives
+//! to zero gives a positive definite system of neighbours. No other condition is set at a knot: derivatives up to the fourth are
+//! continuous there by themselves, unless a row lies between it and the next knot.
 //!
-//! A corner is a knot with a curvature of its own on either side, which the integral is the least for: there the third
-//! derivative is 0 on both sides. A dwell is one knot with a width, where only the lift is unknown: slope and curvature are 0, the
-//! curvature only if its end is no corner.
+//! A corner is a knot with a separate curvature on either side, for which the integral is least: there the third derivative is
+//! 0 on both sides. A dwell is one knot with a width, where only the lift is unknown. Its slope is 0, and so is its curvature,
+//! except at an end that is a corner.
 
 use std::f64::consts::TAU;
 
@@ -19,17 +19,17 @@ use super::law::Law;
 use super::polynomial::Polynomial;
 use crate::tolerance;
 
-/// What a cam has besides smooth motion, rad.
+/// Corners and dwells of a cam, rad.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Features {
     /// Where the second derivative may jump, in `[0, 2 pi)`.
     pub corners: Vec<f64>,
-    /// Where the lift stays, from and to; they begin in `[0, 2 pi)`, by rising angle.
+    /// Intervals of constant lift, from and to; they begin in `[0, 2 pi)`, by rising angle.
     pub dwells: Vec<[f64; 2]>,
 }
 
 impl Features {
-    /// With one corner turned by an angle, rad, and dwells that end there.
+    /// A copy with one corner turned by an angle, rad, and the dwells that end there.
     pub fn moved(&self, corner: usize, by: f64) -> Self {
         let mut moved = self.clone();
         let from = self.corners[corner];
@@ -70,7 +70,7 @@ impl Knot {
     }
 }
 
-/// Where a row is: the knot before it, and how far into the piece behind that, in parts of it; none of a row at the knot.
+/// Place of a row: the knot before it, and the part of the piece behind that knot at which it lies; none for a row at the knot.
 type Place = (usize, Option<f64>);
 
 /// Knots and rows, before any lifts.
@@ -82,15 +82,15 @@ pub(super) struct Layout {
     unit: f64,
 }
 
-/// What a smoothing spline is the least of, in radians, for one that is laid by other means.
+/// Functional that a smoothing spline minimises, in radians, for programs that compute it by other means.
 #[derive(Clone, Debug, Default, Serialize)]
 pub(crate) struct Fitted {
-    /// Of the sum of squares beside the integral, 1/rad^5.
+    /// Weight of the sum of squares beside the integral, 1/rad^5.
     weight: f64,
     /// Where pieces meet, but for dwells.
     knots_rad: Vec<f64>,
     corners_rad: Vec<f64>,
-    /// From and to.
+    /// Ends of each dwell.
     dwells_rad: Vec<[f64; 2]>,
 }
 
@@ -99,22 +99,22 @@ pub(crate) struct Fitted {
 pub(super) struct Smoothed {
     /// Lift, slope and curvature at both ends of each piece, by powers of the unit.
     ends: Vec<Vector6<f64>>,
-    /// Lift that they are told from.
+    /// Lift from which theirs are measured.
     base: f64,
     /// At each row, the lift there less that of the spline.
     pub residuals: Vec<f64>,
-    /// The integral and the weighted sum that it has the least of.
+    /// Minimum of the integral plus the weighted sum.
     pub least: f64,
-    /// The sum of their squares, of rows outside of dwells.
+    /// The sum of squared residuals, of rows outside of dwells.
     pub squares: f64,
-    /// How many rows are there.
+    /// Number of these rows.
     pub moving: f64,
-    /// How many numbers it has taken from these: the trace of what makes spline lifts of lifts; as many as rows where it goes through
-    /// them.
+    /// Degrees of freedom taken from these rows: the trace of the matrix that makes spline lifts of lifts. It equals the number of rows
+    /// where the spline goes through them.
     pub freedom: f64,
 }
 
-/// Of a piece, at its start and at its end: the column of the curvature that was taken out, over its pivot, and the pivot.
+/// Eliminated curvatures of a piece, at its start and at its end: the column of each over its pivot, and the pivot.
 type Freed = [Option<(Vector6<f64>, f64)>; 2];
 
 /// Laws with the angles where they start.
@@ -146,10 +146,10 @@ const HERMITE: [[f64; 6]; 6] = [
 const CURVATURES: [usize; 2] = [2, 5];
 
 impl Layout {
-    /// More knots are closer than anything that a motion does, and cost the digits of its slow parts.
+    /// More knots would be closer than any feature of a motion, and cost the digits of its slow parts.
     const MOST_KNOTS: usize = 1000;
 
-    /// Of rows at rising angles in `[0, 2 pi)`, rad; none where fewer than three knots are left.
+    /// Layout for rows at rising angles in `[0, 2 pi)`, rad; none where fewer than three knots are left.
     pub fn new(angles: &[f64], features: &Features) -> Option<Self> {
         let every = angles.len().div_ceil(Self::MOST_KNOTS);
         let gap = TAU * every as f64 / angles.len() as f64;
@@ -192,7 +192,7 @@ impl Layout {
         Some(layout)
     }
 
-    /// It, with a weight in its own units.
+    /// The functional in radians, for a weight in units of the mean gap.
     pub fn fitted(&self, weight: f64) -> Fitted {
         let mut fitted = Fitted { weight: weight / self.unit.powi(5), ..Fitted::default() };
         for knot in &self.knots {
@@ -304,7 +304,7 @@ impl Layout {
         })
     }
 
-    /// How much a lift of weight 1 moves the spline where it is: `b^T M^-1 b`, with what the curvatures that were taken out add.
+    /// Shift of the spline at the place of a lift of weight 1: `b^T M^-1 b`, plus the contribution of the eliminated curvatures.
     fn influence(&self, knot: usize, basis: &Vector6<f64>, freed: &Freed, inverse: &[[Matrix3<f64>; 2]]) -> f64 {
         let [here, beyond] = inverse[knot];
         let there = inverse[self.after(knot)][0];
@@ -333,7 +333,7 @@ impl Layout {
         Matrix6::from_fn(|row, column| ENERGY[row][column] * powers[row] * powers[column] / width.powi(5))
     }
 
-    /// Equations for what is not unknown: it is 0.
+    /// Sets the equations of the values that are not unknown: they are 0.
     fn hold(&self, system: &mut Cyclic<3>) {
         for (index, knot) in self.knots.iter().enumerate() {
             for unknown in 1..3 {
@@ -403,7 +403,7 @@ fn mirrored(ends: &Vector6<f64>) -> Vector6<f64> {
     Vector6::new(ends[3], -ends[4], ends[5], ends[0], -ends[1], ends[2])
 }
 
-/// What the lift at a part of a piece is made of: so much of f, s, k at its ends.
+/// Coefficients of f, s, k at the ends of a piece in the lift at a part of it.
 fn basis(width: f64, part: f64) -> Vector6<f64> {
     Vector6::from_fn(|column, _| {
         let polynomial = (0..6).rev().fold(0.0, |sum, power| sum * part + HERMITE[power][column]);

@@ -1,8 +1,8 @@
 //! Periodic interpolating splines through a table of lifts.
 //!
-//! Of all periodic curves through the rows the cubic spline has the least `integral of c''^2`, the quintic the least
-//! `integral of c'''^2`. The unknowns are what a piece needs at its ends besides the lifts: slopes s, and for the quintic
-//! curvatures k; setting the integral's derivatives to zero gives a positive definite system of neighbours.
+//! Among all periodic curves through the rows the cubic spline minimises `integral of c''^2`, the quintic
+//! `integral of c'''^2`. The unknowns are the values that a piece needs at its ends besides the lifts: slopes s, and for the quintic
+//! curvatures k. Setting the integral's derivatives to zero gives a positive definite system of neighbours.
 
 use std::f64::consts::TAU;
 
@@ -83,7 +83,7 @@ fn cubic(gaps: &[Gap]) -> Option<Vec<[f64; 6]>> {
     Some(gaps.iter().enumerate().map(piece).collect())
 }
 
-/// The same for degree 5.
+/// Coefficients of each piece of degree 5 in powers of the angle from its start, in units of the mean gap.
 fn quintic(gaps: &[Gap]) -> Option<Vec<[f64; 6]>> {
     let count = gaps.len();
     let mut system = Cyclic::<2>::new(count);

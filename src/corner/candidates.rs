@@ -1,7 +1,7 @@
 //! Corner impacts of orbits with several impacts: where the branches of a range of speeds pass a corner.
 //!
-//! Branches are found by searches at the speeds of a grid, which may miss orbits: what is yielded here need not be all. But it
-//! is the same whatever the range: of a part of a range, it is the part.
+//! Branches are found by searches at the speeds of a grid. These may miss orbits, so the list may be incomplete.
+//! The list does not depend on the range: a part of a range gives that part of the list.
 
 use std::f64::consts::TAU;
 
@@ -15,13 +15,13 @@ use crate::orbit::{Course, Impact, Search};
 use crate::progress::Watch;
 use crate::tolerance;
 
-/// Impacts in a revolution of the orbits that are looked at: with more a follower is about to chatter.
+/// Most impacts in a revolution of the orbits examined: with more a follower is about to chatter.
 pub const MOST_IMPACTS: usize = 12;
 /// How near on the cam to the impact on the corner another one may be, rad: the estimators continue the cam past the corner by
 /// less than half of that, and try reaches down to twice the least by halving.
 pub const NEAREST_OTHER: f64 = 4.0 * tolerance::LEAST_REACH.value;
 
-/// What was looked at.
+/// Record of the search: its speeds, branches and first failure.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SearchedBranches {
     /// Speeds at which orbits were searched for, rpm.

@@ -2,7 +2,7 @@
 //!
 //! Nothing of the simulator is used: the propagator is transcribed from the paper, not taken from [`crate::flight`]. What
 //! goes in is the cam's lift at the corner, T*, and the velocity before the impact.
-//! Where the paper misprints a formula, the repaired form stands here and the repair is named.
+//! Where the paper misprints a formula, the repaired form is given here and the repair is named.
 
 use std::f64::consts::TAU;
 
@@ -32,7 +32,7 @@ pub fn route(model: &Model, at: &CornerImpact) -> Route {
     Route { name: RouteName::ClosedForm, map, own, uncertainty: None }
 }
 
-/// `(e, f)`, the derivatives of eq:H: how far the flight is from the cam when the corner passes, to first order; `v` is the
+/// `(e, f)`, the derivatives of eq:H: to first order, the distance of the flight from the cam when the corner passes. `v` is the
 /// velocity before the impact, m/s, and `period` T*, s.
 fn border(follower: &Follower, period: f64, v: f64) -> LinearForm {
     let f = propagator(follower.damping / (2.0 * follower.mass), follower.stiffness / follower.mass, 0.5 * period);

@@ -15,23 +15,23 @@ use crate::tolerance;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Candidate {
     pub cycle: Cycle,
-    /// Index of the one on the corner.
+    /// Index of the impact on the corner.
     pub impact: usize,
     pub corner: Corner,
-    /// Whose law the impact obeys.
+    /// Side whose law the impact obeys.
     pub side: Side,
     /// T*, s.
     pub period: f64,
-    /// Two periods, s, between which it is.
+    /// Bracket of T*, s.
     pub bracket: [f64; 2],
-    /// What is left of the equation that it is a root of: see [`CornerImpact::residual`].
+    /// Residual of the equation that it is a root of: see [`CornerImpact::residual`].
     pub residual: f64,
     /// How it was found.
     pub way: Way,
 }
 
 impl Candidate {
-    /// The corner impact, if the cycle is an orbit of the cam as it is; or why it is none.
+    /// Returns the corner impact if the cycle is an orbit of the cam as it is; otherwise the reason why not.
     pub fn confirmed(self, model: &Model, cam: &Cam) -> Result<CornerImpact, String> {
         let Self { cycle, impact, corner, side, period, bracket, residual, way } = self;
         let angular_velocity = TAU / period;

@@ -17,7 +17,7 @@ use crate::tolerance;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Way {
-    /// As a root of the equation for one impact.
+    /// Root of the equation for one impact.
     Equation,
     /// On a branch of orbits that passes the corner.
     Branch,
@@ -47,16 +47,16 @@ pub struct CornerImpact {
     pub state: State,
     /// Where the paper's x is measured from, m: the spring's equilibrium, or where the spring is slack if it has no stiffness.
     pub origin: f64,
-    /// How far one simulated period ends from its start, over the orbit's size; of several impacts, or at a corner of
-    /// velocity, what the closing equations are off by.
+    /// Distance from start to end of one simulated period, over the orbit's size. With several impacts, or at a corner of
+    /// velocity: residual of the closing equations.
     pub closure: f64,
     /// The orbit's impacts.
     pub cycle: Cycle,
-    /// Index of the one on the corner.
+    /// Index of the impact on the corner.
     pub impact: usize,
     /// The side whose law the impact obeys: where the velocity jumps, the orbits of the two sides differ.
     pub side: Side,
-    /// How it was found: by one way, or by two that know nothing of each other.
+    /// Methods that found it: one, or two that are independent of each other.
     pub ways: Vec<Way>,
 }
 
@@ -76,8 +76,8 @@ impl CornerImpact {
         Sides::of_each(|side| self.corner.lift(side).curvature * self.angular_velocity().powi(2))
     }
 
-    /// Whether it is at the same corner as one of a cam that may as well be meant: a corner that is found in the rows of a table is
-    /// found a little elsewhere in those of another.
+    /// Whether both are at the same corner, up to a small shift: a corner found in the rows of a table
+    /// moves a little when the rows are replaced by others.
     pub(crate) fn is_near(&self, other: &Self) -> bool {
         apart(self.corner.angle, other.corner.angle) <= tolerance::NEIGHBOURING.value
     }
@@ -111,7 +111,7 @@ impl CornerImpact {
         Vector2::new(self.state.position - self.origin, self.state.velocity)
     }
 
-    /// The lift at a impact; at the corner, that of `side`.
+    /// The lift at an impact; at the corner, that of `side`.
     pub fn lift(&self, machine: &Machine, impact: usize, side: Side) -> Lift {
         if impact == self.impact {
             return self.corner.lift(side);

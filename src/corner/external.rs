@@ -1,6 +1,6 @@
 //! The orbit and its map by programs outside this one: `symbolic` (the derived expressions, to 30 digits) and `scipy` (an
-//! integration of its own). Both get the numbers of the model file and nothing else, and find the corner impact themselves; near the rows
-//! of a table they lay a spline of their own, of the weight and the knots that were chosen here.
+//! integration of its own). Both read only the numbers of the model file and locate the corner impact themselves. For a smoothing
+//! spline they compute a spline of their own, with the weight and the knots chosen here.
 
 use nalgebra::{Matrix2, RowVector2, Vector2};
 use serde::Deserialize;
@@ -24,7 +24,7 @@ pub const PROGRAMS: [Program; 2] = [
     Program { name: RouteName::Scipy, script: "simulate_scipy.py" },
 ];
 
-/// What such a route found.
+/// Results of an outside route.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outside {
     pub route: Route,
@@ -34,7 +34,7 @@ pub struct Outside {
     pub period: f64,
 }
 
-/// What they are told of a model whose study range is `study`: its numbers, and of a smoothing spline what was fitted to its rows.
+/// Input of the outside routes for a model with study range `study`: its numbers, and for a smoothing spline what was fitted to its rows.
 pub fn told(model: &Model, study: Study) -> Result<Value, ModelError> {
     let mut numbers = json!({ "follower": model.follower, "cam": model.cam, "study": study });
     if let Some(fitted) = cam::fitted(model)? {
@@ -43,7 +43,7 @@ pub fn told(model: &Model, study: Study) -> Result<Value, ModelError> {
     Ok(numbers)
 }
 
-/// Runs one of them on what they are told of a model.
+/// Runs an outside route on the input from [`told`].
 pub fn run(program: Program, told: &Value) -> Result<Outside, PythonError> {
     let answer: Answer = python::run(program.script, told)?;
     let (map, own) = (answer.map.map(Matrices::map), answer.own());

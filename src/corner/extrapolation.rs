@@ -9,17 +9,17 @@ use nalgebra::SVector;
 /// Halvings of the step: enough to bring a cam with sharp arcs to rounding.
 const HALVINGS: usize = 7;
 
-/// Which powers of the step a quantity errs by.
+/// Powers of the step in a quantity's error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Powers {
-    /// 2, 4, 6: what is the same for a step and its opposite.
+    /// 2, 4, 6: for a quantity that is the same for a step and its opposite.
     Even,
     /// 1, 2, 3.
     Every,
 }
 
-/// The limit of `quantity(step)` for step to 0 from `step` down, and the size of its error; `rounding(step)` is that of the
-/// quantity itself.
+/// The limit of `quantity(step)` for step to 0 from `step` down, and the size of its error. `rounding(step)` is the rounding error
+/// of the quantity itself.
 pub(super) fn extrapolate<E, const N: usize>(
     step: f64,
     powers: Powers,

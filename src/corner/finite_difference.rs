@@ -23,7 +23,7 @@ pub fn route(model: &Model, cam: &Cam, at: &CornerImpact) -> Result<Route, Sampl
     route_by(model, cam, at, &Varied::Period)
 }
 
-/// The same with B by any number of the model.
+/// The map by extrapolated central differences, with B by any number of the model.
 pub fn route_by(model: &Model, cam: &Cam, at: &CornerImpact, varied: &Varied) -> Result<Route, SampleError> {
     let found = Sides::try_of_each(|side| side_map(model, cam, at, side, varied))?;
     let uncertainty = Some(Uncertainty::Extrapolation(found.map(|(_, error)| error.map)));
@@ -31,8 +31,8 @@ pub fn route_by(model: &Model, cam: &Cam, at: &CornerImpact, varied: &Varied) ->
     Ok(Route { name: RouteName::FiniteDifference, map, own, uncertainty })
 }
 
-/// One side's map, and the error of each entry: of several impacts over the whole period and impact by impact, each entry
-/// as it is known better.
+/// One side's map, and the error of each entry. With several impacts it is differenced both over the whole period and impact by
+/// impact; each entry is taken from the more accurate of the two.
 pub fn side_map(
     model: &Model,
     cam: &Cam,
@@ -65,7 +65,8 @@ pub fn side_map(
     })
 }
 
-/// What is differenced, or the error of it: the map, and the gap when the corner passes by the start's deviation and the period's.
+/// Result of the differences, or its error: the map, and the derivatives of the gap at the corner by the start's deviation and the
+/// period's.
 #[derive(Clone, Copy)]
 pub struct Differenced {
     /// The map.
@@ -77,7 +78,7 @@ pub struct Differenced {
 /// The value and the error of each entry.
 type Evidence = (Differenced, Differenced);
 
-/// The border, which the gap vanishes on.
+/// The border, on which the gap is 0.
 pub(crate) fn own((found, error): &Evidence) -> Own {
     let border = (RowVector2::new(found.gap[0], found.gap[1]), found.gap[2]);
     Own { border_error: Some(error.gap.max()), ..Own::border(border) }
@@ -86,7 +87,7 @@ pub(crate) fn own((found, error): &Evidence) -> Own {
 /// A period as the product of its parts, each with one impact.
 struct Parts {
     parts: Vec<Evidence>,
-    /// The product of the A after each part, of the last the identity.
+    /// Product of the A after each part; the identity for the last part.
     after: Vec<Matrix2<f64>>,
 }
 
@@ -102,7 +103,7 @@ fn by_impacts(model: &Model, cam: &Cam, at: &CornerImpact, side: Side, varied: &
 }
 
 impl Parts {
-    /// The map of the period, and what the errors of the parts make of it to first order.
+    /// The map of the period, and its error from those of the parts, to first order.
     fn product(&self) -> Evidence {
         let (mut all, mut off) = (SideMap::IDENTITY, SideMap::ZERO);
         let (mut gap, mut gap_off) = (RowVector3::zeros(), RowVector3::zeros());
@@ -119,7 +120,7 @@ impl Parts {
         (Differenced { map: all, gap }, Differenced { map: off, gap: gap_off })
     }
 
-    /// How far a rounding in every flight moves the end of the period and the gap.
+    /// Shift of the period's end and of the gap that a rounding in every flight causes.
     fn amplify(&self, rounding: Vector3<f64>) -> Vector3<f64> {
         let flights = rounding.xy();
         let first = self.after.first().zip(self.parts.first()).map(|(after, (part, _))| after * part.map.a);
@@ -134,14 +135,15 @@ impl Parts {
     }
 }
 
-/// A gap by the deviations at the start of its part, as one by those at the start of all parts, which `before` maps to it.
+/// Derivatives of a gap by deviations at the start of all parts, from those by deviations at the start of its part; `before` maps the
+/// former to the latter.
 fn by_start(gap: &RowVector3<f64>, before: &SideMap) -> RowVector3<f64> {
     let (e, f) = (RowVector2::new(gap[0], gap[1]), gap[2]);
     let state = e * before.a;
     RowVector3::new(state[0], state[1], (e * before.b)[0] + f)
 }
 
-/// Takes what is known better.
+/// Takes each entry from the side with the smaller error.
 fn better<'a>(
     best: &mut [f64],
     error: &mut [f64],
@@ -156,12 +158,12 @@ fn better<'a>(
     }
 }
 
-/// How far rounding moves the end of a stretch, and the gap.
+/// Rounding error of the end of a stretch, and of the gap.
 fn rounding(map: &OneSidedMap<'_>) -> Vector3<f64> {
     map.rounding().push(map.gap_rounding())
 }
 
-/// The same of a rounding at the start and one at the end.
+/// Error of the end and of the gap from a rounding at the start and one at the end.
 fn amplified_once(map: &OneSidedMap<'_>) -> Result<Vector3<f64>, SampleError> {
     let (scales, rounding) = (map.scales(), rounding(map));
     (0..2).try_fold(rounding, |sum, direction| {
@@ -169,7 +171,7 @@ fn amplified_once(map: &OneSidedMap<'_>) -> Result<Vector3<f64>, SampleError> {
     })
 }
 
-/// The map, with ends of stretches and gaps known to `rounding`.
+/// The map by extrapolated differences; `rounding` is the rounding error of ends and gaps.
 fn differences(map: &OneSidedMap<'_>, rounding: Vector3<f64>) -> Result<Evidence, SampleError> {
     let mut columns = [(Vector3::zeros(), Vector3::zeros()); 3];
     for (direction, column) in columns.iter_mut().enumerate() {
@@ -192,7 +194,7 @@ fn widest(map: &OneSidedMap<'_>, direction: usize) -> f64 {
     inside.last().unwrap_or(map.scales()[direction])
 }
 
-/// Of the end and of the gap when the corner passes.
+/// Central difference of the end, and of the gap when the corner passes.
 fn difference(map: &OneSidedMap<'_>, direction: usize, step: f64) -> Result<Vector3<f64>, SampleError> {
     let mut perturbation = Vector3::zeros();
     perturbation[direction] = step;

@@ -1,10 +1,9 @@
 //! A and B as the paper estimates them: a least-squares fit to simulated revolutions from perturbed starts.
 //!
-//! The paper fits a linear map, so the curvature of the real map goes into its coefficients.
-//! Here the perturbations are scaled by the impact's own scales, spread over a cube, and fitted with all
-//! monomials up to the fourth degree, so that what the linear coefficients take on from the map's curvature is of the
-//! fifth. Their standard errors come from the residual; their bias, which no residual shows in full, from a cube twice as
-//! wide.
+//! The paper fits a linear map, so the curvature of the real map biases its coefficients. Here the perturbations are scaled by the
+//! impact's own scales, spread over a cube, and fitted with all monomials up to the fourth degree. The bias of the
+//! linear coefficients is then of the fifth degree. Standard errors come from the residual. The bias, which no residual shows in
+//! full, comes from a cube twice as wide.
 
 use faer::linalg::solvers::{Qr, SolveLstsqCore};
 use faer::{Conj, Mat};
@@ -34,7 +33,7 @@ pub fn route(model: &Model, cam: &Cam, at: &CornerImpact) -> Result<Route, Sampl
     route_by(model, cam, at, &Varied::Period)
 }
 
-/// The same with B by any number of the model.
+/// The map by least squares, with B by any number of the model.
 pub fn route_by(model: &Model, cam: &Cam, at: &CornerImpact, varied: &Varied) -> Result<Route, SampleError> {
     let fits = Sides::try_of_each(|side| side_map(&OneSidedMap::by(model, cam, at, side, varied)?))?;
     let uncertainty = Uncertainty::Fit {
@@ -50,7 +49,7 @@ struct SideFit {
     value: SideMap,
     standard_error: SideMap,
     systematic_error: SideMap,
-    /// The border alone.
+    /// Border only.
     own: Own,
     condition_number: f64,
 }
@@ -76,7 +75,7 @@ fn side_map(map: &OneSidedMap<'_>) -> Result<SideFit, SampleError> {
         let design = Mat::from_fn(points.len(), monomials.len(), |row, column| {
             power(samples[row].perturbation.component_div(&width), monomials[column])
         });
-        // Where the revolution ends, and the gap when the corner passes, which tells on which side the impact falls.
+        // The end of the revolution, and the gap when the corner passes, which gives the side on which the impact falls.
         let response = Mat::from_fn(points.len(), 3, |row, component| match component {
             2 => map.gap(&samples[row]),
             _ => samples[row].end[component],
@@ -123,8 +122,8 @@ fn in_scales(map: &SideMap, scales: &Vector3<f64>) -> f64 {
 
 /// The design points in units of the scales: an additive recurrence, bent towards the faces like Chebyshev nodes.
 ///
-/// No two points share a coordinate, as those of a grid do, so that the rounding that a perturbation of the period brings
-/// into its revolutions is a different one in each, and standard errors mean what they say.
+/// No two points share a coordinate, unlike those of a grid. So the rounding that a perturbation of the period brings into a
+/// revolution differs from point to point, and the standard errors are valid.
 fn design_points() -> Vec<Vector3<f64>> {
     // Fractional parts of n/g, n/g^2, n/g^3 with g^4 = g + 1 fill the cube evenly.
     const G: f64 = 1.2207440846057596;
@@ -147,7 +146,7 @@ fn power(z: Vector3<f64>, exponents: [u32; 3]) -> f64 {
 pub(super) struct Fit {
     /// One column for each response.
     pub coefficients: Mat<f64>,
-    /// In the same shape.
+    /// Standard errors, in the shape of `coefficients`.
     pub standard_errors: Mat<f64>,
 }
 

@@ -12,7 +12,7 @@ use crate::model::{Model, ModelError};
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[expect(missing_docs, reason = "the message says what each number is")]
 pub enum LocateError {
-    /// The model says nothing about where to look, or something impossible.
+    /// The model does not say where to look, or says something impossible.
     #[error("{0}")]
     Model(#[from] ModelError),
     #[error("{}", .0)]
@@ -26,7 +26,7 @@ pub enum LocateError {
     Grazing { file: String, cam_angle: f64, speed_rpm: f64, velocity: f64 },
 }
 
-/// The complaint that `[study]` holds no corner impact.
+/// The complaint that `[study]` contains no corner impact.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NotFound {
     study: ModelError,

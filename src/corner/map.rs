@@ -1,4 +1,4 @@
-//! The piecewise-linear map at a corner impact, and what a route says of it.
+//! The piecewise-linear map at a corner impact, and the results of a route for it.
 
 use nalgebra::{Matrix2, RowVector2, Vector2};
 use serde::{Deserialize, Serialize};
@@ -47,7 +47,7 @@ pub(crate) fn rows(matrix: &Matrix2<f64>) -> [[f64; 2]; 2] {
     matrix.transpose().into()
 }
 
-/// Something of either side: `minus` for impacts before the corner, `plus` for impacts after it.
+/// A pair of values, one per side: `minus` for impacts before the corner, `plus` for impacts after it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Sides<T> {
     /// With c'' before the corner.
@@ -67,7 +67,7 @@ impl<T> Sides<T> {
         Ok(Self { minus: of(Side::Minus)?, plus: of(Side::Plus)? })
     }
 
-    /// What is of one side.
+    /// Value of one side.
     pub fn of(&self, side: Side) -> &T {
         match side {
             Side::Minus => &self.minus,
@@ -75,7 +75,7 @@ impl<T> Sides<T> {
         }
     }
 
-    /// What follows for either side.
+    /// Applies a function to both sides.
     pub fn map<U>(&self, of: impl Fn(&T) -> U) -> Sides<U> {
         Sides { minus: of(&self.minus), plus: of(&self.plus) }
     }
@@ -97,11 +97,11 @@ impl CornerMap {
     }
 }
 
-/// A way to the orbit, to its map or to its border; in the order of the names that documents have for them.
+/// Method for the orbit, its map or its border, in the order of their names in documents.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RouteName {
-    /// The middles of balls in which it is proved to lie.
+    /// Midpoints of balls in which the result is proved to lie.
     Certificate,
     /// The formulas of the paper.
     ClosedForm,
@@ -125,32 +125,32 @@ pub enum RouteName {
 
 named!(RouteName);
 
-/// A way to the map, and what it found.
+/// A method for the map, with its results.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Route {
-    /// Which way.
+    /// Method.
     pub name: RouteName,
     /// The map.
     pub map: CornerMap,
-    /// What it says besides by means of its own.
+    /// Further results, by the route's own method.
     pub own: Own,
-    /// How well each entry is known, in the map's own shape: a standard error or an error estimate.
+    /// Uncertainty of each entry, in the map's own shape: a standard error or an error estimate.
     pub uncertainty: Option<Uncertainty>,
 }
 
-/// A line in the space of deviations of state and period: what multiplies (dx1, dx2), and what multiplies dT.
+/// A line in the space of deviations of state and period: the coefficients of (dx1, dx2), and that of dT.
 pub type LinearForm = (RowVector2<f64>, f64);
 
-/// What a route says besides A and B that it does not take from these by the one function that all share.
+/// Results besides A and B that a route computes itself, not from A and B by the function that all routes share.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Own {
-    /// `(C, D)`, by another way than the difference of the two sides.
+    /// `(C, D)`, by another method than the difference of the two sides.
     pub jump: Option<LinearForm>,
-    /// The eigenvalues of both sides, by another way than [`SideMap::eigenvalues`].
+    /// The eigenvalues of both sides, by another method than [`SideMap::eigenvalues`].
     pub eigenvalues: Option<Sides<[Eigenvalue; 2]>>,
     /// `(e, f)`: the impact comes before the corner where `e dx + f dT < 0`.
     pub border: Option<LinearForm>,
-    /// How far an entry of the border may be off, where an estimate says so.
+    /// Largest estimated error of a border entry, where there is an estimate.
     pub border_error: Option<f64>,
 }
 
@@ -161,10 +161,10 @@ impl Own {
     }
 }
 
-/// How well a numerical route knows its entries.
+/// Uncertainty of the entries of a numerical route.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Uncertainty {
-    /// Of a fit: two kinds of error, and the condition number of the scaled design (the larger of both sides').
+    /// Fit: two kinds of error, and the condition number of the scaled design (the larger of both sides').
     Fit {
         /// Standard error of each entry.
         standard: CornerMap,
@@ -173,7 +173,7 @@ pub enum Uncertainty {
         /// Largest over smallest singular value.
         condition_number: f64,
     },
-    /// Of an extrapolation: the last correction to each entry and the rounding in it.
+    /// Extrapolation: the last correction to each entry and the rounding in it.
     Extrapolation(CornerMap),
 }
 
@@ -194,7 +194,7 @@ document!(Route as route {
 });
 
 impl Route {
-    /// C, by its own way where it has one.
+    /// C, by the route's own method where it has one.
     pub fn c(&self) -> RowVector2<f64> {
         self.own.jump.map_or_else(|| self.map.c(), |(c, _)| c)
     }

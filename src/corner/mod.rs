@@ -8,7 +8,7 @@
 //! |---|---|
 //! | `period_equation` | the speeds at which the one impact of an orbit is on a corner: all roots of one equation |
 //! | `candidates` | corner impacts of several impacts, where branches of orbits pass a corner |
-//! | `shots` | the same by shots from the corner, which know nothing of orbits and branches |
+//! | `shots` | corner impacts of several impacts again, by shots from the corner; independent of orbits and branches |
 //! | `confirm` | whether a corner impact of the equations is an orbit of the cam as it is |
 //! | [`mod@locate`] | the paper's kind, for `verify`; [`range`] all kinds |
 //!
@@ -22,9 +22,9 @@
 //! | [`least_squares`] | is built on it: a polynomial fitted to simulated periods |
 //! | `external` | nothing: Python programs that get the model file's numbers and find the place themselves. The paper's orbits only |
 //!
-//! [`mod@second_order`] has what these matrices leave out next to the corner impact.
+//! [`mod@second_order`] has the terms of second order, which these matrices leave out.
 //!
-//! [`jump_order`] has what a corner of any order makes of the map, predicted and measured.
+//! [`jump_order`] predicts and measures the effect of a corner of any order on the map.
 //!
 //! States here are the paper's x: position from the spring's equilibrium, and velocity.
 

@@ -1,8 +1,8 @@
-//! One period of the simulator over a cam with one segment continued past the corner: what the estimators sample.
+//! One period of the simulator over a cam with one segment continued past the corner: the estimators sample it.
 //!
-//! As in the paper, the map of a side is smooth through the corner once the cam's law on that side is continued past it.
-//! A period counts only if its impacts are the orbit's, one for one, and the corner's is on the continued stretch; any other
-//! is an error, never a sample.
+//! The cam's law on a side is continued past the corner, as in the paper. This makes the map of that side smooth through the corner.
+//! A period counts only if its impacts match the orbit's one by one and the corner's impact is on the continued stretch.
+//! Any other period is an error, never a sample.
 
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
@@ -44,18 +44,18 @@ pub enum SampleError {
     Singular { what: &'static str },
 }
 
-/// The smooth map of one side: deviation of state and period, or of another number, in; deviation of the state one period
-/// of the orbit later out.
+/// Smooth map of one side: from a deviation of state and period, or of another number, to the deviation of the state one period
+/// of the orbit later.
 pub struct OneSidedMap<'a> {
     model: &'a Model,
     at: &'a CornerImpact,
     side: Side,
     cam: Cam,
-    /// The cam as it is.
+    /// The cam without continuation.
     whole: Cam,
     reach: f64,
     varied: Turned,
-    /// What unit perturbations are made smaller by.
+    /// Factor that reduces unit perturbations.
     shrunk: f64,
     stretch: SampledArc,
 }
@@ -117,9 +117,9 @@ impl SampledArc {
     }
 }
 
-/// What turns at a third perturbation.
+/// Effect of a third perturbation on the machine.
 enum Turned {
-    /// The same cam at another period.
+    /// Another period of the same cam.
     Slower,
     /// A machine made with another number.
     Remade { family: Box<Family>, value: f64 },
@@ -160,8 +160,8 @@ impl<'a> OneSidedMap<'a> {
         Self::over(model, whole, at, side, varied, SampledArc::whole(at))
     }
 
-    /// The maps from the middle of each flight to that of the next, which the map of a period is made of: impacts one after
-    /// another amplify rounding with every deviation, and a single one does not.
+    /// The maps from the middle of each flight to that of the next, whose product is the map of a period. Successive impacts amplify
+    /// rounding with every deviation; a single impact does not.
     pub fn pieces(
         model: &'a Model,
         whole: &Cam,
@@ -210,7 +210,7 @@ impl<'a> OneSidedMap<'a> {
         Ok(map)
     }
 
-    /// Halves the perturbations until one unit in each direction leaves the impacts the orbit's.
+    /// Halves the perturbations until a unit in each direction keeps the orbit's impacts.
     fn shrink(&mut self) -> Result<(), SampleError> {
         let mut first = None;
         for _ in 0..=Self::HALVINGS {
@@ -231,7 +231,7 @@ impl<'a> OneSidedMap<'a> {
     /// Perturbations of position, velocity and period or number that move the impact by comparable parts of the reach.
     ///
     /// The impact's own scales: its relative velocity u, the length u/omega, and the period, less where the follower is faster
-    /// than u. Of a number, a part of itself.
+    /// than u. For a number, a part of itself.
     pub fn scales(&self) -> Vector3<f64> {
         let (approach, period) = (self.stretch.approach, self.at.period);
         let third = match &self.varied {
@@ -244,23 +244,23 @@ impl<'a> OneSidedMap<'a> {
         Vector3::new(approach * period / TAU, approach, third) * (Self::PERTURBATION * self.reach * self.shrunk)
     }
 
-    /// How far the follower was from the cam when the corner passed, to first order: it comes down by `c' - v-` in each unit of the
-    /// time that passes from the corner to the impact.
+    /// Distance of the follower from the cam when the corner passed, to first order. It shrinks by `c' - v-` per unit of the time
+    /// from the corner to the impact.
     pub fn gap(&self, sample: &PeriodSample) -> f64 {
         sample.past_corner * self.per_angle()
     }
 
-    /// What the gap closes by as the cam turns by a radian, m.
+    /// Decrease of the gap per radian of cam angle, m.
     fn per_angle(&self) -> f64 {
         (self.at.cam_velocity - self.at.velocity_before) / self.at.angular_velocity()
     }
 
-    /// How far rounding may move that gap, m: of a position, and of the angle in a full turn.
+    /// Rounding error of the gap, m: from a position, and from the angle in a full turn.
     pub fn gap_rounding(&self) -> f64 {
         self.rounding()[0] + tolerance::RUN_ROUNDING.value * TAU * self.per_angle()
     }
 
-    /// How far rounding may move the end of a stretch: a few ulps of the largest position and velocity on the way.
+    /// Rounding error of the end of a stretch: a few ulps of the largest position and velocity on the way.
     pub fn rounding(&self) -> Vector2<f64> {
         let CornerImpact { state, velocity_before, velocity_after, .. } = *self.at;
         let position = state.position.abs().max(self.at.corner.plus.value.abs());
@@ -268,8 +268,8 @@ impl<'a> OneSidedMap<'a> {
         Vector2::new(position, velocity) * tolerance::RUN_ROUNDING.value
     }
 
-    /// The machine of a third perturbation, with the law continued; its cam as it is, the corner on it, rad; and the
-    /// perturbation as it is in doubles.
+    /// The machine of a third perturbation, with the law continued; its cam without continuation; the corner on that cam, rad; and the
+    /// perturbation as rounded to doubles.
     fn machine(&self, perturbation: f64) -> Result<(Machine, Cam, f64, f64), SampleError> {
         let CornerImpact { period, corner, .. } = *self.at;
         match &self.varied {
@@ -297,8 +297,8 @@ impl<'a> OneSidedMap<'a> {
         }
     }
 
-    /// One period from about `x* + (dx1, dx2)` at a period of about `T* + dT`, or another number; the sample says from where
-    /// exactly.
+    /// Simulates one period from about `x* + (dx1, dx2)` at a period of about `T* + dT`, or another number. The sample records the
+    /// exact start.
     pub fn sample(&self, perturbation: Vector3<f64>) -> Result<PeriodSample, SampleError> {
         let SampledArc { section, start, goal, end, .. } = self.stretch;
         let state = State { position: start.position + perturbation[0], velocity: start.velocity + perturbation[1] };
@@ -331,8 +331,8 @@ impl<'a> OneSidedMap<'a> {
         }
     }
 
-    /// How far past the corner, where it was, the corner's impact is, rad, if the events are the orbit's impacts, each on
-    /// its own segment; 0 where the corner's is not among them.
+    /// Angle from the corner's original place to the corner's impact, rad; 0 where that impact is not among the events. `None` unless
+    /// the events are the orbit's impacts, each on its own segment.
     fn past_corner(&self, whole: &Cam, section: f64, events: &[Event]) -> Option<f64> {
         let flights = &self.stretch.flights;
         if events.len() != flights.len() || events.iter().any(|event| event.kind != EventKind::Impact) {

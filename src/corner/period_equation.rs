@@ -1,4 +1,4 @@
-//! The speeds at which an orbit with one impact in n revolutions has it on a given corner: all of a range.
+//! All speeds of a range at which an orbit with one impact in n revolutions has it on a given corner.
 //!
 //! The orbit leaves the corner (position c, velocity v+) and is back after `t = n T` (velocity v-), so with the follower's
 //! responses s(t), p(t) and the force f at c
@@ -7,9 +7,9 @@
 //! 0  = v+ s + f p            v- = v+ s' + f s            v+ = (1 + r) c' - r v-,   c' = (2 pi/T) dc/dtheta
 //! ```
 //!
-//! v+ and v- leave the equation of [`OneImpact`] for T alone, whose roots are isolated: none is missed. Each of them is simulated
-//! for one period on the cam as it is: only an orbit with this one impact, on this corner, that returns to its start counts. That
-//! it is one, or none, is proved besides where enclosures can tell.
+//! Eliminating v+ and v- gives the equation of [`OneImpact`] for T alone. All its roots are isolated; none is missed. Each root is
+//! simulated for one period on the cam as it is. It counts only if the orbit has this one impact, on this corner, and returns to
+//! its start. Where enclosures suffice, they also prove that the root is an orbit, or that it is none.
 
 use std::f64::consts::{PI, TAU};
 use std::ops::ControlFlow;
@@ -45,11 +45,11 @@ pub struct PeriodEquation<'a> {
 pub struct Root {
     /// T, s.
     pub period: f64,
-    /// What it was closed in by: the only root there.
+    /// Bracket of T, s, with no other root in it.
     pub bracket: [f64; 2],
     /// Left side over the sum of its terms' sizes.
     pub residual: f64,
-    /// What it is, as far as enclosures tell.
+    /// Orbit or not, as far as enclosures prove it.
     pub standing: Standing,
 }
 
@@ -74,7 +74,7 @@ pub enum Roots {
 /// Why a period in which the follower comes back however it leaves is refused.
 pub const RESONANCE: &str = "the flight would need an unbounded velocity: the period is in resonance";
 
-/// What a root is.
+/// Verdict on a root.
 pub enum RootVerdict {
     /// An orbit of the cam as it is.
     Orbit(Box<CornerImpact>),
@@ -167,7 +167,7 @@ impl<'a> PeriodEquation<'a> {
         Roots::Some(roots.into_iter().map(root).collect(), undecided)
     }
 
-    /// What a root is: a flight that leaves the corner over the segment after it, and comes back to it over the one before.
+    /// Classifies a root by enclosures: its flight leaves the corner over the segment after it, and returns over the one before.
     fn standing(&self, time: Interval) -> Standing {
         let after = self.corner.segment;
         let before = self.cam.before(after);

@@ -1,5 +1,5 @@
-//! Every corner impact of a range of speeds that can be found: those of one impact as roots of one equation, by search those of
-//! more.
+//! Every corner impact of a range of speeds that can be found. Those of one impact are the roots of one equation. Those of several
+//! impacts are searched for.
 
 use std::collections::BTreeMap;
 
@@ -23,13 +23,13 @@ pub struct Rejected {
     pub cam_angle: f64,
     /// Speed, rpm.
     pub speed_rpm: f64,
-    /// What is wrong with it.
+    /// Reason why it is no orbit.
     pub why: String,
 }
 
 document!(Rejected as it { speed_rpm: it.speed_rpm, cam_angle_rad: it.cam_angle, why: it.why });
 
-/// Speeds at which enclosures do not tell whether an orbit of one impact has it on a corner.
+/// Speeds at which enclosures do not decide whether an orbit of one impact has it on a corner.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UndecidedSpeeds {
     /// Cam angle of the corner, rad.
@@ -40,7 +40,7 @@ pub struct UndecidedSpeeds {
 
 document!(UndecidedSpeeds as it { cam_angle_rad: it.cam_angle, speeds_rpm: it.speeds_rpm });
 
-/// What was found in a range of speeds, and what was looked at.
+/// Corner impacts in a range of speeds, with the record of the search.
 #[derive(Clone, Debug)]
 pub struct FoundCornerImpacts {
     /// By rising speed.
@@ -49,17 +49,17 @@ pub struct FoundCornerImpacts {
     pub rejected: Vec<Rejected>,
     /// The corners of the cam, in order of angle.
     pub corners: Vec<Corner>,
-    /// How many knots of a smoothing spline were not looked at.
+    /// Number of corners of a smoothing spline that were not examined: knots, and ends of dwells found in the rows.
     pub left_out: usize,
-    /// For which numbers of impacts the list is all there is.
+    /// Numbers of impacts for which the list is complete.
     pub complete: Vec<Complete>,
-    /// Where one of one impact may be missing, or refused without a proof.
+    /// Speeds at which a corner impact of one impact may be missing, or is refused without a proof.
     pub undecided: Vec<UndecidedSpeeds>,
-    /// How orbits of several impacts were looked for.
+    /// Record of the search for orbits of several impacts.
     pub searched: SearchedBranches,
 }
 
-/// How many corner impacts two ways of looking found that know nothing of each other.
+/// Counts of corner impacts found by two independent searches.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Recaptured {
     /// On branches.
@@ -73,8 +73,8 @@ pub struct Recaptured {
 document!(Recaptured as it { branches: it.branches, shots: it.shots, both: it.both, missing: it.missing() });
 
 impl Recaptured {
-    /// How many neither way found, if each finds any one as easily as any other: what is hard to find makes it more. Estimated
-    /// from two catches (Chapman 1951):
+    /// Estimated number of corner impacts that both searches missed, from their overlap (Chapman 1951). It assumes that all are equally
+    /// easy to find. If some are harder to find, more are missing.
     ///
     /// ```text
     /// N = (n_1 + 1) (n_2 + 1) / (m + 1) - 1        m caught both times, of n_1 and n_2
@@ -86,7 +86,7 @@ impl Recaptured {
     }
 }
 
-/// Why a range of speeds cannot be looked through.
+/// Reason why a range of speeds cannot be searched.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[expect(missing_docs, reason = "the message says what each number is")]
 pub enum RangeError {
@@ -143,8 +143,8 @@ pub fn find_corner_impacts(
     Ok(all)
 }
 
-/// Corners at which impacts are looked for: all, but of a smoothing spline no knots, which are no part of what was measured, and no ends of
-/// dwells that were found in the rows, which are put somewhat inside of where the cam leaves them.
+/// Corners at which impacts are looked for. On a smoothing spline it leaves out knots, which are no part of the measurement, and the ends
+/// of dwells found in the rows, which lie somewhat inside of where the cam leaves them.
 fn worth_looking_at(model: &Model, cam: &Cam) -> Vec<Corner> {
     let smoothing = model.table().and_then(|table| table.spline.smoothing());
     let is_laid = |corner: &Corner| {
@@ -153,7 +153,7 @@ fn worth_looking_at(model: &Model, cam: &Cam) -> Vec<Corner> {
     cam.corners().iter().filter(|corner| !is_laid(corner)).copied().collect()
 }
 
-/// What the roots of the equation for one impact are at each corner, each with its period, s; and where there may be others.
+/// Verdict on each root of the equation for one impact, with its corner and its period, s; and the speeds that stay undecided.
 #[expect(clippy::type_complexity, reason = "two lists, each of which is told")]
 pub(super) fn one_impact(
     model: &Model,
@@ -205,7 +205,8 @@ pub(super) fn one_impact(
     Ok((all, undecided))
 }
 
-/// A root at a corner of velocity, where a simulation in doubles cannot tell which side is hit: its flight is simulated.
+/// Verdict on a root at a corner of velocity. A simulation in doubles cannot decide there which side is hit, so only
+/// its flight is simulated.
 fn one_side(model: &Model, cam: &Cam, equation: &PeriodEquation<'_>, root: Root) -> RootVerdict {
     match equation.candidate(cam, root) {
         Some(candidate) => verdict(candidate, model, cam),
@@ -218,7 +219,7 @@ fn verdict(candidate: Candidate, model: &Model, cam: &Cam) -> RootVerdict {
 }
 
 impl FoundCornerImpacts {
-    /// What the verdict keeps; what it refuses is told.
+    /// Returns the orbit of a verdict; records any other verdict among the rejected.
     fn orbit(&mut self, corner: &Corner, speed_rpm: f64, verdict: RootVerdict) -> Option<CornerImpact> {
         let cam_angle = corner.angle;
         let why = match verdict {
@@ -253,7 +254,7 @@ impl FoundCornerImpacts {
         }
     }
 
-    /// How many corner impacts of several impacts each of the two ways found, by their number of impacts.
+    /// Counts of the corner impacts of several impacts that each of the two searches found, by their number of impacts.
     pub fn recaptured(&self) -> BTreeMap<usize, Recaptured> {
         let mut all = BTreeMap::<usize, Recaptured>::new();
         for at in self.found.iter().filter(|at| at.cycle.impacts.len() > 1) {
@@ -267,7 +268,7 @@ impl FoundCornerImpacts {
     }
 }
 
-/// Whether a candidate is a corner impact that is known, found by another way or on another branch.
+/// Whether a candidate is a corner impact already found, by another method or on another branch.
 fn is_same(known: &CornerImpact, at: &Candidate) -> bool {
     // At another speed it has other velocities.
     known.corner.segment == at.corner.segment && known.side == at.side && known.cycle.is_same(&at.cycle)

@@ -1,4 +1,4 @@
-//! The map of one side to second order: what the piecewise-linear map leaves out next to a corner impact.
+//! The map of one side to second order: the terms that the piecewise-linear map leaves out next to a corner impact.
 //!
 //! Once around the orbit with the state and the time of each impact as polynomials of second degree in the deviation
 //! `z = (dx1, dx2, dT)`, everything of third degree dropped. Each flight lasts its part of T, each impact is flown back to the

@@ -4,8 +4,8 @@
 //! There are two unknowns, the speed of the cam and the velocity that the corner is left with, however many impacts come
 //! between. At each speed of a grid the follower leaves the corner with velocities of a grid; where the impact that comes
 //! nearest to the corner is off by less than at the velocities next to it, the shot is a guess for Newton's method on the
-//! equations of the whole orbit, with the speed free. No search for orbits is made and no branch is followed: what one way
-//! misses the other finds by itself.
+//! equations of the whole orbit, with the speed free. No orbits are searched for and no branch is followed. So each method can find
+//! what the other one misses.
 
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
@@ -30,12 +30,12 @@ use crate::tolerance;
 
 /// How much faster each speed of the grid is than the one before it.
 pub const SHOT_RATIO: f64 = 1.004;
-/// Velocities at each.
+/// Leaving velocities at each speed of the grid.
 pub const VELOCITIES: usize = 400;
-/// How far Newton's method may go in speed. As far beyond a range shots are made, so that what is found in a part of it is
-/// found for the whole of it, and the other way round.
+/// Largest factor by which Newton's method may change the speed. Shots are made as far beyond a range, so that the results for a
+/// part of a range are the same as for the whole.
 const REACH: f64 = 1.02;
-/// How far from the corner the last impact of a guess may be, rad.
+/// Largest distance of the last impact of a guess from the corner, rad.
 const NEAR: f64 = 0.3;
 
 /// The corner impacts of several impacts in `revolutions` that shots lead to, over a range of speeds and a little beyond.
@@ -77,18 +77,18 @@ struct Shooter<'a> {
     corner: Corner,
     side: Side,
     revolutions: u64,
-    /// Velocity that a corner is left with at most, over omega, m/rad.
+    /// Largest velocity with which a corner is left, over omega, m/rad.
     fastest: f64,
-    /// Of the cam's lift, m.
+    /// Size of the cam's lift, m.
     size: f64,
 }
 
-/// The impact of a shot that may close it.
+/// An impact that may close a shot into an orbit.
 #[derive(Clone, Copy)]
 struct Closing {
     /// Impacts of the orbit that it would close.
     impacts: usize,
-    /// How far it is from the corner, rad, and its velocity from that of the start, over omega and the cam's size.
+    /// Angle to the corner, rad, plus the difference of its velocity from that of the start, over omega and the cam's size.
     off: f64,
 }
 
@@ -100,7 +100,7 @@ impl Shooter<'_> {
         }
     }
 
-    /// Over omega, m/rad: closer where they are low, since a slow follower soon hits again.
+    /// Leaving velocity over omega, m/rad. The grid is finer at low velocities, since a slow follower soon hits again.
     fn leaving(&self, index: usize) -> f64 {
         let part = (index as f64 + 0.5) / VELOCITIES as f64;
         part * part * self.fastest
@@ -125,7 +125,7 @@ impl Shooter<'_> {
         impacts
     }
 
-    /// The last impact before the corner comes round and the first one after.
+    /// Closings by the last impact before the corner comes round, and by the first one after.
     fn closings(&self, leaving: f64) -> [Option<Closing>; 2] {
         let impacts = self.impacts(leaving);
         let omega = self.machine.angular_velocity();
@@ -153,7 +153,7 @@ impl Shooter<'_> {
         least.filter_map(|(index, closing)| self.solved(self.leaving(index), closing.impacts)).collect()
     }
 
-    /// Newton's method from the shot that `impacts` of it close.
+    /// Runs Newton's method from a shot that closes with its impact number `impacts`.
     fn solved(&self, leaving: f64, impacts: usize) -> Option<Candidate> {
         let (cam, omega, r) = (self.machine.cam(), self.machine.angular_velocity(), self.machine.restitution());
         // v+ = (1 + r) c' - r v-

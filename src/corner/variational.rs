@@ -8,8 +8,8 @@
 //! ```
 //!
 //! with `y' = f(y) = M y + f`, the propagator `Phi` of [`crate::flight`] and the saltation matrix S of [`crate::impact`]. The
-//! speed enters at an impact by `c' = w dc/dtheta` alone: `dc' = -c' dT/T`. At the corner S and c' have the side's lift, and
-//! nothing else tells the sides apart. Nothing is simulated.
+//! speed enters at an impact by `c' = w dc/dtheta` alone: `dc' = -c' dT/T`. At the corner S and c' have the side's lift; the sides
+//! differ in nothing else. Nothing is simulated.
 
 use nalgebra::{Matrix2, Matrix2x3, RowVector2, SMatrix, Vector2};
 
@@ -30,8 +30,8 @@ pub fn route(model: &Model, cam: &Cam, at: &CornerImpact) -> Route {
     Route { name: RouteName::Variational, map, own, uncertainty: None }
 }
 
-/// The map with B by any number; where the cam's shape depends on it, with the error of the differences that its lift was
-/// differentiated by.
+/// The map with B by any number. Where the cam's shape depends on it, the error is that of the differences by which the lift
+/// was differentiated.
 pub fn route_by(model: &Model, cam: &Cam, at: &CornerImpact, varied: &Varied) -> Result<Route, NoChange> {
     let around = Around::new(model, cam, at);
     let found = Sides::try_of_each(|side| {
@@ -53,13 +53,13 @@ pub fn route_by(model: &Model, cam: &Cam, at: &CornerImpact, varied: &Varied) ->
     Ok(Route { name: RouteName::Variational, map, own: Own::default(), uncertainty })
 }
 
-/// `(e, f)`: `e dx + f dT` is, to first order, how far the follower is from the cam when the corner passes, without the impact on
-/// it; where it is negative, the impact has been before.
+/// `(e, f)`: to first order `e dx + f dT` is the distance of the follower from the cam when the corner passes, without the impact
+/// on it. Where it is negative, the impact comes before the corner.
 pub fn border(model: &Model, cam: &Cam, at: &CornerImpact) -> LinearForm {
     Around::new(model, cam, at).border()
 }
 
-/// The orbit and what turns along it.
+/// The orbit, with its follower and its machine.
 struct Around<'a> {
     follower: &'a Follower,
     at: &'a CornerImpact,
@@ -82,7 +82,7 @@ impl<'a> Around<'a> {
         (RowVector2::new(gap[(0, 0)], gap[(0, 1)]), gap[(0, 2)])
     }
 
-    /// The deviation by both components of the start and by the number varied: once around, or up to before the corner.
+    /// Derivatives of the deviation by both components of the start and by the number varied: once around, or up to just before the corner.
     fn go(&self, side: Side, change: &Change, to_corner: bool) -> Matrix2x3<f64> {
         let (flights, last) = self.at.course();
         let mut deviation = Matrix2x3::identity();

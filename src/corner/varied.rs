@@ -1,4 +1,4 @@
-//! The number that B is the derivative by: the period, or any number of the model; and what it changes of the laws.
+//! The quantity that B is the derivative by: the period, or any number of the model; and the derivatives of the laws by it.
 
 use nalgebra::{Matrix2, Vector2};
 
@@ -9,7 +9,7 @@ use crate::model::{Follower, Model};
 use crate::orbit::{Family, FamilyError, Parameter};
 use crate::tolerance;
 
-/// What B is the derivative by.
+/// The quantity that B is the derivative by.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Varied {
     /// T, s.
@@ -33,7 +33,7 @@ pub enum NoChange {
     OtherSegments { name: String, value: f64 },
 }
 
-/// How the lift under an impact changes, at the same angle.
+/// Change of the lift under an impact, at the same angle.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct LiftChange {
     /// `c_p`, m per unit.
@@ -45,15 +45,15 @@ pub(super) struct LiftChange {
 /// The derivatives of the physical laws by the number.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Change {
-    /// Of T: 1 or 0.
+    /// Derivative of T: 1 or 0.
     pub period: f64,
-    /// Of M in `y' = M y + f`.
+    /// Derivative of M in `y' = M y + f`.
     pub matrix: Matrix2<f64>,
     pub force: Vector2<f64>,
     pub restitution: f64,
-    /// Of the lift at each impact.
+    /// Change of the lift at each impact.
     pub lifts: Vec<LiftChange>,
-    /// What they may be off by.
+    /// Error estimates of `lifts`.
     pub lift_errors: Vec<LiftChange>,
 }
 
@@ -64,12 +64,12 @@ impl Change {
         Self { period: 0.0, matrix, force, restitution: 0.0, lifts: still.clone(), lift_errors: still }
     }
 
-    /// By T, for an orbit of so many impacts.
+    /// Derivatives by T, for an orbit with this many impacts.
     pub fn of_period(impacts: usize) -> Self {
         Self { period: 1.0, ..Self::none(impacts) }
     }
 
-    /// By any number, with the lift of one side at the corner.
+    /// Derivatives by any number, with the lift of one side at the corner.
     pub fn new(model: &Model, at: &CornerImpact, varied: &Varied, side: Side) -> Result<Self, NoChange> {
         let impacts = at.cycle.impacts.len();
         let Varied::Number(name) = varied else { return Ok(Self::of_period(impacts)) };
@@ -106,7 +106,7 @@ impl Change {
         })
     }
 
-    /// Whether a flight from the same state ends elsewhere.
+    /// Whether the number changes the law of flight.
     pub fn flies_differently(&self) -> bool {
         self.matrix != Matrix2::zeros() || self.force != Vector2::zeros()
     }
@@ -118,7 +118,8 @@ pub(super) fn value_of(model: &Model, name: &str) -> Result<f64, NoChange> {
     value.ok_or_else(|| NoChange::Unknown { name: name.into() })
 }
 
-/// The lift under every impact by a number of the cam, then the lowest lift, and the errors: a difference over six cams on either side,
+/// Derivatives of the lift under every impact, and of the lowest lift, by a number of the cam; then their errors. A
+/// difference over six cams,
 ///
 /// ```text
 /// h df/dp = (45 (f_1 - f_-1) - 9 (f_2 - f_-2) + (f_3 - f_-3))/60 + O(h^7)

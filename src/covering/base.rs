@@ -1,4 +1,4 @@
-//! Where an h-set may begin: at a saddle of few impacts, along what its map stretches and what it shrinks.
+//! Initial h-sets: at saddles of few impacts, along the directions that the map stretches and shrinks.
 
 use super::HSet;
 use super::frame::HSetFrame;
@@ -6,12 +6,12 @@ use super::map::ImpactMap;
 use crate::orbit::{PeriodicOrbit, Search, search};
 use crate::simulate::{Machine, SimulateError};
 
-/// Turns of the cam that saddles are looked for over.
+/// Longest period of the saddles, turns of the cam.
 const MOST_REVOLUTIONS: u64 = 3;
-/// Impacts of a saddle.
+/// Most impacts of a saddle.
 const MOST_IMPACTS: usize = 4;
 
-/// Every impact of every saddle of few impacts, as an h-set without a size at a speed, rpm.
+/// Returns every impact of every saddle of few impacts, as an h-set of size 0 at a speed, rpm.
 pub(super) fn bases(machine: &Machine, rpm: f64) -> Result<Vec<HSet>, SimulateError> {
     let mut bases = Vec::new();
     for revolutions in 1..=MOST_REVOLUTIONS {
@@ -26,7 +26,7 @@ pub(super) fn bases(machine: &Machine, rpm: f64) -> Result<Vec<HSet>, SimulateEr
     Ok(bases)
 }
 
-/// The h-set at each impact of an orbit.
+/// Returns the h-set at each impact of an orbit.
 fn of_orbit(machine: &Machine, orbit: &PeriodicOrbit, rpm: f64) -> Vec<HSet> {
     let map = ImpactMap::new(machine);
     let impacts = orbit.impacts().count() as u64;
@@ -49,7 +49,7 @@ fn of_orbit(machine: &Machine, orbit: &PeriodicOrbit, rpm: f64) -> Vec<HSet> {
     orbit.impacts().filter_map(|event| at([event.cam_angle, event.velocity_after - event.cam_velocity])).collect()
 }
 
-/// Where a matrix with real eigenvalues stretches most and where least, with 1 as the larger number.
+/// Eigenvectors of a matrix with real eigenvalues, the most stretched first, scaled so that the larger component is 1.
 fn directions([[a, b], [c, d]]: [[f64; 2]; 2]) -> Option<[[f64; 2]; 2]> {
     let (half, determinant) = (0.5 * (a + d), a * d - b * c);
     let root = (half * half - determinant).sqrt();
@@ -66,7 +66,7 @@ fn directions([[a, b], [c, d]]: [[f64; 2]; 2]) -> Option<[[f64; 2]; 2]> {
     }))
 }
 
-/// To four digits: an h-set is as good at a number that can be read.
+/// Rounds to four digits, which keeps h-sets readable and costs nothing.
 pub(super) fn rounded(number: f64) -> f64 {
     format!("{number:.3e}").parse().unwrap_or(number)
 }

@@ -1,12 +1,12 @@
-//! How many motions a full shift on strips of different lengths has, a revolution.
+//! Topological entropy of a full shift on strips of different lengths, per revolution.
 
 use crate::interval::Interval;
 
-/// A number that the topological entropy of a full shift is certainly not below, per revolution, where each symbol takes so many.
+/// Lower bound on the topological entropy of a full shift, per revolution, where each symbol takes so many revolutions.
 ///
-/// It is the logarithm of the lambda at which the sum of `lambda^-k` over the symbols is 1; 0 for less than two symbols.
+/// The entropy is the logarithm of the lambda at which the sum of `lambda^-k` over the symbols is 1. For less than two symbols it is 0.
 pub fn entropy(revolutions: &[u64]) -> f64 {
-    /// A bracket of numbers near each other cannot be halved more often.
+    /// A bracket of two close doubles cannot be halved more often.
     const HALVINGS: usize = 60;
     if revolutions.len() < 2 || revolutions.contains(&0) {
         return 0.0;
@@ -25,9 +25,10 @@ pub fn entropy(revolutions: &[u64]) -> f64 {
     logarithm(low.into()).low().max(0.0)
 }
 
-/// The logarithm, from below: `ln x = 2 (z + z^3/3 + z^5/5 + ...)` with `z = (x - 1)/(x + 1)`, whose terms are all above 0 for x above 1.
+/// Lower bound on the logarithm: `ln x = 2 (z + z^3/3 + z^5/5 + ...)` with `z = (x - 1)/(x + 1)`, whose terms are all positive for x above
+/// 1.
 fn logarithm(number: Interval) -> Interval {
-    /// Up to 40 symbols this leaves out less than a tenth.
+    /// Terms of the series. For up to 40 symbols they omit less than a tenth.
     const TERMS: u32 = 60;
     let z = (number - 1.0) / (number + 1.0);
     let square = z.squared();

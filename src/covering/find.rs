@@ -1,8 +1,8 @@
-//! h-sets of a machine at a speed, or over a range of speeds: sought by simulation, then proved.
+//! Finds h-sets of a machine at a speed, or over a range of speeds: first by simulation, then by proof.
 //!
-//! About each impact of a saddle of few impacts N is tried with sides of many lengths along what the saddle stretches; its height is
-//! that of the images of the stretches that go across. Where most motions follow from them it is made ready for a proof: strips
-//! reach as far as they must at every height and at both ends of the range of speeds, with room to spare.
+//! Around each impact of a saddle of few impacts, N is tried with sides of many lengths along the stretched direction. Its height is that
+//! of the images of the stretches that cross it. The h-set with the most motions is prepared for a proof: its strips are widened until they
+//! cover at every height and at both ends of the range of speeds, with a margin.
 
 use std::cmp::Ordering;
 
@@ -18,45 +18,45 @@ use crate::elementary;
 use crate::progress::Watch;
 use crate::simulate::{Machine, SimulateError, angular_velocity};
 
-/// An h-set with what is proved of it.
+/// An h-set with the proofs of its strips.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Proved {
-    /// The h-set, with those of its strips that are proved.
+    /// The h-set, with its proved strips only.
     pub set: HSet,
-    /// What is proved of each strip.
+    /// Proved properties of each strip.
     pub strips: Vec<Covered>,
-    /// The same h-set without cones, with what is proved of its strips, where there are more of them.
+    /// The h-set without cones, with all strips that cover, where these are more than the strips that keep cones.
     pub without_cones: Option<(HSet, Vec<Covered>)>,
-    /// Strips that were given up.
+    /// Strips whose proof failed.
     pub refused: Vec<Refused>,
 }
 
-/// Why no chaos is proved: how far it came.
+/// Result of a search that proved no chaos.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Short {
-    /// Impacts of saddles that were tried.
+    /// Number of impacts of saddles that were tried.
     pub saddles: usize,
-    /// The most strips that a sampled h-set has.
+    /// Number of strips of the most promising h-set sampled.
     pub strips: usize,
-    /// The relations that failed where strips were tried.
+    /// Relations that failed, for the strips tried.
     pub refused: Vec<Refused>,
 }
 
-/// The largest distance along x, degrees or m/s whichever it is of, that N is tried to.
+/// Farthest distance along x that N is tried to, in the unit of x: degrees or m/s.
 const FARTHEST: f64 = 32.0;
-/// Points of a line.
+/// Sample points on a line.
 const POINTS: usize = 12_000;
-/// Each length of a side of N is this part of the one before, down to the shortest.
+/// Ratio of each tried length of a side of N to the one before, and the shortest length.
 const SHORTER: f64 = 0.8;
 const SHORTEST: f64 = 0.06;
 
-/// Boxes that a strip is given up after, which takes some seconds: those that cover with room to spare take some hundreds.
+/// Boxes after which the proof of a strip is given up, some seconds. Strips that cover with a margin take some hundreds.
 const MOST_BOXES: usize = 1536;
 
-/// How much is to be proved.
+/// Extent of the proof.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ProofScope {
-    /// The most strips, the shortest in turns first.
+    /// Largest number of strips; those with the fewest revolutions come first.
     pub strips: usize,
     /// Whether cones are looked for.
     pub cones: bool,
@@ -69,8 +69,8 @@ pub fn find(
     wanted: ProofScope,
     watch: &dyn Watch,
 ) -> Result<Result<Proved, Short>, SimulateError> {
-    /// For each impact of a saddle the h-sets that are sampled at all heights, and of all saddles those that are tried to be proved; the
-    /// most promising first.
+    /// Number of h-sets for each impact of a saddle that are sampled at all heights, and number of h-sets over all saddles whose proof is
+    /// tried. The most promising come first.
     const SAMPLED: usize = 12;
     const TRIES: usize = 3;
     let middle = 0.5 * (rpm[0] + rpm[1]);
@@ -133,31 +133,31 @@ pub fn find(
     Ok(best.ok_or(short))
 }
 
-/// What keeps cones first, then what has more motions.
+/// Orders h-sets: those with cones first, then those with more motions.
 fn better(one: &HSet, two: &HSet) -> Ordering {
     two.cone_slope.is_some().cmp(&one.cone_slope.is_some()).then_with(|| promising(one, two))
 }
 
-/// The one with more motions first; of two with as many the smaller one, which strips get across sooner.
+/// Orders h-sets: higher entropy first. At equal entropy the smaller one comes first, since strips cross it sooner.
 fn promising(one: &HSet, two: &HSet) -> Ordering {
     let size = |set: &HSet| (set.x[1] - set.x[0]) * (set.y[1] - set.y[0]);
     two.entropy().total_cmp(&one.entropy()).then(size(one).total_cmp(&size(two)))
 }
 
-/// Each length is `part` of the one before, down to the shortest.
+/// Lengths from the farthest down to the shortest, each `part` of the one before.
 fn lengths(part: f64) -> Vec<f64> {
     let shorter = |length: &f64| Some(part * length);
     std::iter::successors(Some(FARTHEST), shorter).take_while(|length| *length > SHORTEST).collect()
 }
 
-/// Lengths about one, from the next shorter to the next longer.
+/// Lengths around a given one, from the next shorter to the next longer.
 fn near(length: f64) -> Vec<f64> {
     const STEPS: i32 = 4;
     (-STEPS..=STEPS).map(|step| length * elementary::powf(SHORTER, f64::from(step) / f64::from(STEPS))).collect()
 }
 
-/// For a saddle the sizes of N, of some lengths to either side, that have most motions for heights of many sizes, with strips as they
-/// are along the middle.
+/// Returns sizes of N for a saddle. For each length to the left and each limit of the height, it takes the size with the most motions, with
+/// the strips found along the middle line.
 fn sizes(machine: &Machine, base: &HSet, [lefts, rights]: &[Vec<f64>; 2], strips: usize) -> Vec<HSet> {
     let points = (0..=POINTS).map(|index| FARTHEST * (2.0 * index as f64 / POINTS as f64 - 1.0));
     let line = Line::new(machine, base, 0.0, points.collect(), MOST_IMPACTS);
@@ -182,7 +182,7 @@ fn sizes(machine: &Machine, base: &HSet, [lefts, rights]: &[Vec<f64>; 2], strips
 }
 
 impl HSet {
-    /// With a range of x, and crossings of it as its strips; none of less than two, or where a follower would not leave the cam.
+    /// Sets the range of x, and its crossings as strips. `None` for less than two strips, or where a follower would not leave the cam.
     fn sized(&self, x: [f64; 2], crossings: &[Crossing], room: f64) -> Option<Self> {
         let strip = |crossing: &Crossing| Strip {
             impacts: crossing.impacts as u64,
@@ -195,13 +195,13 @@ impl HSet {
     }
 }
 
-/// The lowest u in N.
+/// Lowest velocity u in N.
 fn lowest_velocity(set: &HSet) -> f64 {
     let least = |range: [f64; 2], by: f64| (range[0] * by).min(range[1] * by);
     set.centre[1] + least(set.x, set.unstable[1]) + least(set.y, set.stable[1])
 }
 
-/// Those of some crossings that are apart, the shortest in turns first.
+/// Selects crossings that do not overlap, those with the fewest revolutions first.
 fn apart(mut crossings: Vec<Crossing>) -> Vec<Crossing> {
     crossings.sort_by_key(|crossing| (crossing.revolutions, crossing.impacts));
     let mut apart: Vec<Crossing> = Vec::new();
@@ -213,24 +213,25 @@ fn apart(mut crossings: Vec<Crossing>) -> Vec<Crossing> {
     apart
 }
 
-/// The range of y of crossings, and some more.
+/// Range of y of the crossings, extended at both ends by the part `room` of its height.
 fn height(crossings: &[Crossing], room: f64) -> Option<[f64; 2]> {
     let low = crossings.iter().map(|crossing| crossing.y[0]).reduce(f64::min)?;
     let high = crossings.iter().map(|crossing| crossing.y[1]).reduce(f64::max)?;
     Some([low - room * (high - low), high + room * (high - low)])
 }
 
-/// Room above and below, of the height: where it is that of images of the middle alone, and where the lowest and the highest points' count.
+/// Room above and below N, as a part of its height: where only images of the middle line count, and where those of the lowest and highest
+/// points count too.
 const ROOM: f64 = 0.12;
 const LESS_ROOM: f64 = 0.1;
-/// Room at each edge of a strip, of its width.
+/// Room at each edge of a strip, as a part of its width.
 const EDGE: f64 = 0.03;
 
-/// N with its height and strips such that they cover at all heights and speeds that are sampled.
+/// Adjusts the height and the strips of N so that they cover at all sampled heights and speeds.
 fn ready(machine: &Machine, mut set: HSet) -> Option<HSet> {
-    /// The height settles at once: images hardly depend on it.
+    /// The height converges at once, since images hardly depend on it.
     const ROUNDS: usize = 2;
-    /// Points about a strip, and how far they go beyond it, of its width.
+    /// Sample points around a strip, and their reach beyond it, in widths of the strip.
     const STRIP_POINTS: usize = 80;
     const BEYOND: f64 = 1.5;
     set.x = set.x.map(rounded);
@@ -268,7 +269,7 @@ fn ready(machine: &Machine, mut set: HSet) -> Option<HSet> {
     Some(set)
 }
 
-/// Proves an h-set with those of its strips that cover it: those that keep cones as well, where there are two or more, and all of them.
+/// Proves an h-set with the strips that cover it. Where two or more keep cones, the set has only these, and `without_cones` has all.
 fn proved(machine: &Machine, set: HSet) -> Result<Proved, Vec<Refused>> {
     let without = HSet { cone_slope: None, ..set.clone() };
     stands(&set).map_err(|why| vec![why])?;
@@ -309,8 +310,8 @@ fn proved(machine: &Machine, set: HSet) -> Result<Proved, Vec<Refused>> {
     Ok(Proved { set, strips, without_cones, refused })
 }
 
-/// An h-set with the slope of cones that, at some points of the strips, are kept by strips with the most motions, and stretched most; and the
-/// entropy of these.
+/// Chooses the slope of the cones: the strips that keep them, at sample points, have the highest entropy, then the largest least growth.
+/// Returns that entropy and the h-set.
 fn with_cones(machine: &Machine, set: HSet) -> (f64, HSet) {
     let map = ImpactMap::new(machine);
     let frame = HSetFrame::new(&set);

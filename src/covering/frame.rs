@@ -16,12 +16,12 @@ pub struct HSetFrame {
     stable: [Interval; 2],
 }
 
-/// Where a strip is carried, over a box of it.
+/// Image of a box of a strip.
 #[derive(Clone, Copy, Debug)]
 pub struct Image {
     /// x and y at the box's centre.
     pub centre: [Interval; 2],
-    /// x and y.
+    /// x and y over the whole box.
     pub value: [Interval; 2],
     /// Their derivatives by x, y and the speed.
     pub by: [[Interval; 3]; 2],
@@ -32,13 +32,13 @@ fn degree() -> Interval {
     Interval::TURN / 360.0
 }
 
-/// rad/s.
+/// Converts a range of speeds from rpm to rad/s.
 pub(super) fn angular_velocities([low, high]: [f64; 2]) -> Interval {
     Interval::new(low, high) * Interval::TURN / 60.0
 }
 
 impl HSetFrame {
-    /// Those of an h-set.
+    /// The coordinates of an h-set.
     pub fn new(set: &HSet) -> Self {
         let number = |pair: [f64; 2]| pair.map(Interval::from);
         Self { centre: number(set.centre), unstable: number(set.unstable), stable: number(set.stable) }
@@ -50,9 +50,9 @@ impl HSetFrame {
         Impact { angle: along(0) * degree(), velocity: along(1), turns: 0 }
     }
 
-    /// Rectangles of the cam's angle, rad, and the velocity, m/s, that a strip of an h-set lies in.
+    /// Rectangles that together contain a strip of an h-set: the cam's angle, rad, and the velocity, m/s.
     pub fn rectangles(&self, set: &HSet, strip: &Strip) -> Vec<[Interval; 2]> {
-        /// Parts of either side: the rectangles reach beyond the strip by a part at most.
+        /// Parts of either side. The rectangles reach beyond the strip by one part at most.
         const PARTS: usize = 64;
         let part = |[low, high]: [f64; 2], part: usize| {
             let at = |part: usize| low + (high - low) * part as f64 / PARTS as f64;
@@ -67,7 +67,7 @@ impl HSetFrame {
         parts.map(rectangle).collect()
     }
 
-    /// x and y of an impact, so many turns on.
+    /// x and y of an impact, less so many turns of the cam.
     fn coordinates<'a>(&self, impact: &Impact<'a>, revolutions: u64) -> [Over<'a>; 2] {
         let turns = (impact.turns - revolutions as i64) as f64;
         let angle = (impact.angle + Interval::TURN * turns) * (Interval::from(1.0) / degree()) + -self.centre[0];
@@ -80,7 +80,7 @@ impl HSetFrame {
         ]
     }
 
-    /// Where a box of a strip is carried.
+    /// Encloses the image of a box of a strip.
     pub fn image(&self, map: &ImpactMap<'_>, strip: &Strip, place: &SectionBox) -> Result<Image, UnprovedFlight> {
         let centre = place.map(|side| Interval::from(side.middle()));
         let over = std::array::from_fn(|side| place[side] - centre[side]);
@@ -97,7 +97,7 @@ impl HSetFrame {
         })
     }
 
-    /// The same at a point, at the middle of a range of speeds, rpm.
+    /// Encloses the image of a point, at the middle of a range of speeds, rpm.
     pub(super) fn at_point(
         &self,
         map: &ImpactMap<'_>,
@@ -108,7 +108,7 @@ impl HSetFrame {
         self.image(map, strip, &[x.into(), y.into(), angular_velocities(rpm).middle().into()])
     }
 
-    /// The derivative by x and y of so many impacts at the centre, in doubles.
+    /// Derivative by x and y at the centre after so many impacts, in doubles.
     pub(super) fn derivative(&self, map: &ImpactMap<'_>, impacts: u64, rpm: [f64; 2]) -> Option<[[f64; 2]; 2]> {
         let strip = Strip { impacts, revolutions: 0, x: [0.0; 2] };
         let image = self.at_point(map, &strip, [0.0; 2], rpm).ok()?;
@@ -117,12 +117,12 @@ impl HSetFrame {
 }
 
 impl Image {
-    /// What differences within `|dy| <= L |dx|` are stretched by at least, where such cones are kept, with L the slope.
+    /// Least factor that stretches differences within the cone `|dy| <= L |dx|`, L the slope. `None` where the cone may not be kept.
     pub fn stretched(&self, slope: f64) -> Option<f64> {
         stretched(self.by.map(|[x, y, _]| [x, y]), slope)
     }
 
-    /// Whether cones cannot be kept at any point of the box.
+    /// Whether the cone is kept at no point of the box.
     pub fn misses(&self, slope: f64) -> bool {
         let least =
             |number: Interval| if number.holds_zero() { 0.0 } else { number.low().abs().min(number.high().abs()) };
@@ -132,7 +132,8 @@ impl Image {
     }
 }
 
-/// What a derivative, by rows, stretches differences within `|dy| <= L |dx|` by at least, where it keeps such cones, with L the slope.
+/// Least factor by which a derivative, by rows, stretches differences within the cone `|dy| <= L |dx|`, L the slope. `None` where it may
+/// not keep the cone.
 pub(super) fn stretched([[a, b], [c, d]]: [[Interval; 2]; 2], slope: f64) -> Option<f64> {
     if !(slope > 0.0) {
         return None;

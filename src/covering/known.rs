@@ -1,4 +1,4 @@
-//! h-sets that are known to hold, by model: kept so that a program need not find them again, which it can. They are no proof.
+//! Stored h-sets, by model, which spare a program the search for them. They are no proof.
 
 use serde::Deserialize;
 
@@ -13,7 +13,7 @@ struct Golden {
 
 const FILES: [&str; 1] = [include_str!("../../golden/chaos/osorio-2008.json")];
 
-/// The h-sets of a model of this name, as they stand in the files.
+/// Returns the stored h-sets of the model of this name.
 pub fn known(model: &str) -> Vec<HSet> {
     let files = FILES.iter().filter_map(|text| serde_json::from_str::<Golden>(text).ok());
     files.filter(|file| file.model == model).flat_map(|file| file.h_sets).collect()

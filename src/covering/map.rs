@@ -1,16 +1,16 @@
-//! From one impact to the next, over a box of impacts and speeds: enclosed, with its derivatives, and proved to be the first.
+//! The impact map over a box of impacts and speeds: the next impact is enclosed with its derivatives, and proved to be the first.
 //!
-//! An impact is the cam's angle theta and the velocity u after it relative to the cam, above 0. Of a flight from there,
+//! An impact is the cam's angle theta and the velocity u after it relative to the cam, above 0. For a flight from there,
 //!
 //! ```text
 //! g(t)  = c(theta) + v s(t) + f p(t) - c(theta + omega t)        v = omega c'(theta) + u, f the force at c(theta)
 //! g'(t) = v s'(t) + f s(t) - omega c'(theta + omega t)
 //! ```
 //!
-//! the next impact is at the first t > 0 with g = 0, and leaves with `u = -r g'(t)`. It is found by Newton's method on intervals,
-//! all over the box at once, with g' < 0: so it is transversal and its time a Lipschitz function of the box. That it is the first
-//! is shown from stretch to stretch of the flight: next to the launch by u, next to the landing by g' < 0, between the two by the Taylor sum
-//! about the middle of the stretch. Corners cost nothing: c'' is the hull of both sides' there.
+//! the next impact is at the first t > 0 with g = 0, and leaves with `u = -r g'(t)`. Newton's method on intervals finds it over the whole
+//! box at once, with g' < 0. So it is transversal, and its time is a Lipschitz function on the box. That no impact comes earlier is shown
+//! for each stretch of the flight: next to the launch by u, next to the landing by g' < 0, between the two by the Taylor sum about the
+//! middle of the stretch. Corners cost nothing: c'' is the hull of both sides' there.
 
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
@@ -26,21 +26,21 @@ use crate::simulate::{Event, EventKind, Machine};
 /// A number over a box of two coordinates and the speed.
 pub(super) type Over<'a> = MeanValueForm<'a, 3>;
 
-/// Why nothing is proved of a flight.
+/// Reason why nothing is proved about a flight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum UnprovedFlight {
-    /// The follower may stay on the cam, or not come back to it for long.
+    /// The follower may stay on the cam, or not return to it within the limit.
     NoImpact,
     /// The next impact may be a graze, or not the same one all over the box.
     NotTransversal,
-    /// The follower may meet the cam before.
+    /// The follower may meet the cam earlier.
     NotFirst,
 }
 
 named!(UnprovedFlight);
 
-/// Turns of the cam that a flight may take.
+/// Longest flight, turns of the cam.
 const MOST_TURNS: u64 = 20;
 
 /// An impact, over a box.
@@ -54,7 +54,7 @@ pub(super) struct Impact<'a> {
     pub turns: i64,
 }
 
-/// Lift and slope at an angle, of a cam that tells what holds both and the curvature over a range of angles.
+/// Lift and slope at an angle, and an enclosure of the curvature. `over` encloses all three over a range of angles.
 fn lift_of<'a>(angle: Over<'a>, over: impl Fn(Interval) -> Lift<Interval>) -> ([Over<'a>; 2], Interval) {
     let (whole, centre) = (over(angle.value()), over(angle.centre));
     let lift = angle.of(centre.value, whole.value, whole.slope);
@@ -71,7 +71,7 @@ struct Gap<'a> {
     rate: Over<'a>,
     /// The follower's own velocity.
     velocity: Over<'a>,
-    /// What holds g''.
+    /// Enclosure of g''.
     bend: Interval,
 }
 
@@ -94,20 +94,20 @@ struct Launch<'a, 'b> {
 }
 
 impl<'a> ImpactMap<'a> {
-    /// That of a machine, at any speed.
+    /// The impact map of a machine, at any speed.
     pub fn new(machine: &'a Machine) -> Self {
         let corners = machine.cam().corners();
         let sharp = corners.iter().filter(|corner| corner.jump_order == 1).map(|corner| corner.segment).collect();
         Self { machine, sharp }
     }
 
-    /// Lift and slope of the cam at an angle, and what holds the curvature.
+    /// Lift and slope of the cam at an angle, and an enclosure of the curvature.
     fn lift<'b>(&self, angle: Over<'b>) -> ([Over<'b>; 2], Interval) {
         let over = |angles: Interval| -> Lift<Interval> { self.machine.cam().lift_over(angles, &self.sharp) };
         lift_of(angle, over)
     }
 
-    /// The impact after one, at the cam's speed, rad/s.
+    /// Returns the impact that follows `from`, at the cam's speed, rad/s.
     pub(super) fn next<'b>(&self, from: &Impact<'b>, omega: Over<'b>) -> Result<Impact<'b>, UnprovedFlight> {
         if !from.velocity.value().is_positive() {
             return Err(UnprovedFlight::NoImpact);
@@ -122,11 +122,12 @@ impl<'a> ImpactMap<'a> {
         })
     }
 
-    /// How the map changes with the angle and with the follower's own velocity before an impact, both of the impact after: by rows, over
-    /// a rectangle of angles, rad, on one segment of the cam, and velocities after the impact relative to the cam, m/s.
+    /// Derivative of the impact map by the angle and the follower's own velocity before an impact, in the same coordinates of the next
+    /// impact, by rows. It is taken over a rectangle of angles, rad, on one segment of the cam, and velocities after the impact relative to
+    /// the cam, m/s.
     ///
-    /// The next impact is where g = 0, and neither its angle nor the follower's velocity there asks for c'': at a corner this derivative
-    /// jumps only with the angle that the flight begins at, and each segment has one of its own.
+    /// The next impact is where g = 0, and neither its angle nor the follower's velocity there depends on c''. So at a corner this
+    /// derivative jumps only with the angle at which the flight begins, and each segment has its own.
     pub(super) fn derivative_before(
         &self,
         segment: &Segment,
@@ -150,7 +151,7 @@ impl<'a> ImpactMap<'a> {
         Ok([landing.angle, landing.velocity].map(|row| [row.whole.by[0], row.whole.by[1]]))
     }
 
-    /// The flight to the first impact, which is transversal, as it is there.
+    /// Returns the gap at the first impact, which is proved to be first and transversal.
     fn land<'b>(&self, from: &Impact<'b>, launch: &Launch<'b, '_>) -> Result<Gap<'b>, UnprovedFlight> {
         let guess = self.guess(from, launch.omega).ok_or(UnprovedFlight::NoImpact)?;
         let time = launch.landing(guess)?;
@@ -178,18 +179,17 @@ impl<'a> ImpactMap<'a> {
         }
     }
 
-    /// Every angle and velocity that the impact after one may have, where flights of the box may graze the cam: rectangles, each of
-    /// a stretch of time of the flight in which the gap may come down to 0. From a graze, which takes nothing from the motion, both
-    /// the touch and what comes after it are among them.
+    /// Encloses every angle and velocity of the next impact where flights of the box may graze the cam. Each rectangle belongs to a stretch
+    /// of time in which the gap may reach 0. A graze takes nothing from the motion, so both the touch and the impact after it are included.
     ///
-    /// `shortest`, s: no stretch is halved below it. A velocity of 0 in the box is one that the follower leaves the cam with.
+    /// `shortest`, s: no stretch is halved below it. A velocity of 0 in the box must be one with which the follower leaves the cam.
     pub(super) fn contacts<'b>(
         &self,
         from: &Impact<'b>,
         omega: Over<'b>,
         shortest: f64,
     ) -> Result<Vec<[Interval; 2]>, UnprovedFlight> {
-        /// Steps that a flight begins with, of the shortest.
+        /// First step of a flight, in units of the shortest.
         const STEPS: f64 = 64.0;
         // What is below 0 came of rounding: cells have none.
         let velocity = from.velocity.value();
@@ -235,7 +235,7 @@ impl<'a> ImpactMap<'a> {
         Err(UnprovedFlight::NoImpact)
     }
 
-    /// The time to the next impact from the centre, s, as simulated: where the proof begins to look.
+    /// Simulated time to the next impact from the box's centre, s: the guess that the proof starts from.
     fn guess(&self, from: &Impact<'_>, omega: Over<'_>) -> Option<f64> {
         let omega = omega.centre.middle();
         let machine = self.machine.at_speed(omega);
@@ -282,7 +282,7 @@ impl<'a> Launch<'a, '_> {
         self.gap(self.angle.fixed(times))
     }
 
-    /// The time of the impact that is near a guess, s, all over the box, and how it changes.
+    /// Encloses the time of the impact near a guess, s, over the whole box, with its derivatives.
     fn landing(&self, guess: f64) -> Result<Over<'a>, UnprovedFlight> {
         let at_centre = |times| {
             let gap = self.over(times);
@@ -300,7 +300,7 @@ impl<'a> Launch<'a, '_> {
         Ok(gap.value.solved(centre, whole, by))
     }
 
-    /// Whether the gap is above 0 in a stretch from the launch on, with a velocity, but at the launch itself.
+    /// Whether the gap is above 0 after the launch, with a velocity, over a stretch that begins there.
     fn leaves(times: Interval, whole: &Gap<'_>, velocity: Interval) -> bool {
         // g = t (u + t/2 g''(...))
         (velocity + times * whole.bend.half()).is_positive()
@@ -316,9 +316,9 @@ impl<'a> Launch<'a, '_> {
         }
     }
 
-    /// Whether the gap is above 0 from after the launch, with a velocity, to the landing at a time.
+    /// Whether the gap is above 0 between the launch, with a velocity, and the landing at a time.
     fn is_first(&self, landing: Interval, velocity: Interval) -> bool {
-        /// Parts of the flight: the step that it begins with, and one too short to go on.
+        /// Parts of the flight: the first step, and the length below which the proof is given up.
         const STEP: f64 = 0.125;
         const SHORTEST: f64 = 1.0 / 8192.0;
         let end = landing.low();

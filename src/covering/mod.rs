@@ -1,20 +1,21 @@
-//! Chaos, proved: boxes of impacts that the impact map stretches across each other.
+//! Proofs of chaos: boxes of impacts that the impact map stretches across each other.
 //!
-//! An h-set N is a parallelogram of impacts, with a direction that the map stretches and one that it shrinks. Strips of N, over its
-//! whole height, are each carried across N by a number of impacts. Then every sequence of strips, in both directions, is followed by a
-//! motion (covering relations: Zgliczynski and Gidea 2004), and where cones are kept as well by no more than one. That is a set of chaotic
-//! motions. That others come to it is not said by that; where a region is found that the map sends into itself, all motions in it stay there.
+//! An h-set N is a parallelogram of impacts, with a direction that the map stretches and one that it shrinks. Strips of N, over its whole
+//! height, are each carried across N by a number of impacts. Then every sequence of strips, in both directions, is followed by a motion
+//! (covering relations: Zgliczynski and Gidea 2004). Where cones are kept as well, there is only one such motion. These motions form a
+//! chaotic set. The proof does not show that other motions approach it. Where a region is found that the map sends into itself, all motions
+//! in it stay there.
 //!
 //! | module | what it holds |
 //! |---|---|
-//! | `map` | from one impact to the next, over a box: enclosed, with derivatives, the first one for certain |
+//! | `map` | the impact map over a box: enclosed, with derivatives, and proved to be the first impact |
 //! | `frame` | the coordinates of an h-set, and the images of boxes in them |
 //! | [`mod@prove`] | whether strips cover, and keep cones |
-//! | `entropy` | how many motions there are by that, a revolution |
+//! | `entropy` | the topological entropy that follows, per revolution |
 //! | `base`, `sample` | saddles that an h-set may begin at; impacts along a line, by simulation |
 //! | [`mod@find`] | an h-set for any machine, sought and then proved |
 //! | [`region`] | impacts that are followed by impacts among them for ever |
-//! | `known` | h-sets that are kept |
+//! | `known` | stored h-sets |
 
 mod base;
 mod entropy;
@@ -39,9 +40,9 @@ pub use map::{ImpactMap, UnprovedFlight};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct HSet {
-    /// For every speed from one to another, rpm.
+    /// Range of speeds, rpm.
     pub rpm: [f64; 2],
-    /// Where x and y are 0.
+    /// The point where x and y are 0.
     pub centre: [f64; 2],
     /// The direction of x.
     pub unstable: [f64; 2],
@@ -51,14 +52,14 @@ pub struct HSet {
     pub x: [f64; 2],
     /// The range of y.
     pub y: [f64; 2],
-    /// L of the cones `|dy| <= L |dx|`; nothing where the strips are to cover alone.
+    /// L of the cones `|dy| <= L |dx|`; `None` where the strips need only cover.
     pub cone_slope: Option<f64>,
     /// The strips, each over all of y.
     pub strips: Vec<Strip>,
 }
 
 impl HSet {
-    /// What the topological entropy of a revolution is certainly not below, where its strips cover.
+    /// Lower bound on the topological entropy per revolution, if the strips cover.
     pub fn entropy(&self) -> f64 {
         entropy(&self.strips.iter().map(|strip| strip.revolutions).collect::<Vec<_>>())
     }
@@ -69,7 +70,7 @@ impl HSet {
     }
 }
 
-/// A part of an h-set, from one x to another, and what it comes back after.
+/// A part of an h-set between two values of x, with the impacts and revolutions until it returns.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Strip {

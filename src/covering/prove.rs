@@ -1,17 +1,17 @@
-//! Whether the strips of an h-set cover it, and keep cones: proved, or how far it came.
+//! Proves that the strips of an h-set cover it and keep cones, or reports where the proof fails.
 //!
-//! A strip S covers N where its flights are proved to be what they are all over it, one of its edges is carried beyond one side of N,
-//! the other beyond the other side, and nothing of it to where x is N's and y is not. It keeps the cones `|dy| <= L |dx|`, and
-//! stretches what is in them, where the derivative [[a, b], [c, d]], with a of one sign all over it, has
+//! A strip S covers N where its flights are proved all over it, one of its edges is carried beyond one side of N, the other edge beyond the
+//! other side, and no part of it to a point with x inside N's range and y outside. It keeps the cones `|dy| <= L |dx|`, and stretches
+//! differences in them, where the derivative [[a, b], [c, d]], with a of one sign all over it, has
 //!
 //! ```text
 //! |a| - L |b| > 1        |c| + L |d| <= L (|a| - L |b|)
 //! ```
 //!
-//! Both hold for a mean of derivatives where they hold for each, so they need be shown box by box only. With them a sequence in both
-//! directions is followed by one motion: the map can be run backwards, and each impact shrinks `u dtheta du` by exactly
-//! `r^2 e^{-2 zeta t}`, so the impacts of one past, which lie between two graphs of slope L or less, lie on one; and two of them with one future
-//! would differ within the cone, and part. That asks for losses, and for u above 0 all over N.
+//! Both hold for a mean of derivatives where they hold for each, so they are shown box by box. With them one motion only follows a sequence
+//! in both directions. For the map can be run backwards, and each impact shrinks `u dtheta du` by exactly `r^2 e^{-2 zeta t}`. So the
+//! impacts of one past, which lie between two graphs of slope L or less, lie on one graph. Two of them with one future would differ within
+//! the cone, and separate. The argument needs losses, and u above 0 all over N.
 
 use rayon::prelude::*;
 use serde::Serialize;
@@ -22,36 +22,36 @@ use super::{HSet, Strip};
 use crate::interval::{Interval, Number};
 use crate::simulate::Machine;
 
-/// What is proved of a strip.
+/// Proved properties of a strip.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Covered {
     /// Impacts until it is carried across the h-set.
     pub impacts: u64,
     /// Turns of the cam until then.
     pub revolutions: u64,
-    /// The range of its image's y, as far as that is over the h-set.
+    /// Range of y of the image, where it lies over the h-set.
     pub image_y: [f64; 2],
-    /// What a difference in the cone is stretched by at least; nothing where cones were not asked for.
+    /// Least factor that stretches a difference in the cone; `None` where cones were not requested.
     pub growth: Option<f64>,
-    /// Boxes that it took.
+    /// Number of boxes of the proof.
     pub boxes: usize,
 }
 
-/// What must hold.
+/// Condition of the proof.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Relation {
-    /// The h-set is a parallelogram, its strips are in it and apart.
+    /// The h-set is a parallelogram, and its strips are in it and disjoint.
     Apart,
     /// Each flight ends with a first impact that is transversal.
     Flight,
-    /// The edges of the strip are carried beyond the h-set, each on a side of its own.
+    /// The edges of the strip are carried beyond the h-set, each beyond its own side.
     Edges,
-    /// Nothing of the strip is carried above or below the h-set.
+    /// No part of the strip is carried above or below the h-set.
     Height,
     /// Cones are kept.
     Cones,
-    /// Impacts or flights take from the motion, which makes motions of one sequence one where cones are kept.
+    /// Impacts or flights take energy from the motion. Where cones are kept, this makes the motion of a sequence unique.
     Losses,
 }
 
@@ -64,33 +64,33 @@ pub struct Refused {
     pub relation: Relation,
     /// Impacts of the strip.
     pub impacts: u64,
-    /// Where: x and y.
+    /// x and y of the failure.
     pub at: [f64; 2],
-    /// What is not proved of a flight.
+    /// Reason why the flight is not proved.
     pub flight: Option<UnprovedFlight>,
-    /// Whether it is shown not to hold, or the boxes ran out.
+    /// Whether the relation is refuted; otherwise the boxes ran out.
     pub is_refuted: bool,
 }
 
-/// A part of a strip, with its image where that is known.
+/// A part of a strip, with its image if it is computed already.
 type Part = (SectionBox, Option<Image>);
 
-/// Boxes that a relation is given up after: a strip that covers with room to spare takes some hundreds.
+/// Boxes after which the proof of a relation is given up. A strip that covers with a margin takes some hundreds.
 const MOST_BOXES: usize = 1 << 12;
 
-/// Proves that each strip covers the h-set, on a machine of any speed; the first one that is not proved to is the error.
+/// Proves that each strip covers the h-set, at its speeds whatever the machine's own. The error is that of a strip without a proof.
 pub fn prove(machine: &Machine, set: &HSet) -> Result<Vec<Covered>, Refused> {
     stands(set)?;
     loses(machine, set)?;
     set.strips.par_iter().map(|strip| covered(machine, set, strip, MOST_BOXES)).collect()
 }
 
-/// Whether an interval of numbers is one.
+/// Whether two numbers are the ends of a finite interval that is not empty.
 fn is_range([low, high]: [f64; 2]) -> bool {
     low < high && (high - low).is_finite()
 }
 
-/// Whether an h-set is a parallelogram of impacts with strips in it that are apart.
+/// Checks that an h-set is a parallelogram of impacts with disjoint strips in it.
 pub(super) fn stands(set: &HSet) -> Result<(), Refused> {
     let refused = |strip: &Strip| {
         let at = [strip.x[0], set.y[0]];
@@ -114,7 +114,7 @@ pub(super) fn stands(set: &HSet) -> Result<(), Refused> {
     Ok(())
 }
 
-/// Cones say of motions with losses that those of one sequence are one.
+/// Checks that there are losses where cones are requested: cones make the motion of a sequence unique only with losses.
 pub(super) fn loses(machine: &Machine, set: &HSet) -> Result<(), Refused> {
     let is_lossless = machine.restitution() >= 1.0 && machine.flight().zeta() == 0.0;
     match set.strips.first().filter(|_| set.cone_slope.is_some() && is_lossless) {
@@ -126,7 +126,7 @@ pub(super) fn loses(machine: &Machine, set: &HSet) -> Result<(), Refused> {
     }
 }
 
-/// Whether one strip covers the h-set, and keeps cones where they are asked for.
+/// Proves that one strip covers the h-set, and keeps cones where they are requested.
 pub(super) fn covered(machine: &Machine, set: &HSet, strip: &Strip, most_boxes: usize) -> Result<Covered, Refused> {
     let proof = Proof { map: ImpactMap::new(machine), frame: HSetFrame::new(set), set, strip, most_boxes };
     let (y, omega) = (Interval::new(set.y[0], set.y[1]), angular_velocities(set.rpm));
@@ -180,7 +180,8 @@ struct Proof<'a> {
 }
 
 impl Proof<'_> {
-    /// Whether something holds of the images of all parts of some boxes, which are halved until each part tells; those images.
+    /// Proves that `holds` is true of the images of some boxes, which are halved until each part is decided. Returns the parts with their
+    /// images.
     fn all(
         &self,
         mut left: Vec<Part>,
@@ -213,7 +214,7 @@ impl Proof<'_> {
         Ok(proved)
     }
 
-    /// The halves of a box, across the side that its image is widest by, or that of its middle.
+    /// Halves a box across the side that contributes most to the width of its image, or of the image of its middle.
     fn halves(&self, place: &SectionBox, image: Option<Image>) -> [SectionBox; 2] {
         let sizes = [self.set.x, self.set.y].map(|[low, high]| high - low);
         let middle = || self.frame.image(&self.map, self.strip, &place.map(|side| side.middle().into())).ok();

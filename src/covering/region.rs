@@ -1,14 +1,14 @@
 //! A trapping region: impacts that are followed by impacts among them, for ever.
 //!
-//! The plane of impacts is cut into cells. From the cells of some impacts on, the image of each cell is enclosed, and each cell that the
-//! image may touch is taken in, until no new one comes. Then whatever starts in one of them goes on in them: it flies and hits, and never
-//! rests on the cam. The first cells are squares of a size that the whole plane has in common. Where the image of one is larger than such a
-//! square, or its flights do not all end with one transversal impact, it is cut in two across what the image is long by, and so on: so
-//! cells are small where the map stretches much, and the region is a little larger than it needs to be by one square everywhere.
+//! The plane of impacts is cut into cells. Starting from the cells of some impacts, the image of each cell is enclosed, and each cell that
+//! the image may touch is added, until no new one appears. Then every motion that starts in the cells stays in them: it flies and hits, and
+//! never rests on the cam. The first cells are squares of one size. A cell is halved where its image is larger than such a square, or its
+//! flights do not all end with one transversal impact. It is halved across the side that makes the image long, and so on. So cells are
+//! small where the map stretches much, and the region is larger than necessary by one square everywhere.
 //!
-//! Flights that may graze the cam are followed to each place where they may touch it: an impact there leaves with any velocity from 0 to
-//! what the slope of the gap allows. From a velocity of 0 the follower must be let go by the cam, or the region is not closed. So each
-//! cell has a least time to the next impact, and impacts cannot follow upon each other ever faster, as they do before a rest.
+//! Flights that may graze the cam are followed to each place where they may touch it. An impact there leaves with any velocity from 0 to
+//! the bound that the slope of the gap gives. At a velocity of 0 the cam must release the follower, or the region is not closed. So each
+//! cell has a least time to the next impact, and impacts cannot accumulate, as they do before a rest.
 
 use std::collections::HashMap;
 
@@ -24,10 +24,10 @@ use crate::orbit::search::velocity_scale;
 use crate::progress::Watch;
 use crate::simulate::Machine;
 
-/// A rectangle of impacts, in squares of the plane across (the cam's angle) and up (the velocity relative to the cam).
+/// A rectangle of impacts, in squares of the plane: across is the cam's angle, up is the velocity relative to the cam.
 type Place = [Interval; 2];
 
-/// A square of the plane that is halved so many times across and up, the `at`-th of its size.
+/// A square of the plane, halved so many times across and up. `at` counts cells of this size from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 struct Cell {
     at: [u64; 2],
@@ -53,50 +53,52 @@ impl Cell {
     }
 }
 
-/// What is known of a cell.
+/// Result of examining a cell.
 enum Look {
-    /// Its impacts are followed by impacts in these.
+    /// Impacts of the cell are followed by impacts in these rectangles.
     Whole(Vec<Place>),
-    /// Its halves across that side are to be looked at.
+    /// The cell is halved across this side, and its halves are to be examined.
     Halved(usize),
 }
 
 /// A region that the impact map of a machine carries into itself.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Region {
-    /// Squares of a degree.
+    /// Squares per degree.
     pub squares_per_degree: u32,
     /// The height of a square, m/s.
     pub square_m_s: f64,
-    /// How many cells it has.
+    /// Number of cells.
     pub cells: usize,
-    /// Enclosures of images that it took.
+    /// Number of images enclosed.
     pub looks: usize,
-    /// The part of all angles and all velocities up to the highest that it covers.
+    /// Covered part of the rectangle of all angles and all velocities up to the highest.
     pub part: f64,
     /// The lowest and the highest velocity in it, m/s.
     pub velocities_m_s: [f64; 2],
     /// The lowest and the highest angle in it, from 0 to 360 degrees.
     pub angles_deg: [f64; 2],
-    /// The cells: degrees of the cam, and m/s, each from one number to another.
+    /// The cells: their ranges of the cam's angle, degrees, and of the velocity, m/s.
     #[serde(skip)]
     pub places: Vec<[[f64; 2]; 2]>,
 }
 
 impl Region {
-    /// Whether an impact is in it, at the cam's angle, degrees in a turn, and the velocity relative to the cam, m/s.
+    /// Whether an impact is in the region, at the cam's angle, degrees in a turn, and the velocity relative to the cam, m/s.
     pub fn holds(&self, impact: [f64; 2]) -> bool {
         self.places.iter().any(|place| place.iter().zip(impact).all(|([low, high], at)| *low <= at && at <= *high))
     }
 }
 
-/// By what factor above 1 some deviations of every motion in a region grow at each impact, at least, where that is proved.
+/// Proved lower bound, above 1, on the factor by which some deviations of every motion in a region grow at each impact. `None` without a
+/// proof.
 ///
-/// In the coordinates theta, the angle of an impact, and v, the follower's velocity before it, each derivative in the region, at a corner that of
-/// either side, sends a cone `|dv - s dtheta| <= L |dtheta|` into itself, and |dtheta| grows in it. So no periodic orbit in the region is stable
-/// (one on a corner has all its neighbours on one side), and the largest Lyapunov exponent of no motion is below the logarithm of that, an impact.
+/// Coordinates are theta, the angle of an impact, and v, the follower's velocity before it. Each derivative in the region, at a corner that
+/// of either side, maps a cone `|dv - s dtheta| <= L |dtheta|` into itself, and |dtheta| grows in it. So no periodic orbit in the region is
+/// stable (an orbit on a corner has all its neighbours on one side). The largest Lyapunov exponent of each motion is at least the logarithm
+/// of the bound, per impact.
 pub fn parted(machine: &Machine, rpm: f64, region: &Region) -> Option<f64> {
-    /// L is looked for among powers of two, as parts of s.
+    /// Tried values of L: |s| times these powers of two.
     const SLOPES: std::ops::RangeInclusive<i32> = -12..=0;
     if !(machine.restitution() > 0.0) {
         return None;
@@ -132,13 +134,13 @@ pub fn parted(machine: &Machine, rpm: f64, region: &Region) -> Option<f64> {
 /// A region that is not closed.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct OpenRegion {
-    /// Squares of a degree.
+    /// Squares per degree.
     pub squares_per_degree: u32,
     /// Cells so far.
     pub cells: usize,
-    /// The impact whose cell is not carried on: degrees of the cam, and m/s.
+    /// The impact whose cell could not be continued: degrees of the cam, and m/s.
     pub at: [f64; 2],
-    /// What is not proved of the flight from there; nothing where there were too many cells, or no impacts to begin with.
+    /// Reason why the flight from there is not proved; `None` where there were too many cells, or no impacts to begin with.
     pub flight: Option<UnprovedFlight>,
 }
 
@@ -150,13 +152,13 @@ struct Plane<'a> {
     height: f64,
 }
 
-/// A cell whose image is large is halved so often at most.
+/// Most halvings of a cell whose image is large.
 const HALVINGS: u8 = 24;
-/// A cell whose flights do not all end with one transversal impact is halved so often; those of the last may graze, and are followed.
+/// Most halvings of a cell whose flights do not all end with one transversal impact. After these its flights may graze, and are followed.
 const GRAZING: u8 = 12;
 
-/// Closes the region that some rectangles of impacts begin, each the cam's angle, rad, and the velocity relative to it, m/s: in squares
-/// of so many a degree, with so many cells at most.
+/// Closes the region that begins with some rectangles of impacts: the cam's angle, rad, and the velocity relative to it, m/s. The plane has
+/// so many squares per degree, and the region so many cells at most.
 pub fn trap(
     machine: &Machine,
     rpm: f64,
@@ -167,7 +169,7 @@ pub fn trap(
 ) -> Result<Region, OpenRegion> {
     // Ends of cells are doubles.
     let squares_per_degree = squares_per_degree.next_power_of_two();
-    /// So many squares on top of each other reach to what few impacts are faster than.
+    /// Squares of a column that reaches to a velocity which few impacts exceed.
     const SQUARES: f64 = 512.0;
     let height =
         elementary::exp2(elementary::log2(velocity_scale(machine) / SQUARES).floor()) / f64::from(squares_per_degree);
@@ -217,18 +219,18 @@ pub fn trap(
     Ok(plane.region(&cover, looks))
 }
 
-/// Which cells are in it.
+/// The cells of a region.
 struct Cover {
-    /// Nothing for a cell that is whole, and the side that it is halved across.
+    /// Examined cells: `None` for a whole cell, otherwise the side across which it is halved.
     known: HashMap<Cell, Option<usize>>,
-    /// Cells that are not looked at yet, with what touches them.
+    /// Cells to be examined, with the rectangles that touch them.
     pending: HashMap<Cell, Vec<Place>>,
-    /// Squares of a turn.
+    /// Squares per turn.
     turn: i64,
 }
 
 impl Cover {
-    /// Takes in all cells that a place touches.
+    /// Adds all cells that a rectangle touches.
     fn touch(&mut self, place: &Place) {
         let ends = |side: usize| place[side].low().floor() as i64..=place[side].high().floor() as i64;
         for across in ends(0) {
@@ -253,19 +255,19 @@ impl Cover {
 }
 
 impl Plane<'_> {
-    /// An angle, rad, and a velocity, m/s, in squares.
+    /// Converts an angle, rad, and a velocity, m/s, to squares.
     fn squares(&self, [angle, velocity]: [Interval; 2]) -> Place {
         [angle * (Interval::from(360.0) / Interval::TURN) * f64::from(self.per_degree), velocity / self.height]
     }
 
-    /// The same of impacts that follow those of a cell. As wide as a turn, or without an end, it says nothing of where they are.
+    /// Converts impacts that follow those of a cell to squares. An error where they are as wide as a turn or unbounded, and so not located.
     fn image(&self, contact: [Interval; 2]) -> Result<Place, UnprovedFlight> {
         let image = self.squares(contact);
         let turn = f64::from(360 * self.per_degree);
         if image.iter().all(|side| side.width() < turn) { Ok(image) } else { Err(UnprovedFlight::NoImpact) }
     }
 
-    /// Where the impacts of a cell are followed by impacts.
+    /// Encloses the impacts that follow those of a cell, or decides how to halve it.
     fn look(&self, cell: &Cell) -> Result<Look, UnprovedFlight> {
         let angle = cell.side(0) / f64::from(self.per_degree) * (Interval::TURN / 360.0);
         let place = [angle, cell.side(1) * self.height, self.omega];

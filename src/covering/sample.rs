@@ -1,41 +1,41 @@
-//! Where impacts along a line come back, by simulation: what to try to prove.
+//! Simulated impacts along a line, and where they return: candidates for a proof.
 
 use std::ops::ControlFlow;
 
 use super::HSet;
 use crate::simulate::{Event, EventKind, Machine, SimulateError};
 
-/// Impacts that are looked at after a start.
+/// Impacts followed after a start.
 pub(super) const MOST_IMPACTS: usize = 8;
 
 /// An impact in the coordinates of an h-set.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Arrival {
-    /// Turns of the cam, such that the angle is next to the h-set's.
+    /// Turns of the cam, chosen so that the angle is nearest to the h-set's.
     pub revolutions: i64,
     pub x: f64,
     pub y: f64,
 }
 
-/// A line along x, with what comes of each of its points.
+/// A line along x, with the impacts that follow each of its points.
 pub(crate) struct Line {
     /// The points.
     pub x: Vec<f64>,
-    /// For each point the impacts after it, in order, as far as it flies.
+    /// Impacts that follow each point, in order, up to the first rest.
     pub arrivals: Vec<Vec<Arrival>>,
 }
 
 impl Line {
-    /// What comes of points of an h-set at one y on a machine, up to so many impacts on.
+    /// Simulates points of an h-set at one y on a machine, each for up to so many impacts.
     pub fn new(machine: &Machine, set: &HSet, y: f64, x: Vec<f64>, impacts: usize) -> Self {
         let arrivals = x.iter().map(|x| arrivals(machine, set, [*x, y], impacts).unwrap_or_default()).collect();
         Self { x, arrivals }
     }
 }
 
-/// The impacts after a start; none where it cannot start.
+/// Returns the impacts after a start; `None` where the follower cannot start there.
 fn arrivals(machine: &Machine, set: &HSet, point: [f64; 2], impacts: usize) -> Option<Vec<Arrival>> {
-    /// Turns of the cam that an impact is waited for.
+    /// Longest simulation, turns of the cam.
     const MOST_REVOLUTIONS: u64 = 30;
     let [angle, velocity] = set.at(point);
     let start = angle.rem_euclid(360.0);
@@ -66,19 +66,19 @@ fn arrivals(machine: &Machine, set: &HSet, point: [f64; 2], impacts: usize) -> O
     Some(found)
 }
 
-/// A stretch of a line that goes across an h-set.
+/// A stretch of a line that is carried across an h-set.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Crossing {
     pub impacts: usize,
     pub revolutions: u64,
-    /// Where on the line, the ends beyond the h-set.
+    /// Range of x on the line; its ends are carried beyond the h-set.
     pub x: [f64; 2],
-    /// The range of y on the way across.
+    /// Range of y of the images inside the h-set's range of x.
     pub y: [f64; 2],
 }
 
 impl Crossing {
-    /// What goes across where either does.
+    /// The smallest crossing that contains both.
     pub fn hull(&self, other: &Self) -> Self {
         let hull = |one: [f64; 2], two: [f64; 2]| [one[0].min(two[0]), one[1].max(two[1])];
         Self { x: hull(self.x, other.x), y: hull(self.y, other.y), ..*self }
@@ -86,9 +86,9 @@ impl Crossing {
 }
 
 impl Line {
-    /// The stretches within a range of x that go across that range after some impacts, without a jump.
+    /// Returns the stretches within a range of x that are carried across that range after some impacts, without a jump.
     pub(super) fn crossings(&self, [low, high]: [f64; 2]) -> Vec<Crossing> {
-        /// Points on the way across at least; of fewer some may be on the two sides of a jump.
+        /// Fewest points of a crossing. With fewer, some may lie on the two sides of a jump.
         const FEWEST: usize = 6;
         let mut found = Vec::new();
         let from = self.x.partition_point(|x| *x <= low);
@@ -128,7 +128,7 @@ impl Line {
     }
 }
 
-/// The impacts of a run, degrees of the cam and m/s relative to it, that starts with one at an angle, rad, and a velocity.
+/// Impacts, degrees of the cam and m/s relative to it, of a run that starts with one at an angle, rad, and a velocity.
 pub(crate) fn impacts(
     machine: &Machine,
     [angle, velocity]: [f64; 2],

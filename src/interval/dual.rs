@@ -1,20 +1,20 @@
-//! Numbers with their derivatives by some unknowns: a formula that is fed with them gives its own.
+//! Numbers with their derivatives by some unknowns (forward differentiation): a formula evaluated with them returns its own derivatives.
 
 use std::ops::{Add, Mul, Neg, Sub};
 
 use super::Interval;
 
-/// A number, and what it changes by with each unknown.
+/// A number and its derivative by each unknown.
 #[derive(Clone, Copy, Debug)]
 pub struct Dual<const N: usize> {
-    /// What holds the number.
+    /// Enclosure of the number.
     pub value: Interval,
-    /// What holds its derivative by each.
+    /// Enclosure of the derivative by each unknown.
     pub by: [Interval; N],
 }
 
 impl<const N: usize> Dual<N> {
-    /// A function of something that changes by `by`: its value and its derivative.
+    /// Chain rule: the value of a function, and its derivative times the derivatives `by` of its argument.
     pub fn of(value: Interval, derivative: Interval, by: [Interval; N]) -> Self {
         Self { value, by: by.map(|by| derivative * by) }
     }

@@ -1,4 +1,4 @@
-//! Numbers over a box of unknowns, in mean value form: what they are at its centre, and how they change from there.
+//! Numbers over a box of unknowns, in mean value form: the value at the centre, and the derivatives over the box.
 //!
 //! With the centre m of a box X and the derivative of a number f anywhere in the box,
 //!
@@ -6,9 +6,9 @@
 //! f(X) is in f(m) + f'(X) (X - m)
 //! ```
 //!
-//! which overestimates by the square of the box, where intervals alone do by its size. A formula that is fed with such numbers
-//! gives its own: enclosure, value at the centre and derivative. Across a corner a derivative is the hull of both sides', and the
-//! same holds, since the way from the centre is straight.
+//! which overestimates by the square of the box's size, where plain intervals overestimate by its size. A formula evaluated with such
+//! numbers returns its own enclosure, value at the centre and derivatives. Across a corner a derivative is the hull of both sides'. The
+//! form still holds there, since the way from the centre is straight.
 
 use std::ops::{Add, Mul, Neg, Sub};
 
@@ -18,9 +18,9 @@ use super::dual::Dual;
 /// A number over a box, with N unknowns.
 #[derive(Clone, Copy, Debug)]
 pub struct MeanValueForm<'a, const N: usize> {
-    /// What holds it at the centre.
+    /// Enclosure at the centre.
     pub centre: Interval,
-    /// What holds it, and its derivatives, all over the box.
+    /// Enclosure of the number and of its derivatives over the whole box.
     pub whole: Dual<N>,
     /// X - m, for each unknown.
     over: &'a [Interval; N],
@@ -33,28 +33,28 @@ impl<'a, const N: usize> MeanValueForm<'a, N> {
         Self { centre, whole: Dual { value, ..whole }, over }
     }
 
-    /// A number that the unknowns leave as it is.
+    /// A number that does not depend on the unknowns.
     pub fn fixed(self, value: Interval) -> Self {
         Self { centre: value, whole: Dual { value, by: [Interval::from(0.0); N] }, ..self }
     }
 
-    /// One of the unknowns, with what it is at the centre.
+    /// One of the unknowns, with its value at the centre.
     pub fn unknown(which: usize, centre: Interval, over: &'a [Interval; N]) -> Self {
         let by = std::array::from_fn(|unknown| Interval::from(if unknown == which { 1.0 } else { 0.0 }));
         Self::new(centre, Dual { value: Interval::EVERYTHING, by }, over)
     }
 
-    /// A number that solves an equation: what it is at the centre and all over the box, and its derivatives.
+    /// A number that solves an equation, from its values at the centre and over the whole box, and its derivatives.
     pub fn solved(self, centre: Interval, whole: Interval, by: [Interval; N]) -> Self {
         Self::new(centre, Dual { value: whole, by }, self.over)
     }
 
-    /// A function of this number: its values at the centre and all over the box, and its derivative there.
+    /// A function of this number, from its values at the centre and over the whole box, and its derivative over the box.
     pub fn of(self, centre: Interval, whole: Interval, derivative: Interval) -> Self {
         Self::new(centre, Dual::of(whole, derivative, self.whole.by), self.over)
     }
 
-    /// What holds it all over the box.
+    /// Enclosure over the whole box.
     pub fn value(&self) -> Interval {
         self.whole.value
     }

@@ -1,8 +1,9 @@
-//! Intervals of doubles that certainly hold what a formula gives for every number of the intervals it is fed with.
+//! Intervals of doubles that enclose the result of a formula for all numbers in the intervals it is evaluated with.
 //!
-//! Each operation is rounded to nearest and its ends, but for an exact 0, moved outwards by one ulp, which is more than rounding took.
-//! Sine and cosine are alternating series, summed in doubles and widened by what rounding and the terms left out can make of them.
-//! What has no bound, or is no number, is everything: no comparison then holds, so nothing is concluded from it.
+//! Each operation is rounded to nearest. Then its ends, except an exact 0, are moved outwards by one ulp, which is more than the rounding
+//! error.
+//! Sine and cosine are alternating series, summed in doubles and widened by bounds on the rounding and on the omitted terms.
+//! A result without a bound, or NaN, becomes the whole real line: no comparison then holds, so nothing is concluded from it.
 
 pub mod dual;
 pub mod mean_value_form;
@@ -14,7 +15,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 use crate::elementary;
 use crate::tolerance;
 
-/// What a formula may be fed with: a double, or all doubles and what lies between them from one to another.
+/// Number type of a formula: a double, or an interval between two doubles.
 pub trait Number:
     Copy
     + From<f64>
@@ -30,11 +31,11 @@ pub trait Number:
 {
     /// Sine and cosine of an angle, rad.
     fn sin_cos(self) -> (Self, Self);
-    /// The root that is not negative.
+    /// The square root that is not negative.
     fn sqrt(self) -> Self;
-    /// The largest size of any number in it.
+    /// The largest absolute value in it.
     fn magnitude(self) -> f64;
-    /// What is left out of a sum, of at most this size; a sum of doubles leaves it out.
+    /// Remainder of a truncated sum, of at most this size. It is 0 for doubles.
     fn left_out(size: f64) -> Self;
 }
 
@@ -75,29 +76,29 @@ impl From<f64> for Interval {
 }
 
 impl Interval {
-    /// Every number.
+    /// The whole real line.
     pub const EVERYTHING: Self = Self { low: f64::NEG_INFINITY, high: f64::INFINITY };
-    /// The first 33 bits of pi/2, of which a multiple is exact, and the rest: what the double of pi/2 has more, and what it has less.
+    /// The first 33 bits of pi/2, whose multiples are exact, and an enclosure of the remaining part of pi/2.
     const QUARTER_HIGH: f64 = f64::from_bits(FRAC_PI_2.to_bits() & !0xf_ffff);
     const QUARTER_REST: Self = {
         let rest = FRAC_PI_2 - Self::QUARTER_HIGH + 6.123_233_995_736_766e-17;
         Self { low: rest.next_down(), high: rest.next_up() }
     };
     const QUARTER: Self = Self { low: FRAC_PI_2, high: FRAC_PI_2.next_up() };
-    /// 2 pi, and the double next to it that angles of the cam are counted by.
+    /// Enclosure of 2 pi; its lower end is the double that angles of the cam are counted by.
     pub const TURN: Self = Self { low: 4.0 * Self::QUARTER.low, high: 4.0 * Self::QUARTER.high };
 
-    /// From `low` to `high`; everything where that is no interval.
+    /// The interval from `low` to `high`, or the whole real line if `low <= high` does not hold.
     #[inline]
     pub fn new(low: f64, high: f64) -> Self {
         if low <= high { Self { low, high } } else { Self::EVERYTHING }
     }
 
-    /// The ends moved out by an ulp each, but those that are 0: a sum or a root is 0 only where it is so exactly. What is an ulp from 0 no
-    /// processor multiplies at full speed.
+    /// Moves each end outwards by an ulp, except an end that is 0: a sum or a root is 0 only where it is so exactly. Moving a 0 by an ulp
+    /// would also give a subnormal number, which no processor multiplies at full speed.
     ///
-    /// `x + u (1 + 2 u) |x|`, u half an ulp of 1, is rounded to the next double after x (Rump, Zimmermann, Boldo, Melquiond 2009), but
-    /// where x is so small that its ulp has no half.
+    /// `x + u (1 + 2 u) |x|`, u half an ulp of 1, is rounded to the next double after x (Rump, Zimmermann, Boldo, Melquiond 2009), unless x
+    /// is so small that its ulp has no half.
     #[inline]
     fn rounded(low: f64, high: f64) -> Self {
         const OUT: f64 = 0.5 * tolerance::ULP.value * (1.0 + tolerance::ULP.value);
@@ -110,7 +111,7 @@ impl Interval {
         }
     }
 
-    /// A product or a quotient with an end that is 0: of what is not 0, but too small for a double, it goes past it.
+    /// Widens a product or a quotient past an end at 0 where an exact result that is not 0 underflowed to 0.
     #[inline]
     fn unless_lost(self, is_lost: impl FnOnce() -> bool) -> Self {
         let at_zero = self.low == 0.0 || self.high == 0.0;
@@ -136,13 +137,13 @@ impl Interval {
         if middle.is_finite() { middle.clamp(self.low, self.high) } else { 0.0 }
     }
 
-    /// From its lower end to its upper one, rounded.
+    /// The width, rounded.
     #[inline]
     pub fn width(self) -> f64 {
         self.high - self.low
     }
 
-    /// Whether it holds 0.
+    /// Whether 0 lies in it.
     #[inline]
     pub fn holds_zero(self) -> bool {
         self.low <= 0.0 && 0.0 <= self.high
@@ -160,46 +161,46 @@ impl Interval {
         self.high < 0.0
     }
 
-    /// Whether it lies in another without its ends.
+    /// Whether it lies strictly inside another interval.
     #[inline]
     pub fn is_inside(self, other: Self) -> bool {
         other.low < self.low && self.high < other.high
     }
 
-    /// What it has in common with another, if anything.
+    /// Intersection with another interval; `None` if they are disjoint.
     #[inline]
     pub fn common(self, other: Self) -> Option<Self> {
         let (low, high) = (self.low.max(other.low), self.high.min(other.high));
         (low <= high).then_some(Self { low, high })
     }
 
-    /// The narrower of what two enclosures of one number leave for it.
+    /// Intersection of two enclosures of one number.
     #[inline]
     pub(crate) fn and(self, other: Self) -> Self {
         // Two enclosures of one number have it in common; were they to have nothing, either would be as wrong.
         self.common(other).unwrap_or(Self::EVERYTHING)
     }
 
-    /// From the lowest of both to the highest.
+    /// The smallest interval that contains both.
     #[inline]
     pub fn hull(self, other: Self) -> Self {
         Self { low: self.low.min(other.low), high: self.high.max(other.high) }
     }
 
-    /// Half of each number: exact.
+    /// Half of each number, exactly.
     #[inline]
     pub(crate) fn half(self) -> Self {
         Self { low: 0.5 * self.low, high: 0.5 * self.high }
     }
 
-    /// Its two halves, which have one number in common.
+    /// Its two halves, which share one number.
     #[inline]
     pub fn halves(self) -> [Self; 2] {
         let middle = self.middle();
         [Self { high: middle, ..self }, Self { low: middle, ..self }]
     }
 
-    /// Each number times itself.
+    /// Square of each number.
     #[inline]
     pub fn squared(self) -> Self {
         let product = self * self;
@@ -208,14 +209,14 @@ impl Interval {
 
     /// Sine and cosine of one double.
     fn circular(angle: f64) -> (Self, Self) {
-        /// Beyond so many quarters of a turn the angle left over is not known well enough to be worth it.
+        /// Beyond so many quarters of a turn the reduced angle is too inaccurate to be worth it.
         const MOST_QUARTERS: f64 = 1e6;
-        /// Of the eighth of a turn the twentieth power over 20! is below an ulp.
+        /// For an eighth of a turn the twentieth power over 20! is below an ulp.
         const TERMS: u32 = 9;
-        /// The sum in doubles is off by less than this, a unit in the last place of 1. Each step rounds its product and its quotient by
-        /// half a unit of what they are, at most 0.31, and its difference, below 1, by a quarter of one; and it is off by 0.31 times as much as
-        /// the step before, whose own part is 0.33 at most. That makes 0.31 + 0.25 + 0.31 * 0.33 < 0.67; the ends are rounded by a
-        /// quarter more, and what is left out is below a hundredth.
+        /// The sum in doubles has an error below this, a unit in the last place of 1. Each step rounds its product and its quotient, at
+        /// most 0.31, by half a unit of their size, and its difference, below 1, by a quarter of a unit. It also carries 0.31 times the
+        /// error of the step before, whose own part is 0.33 at most. That makes 0.31 + 0.25 + 0.31 * 0.33 < 0.67. The ends are rounded by a
+        /// quarter more, and the omitted terms are below a hundredth.
         const OFF: f64 = tolerance::ULP.value;
         let all = Self { low: -1.0, high: 1.0 };
         let quarters = (angle / FRAC_PI_2).round();
@@ -273,7 +274,7 @@ impl Number for Interval {
         (sin, cos)
     }
 
-    /// Everything where a part of it is below 0.
+    /// The whole real line if part of the interval is below 0.
     #[inline]
     fn sqrt(self) -> Self {
         Self::rounded(self.low.sqrt(), self.high.sqrt())
@@ -341,7 +342,7 @@ impl Mul for Interval {
 impl Div for Interval {
     type Output = Self;
 
-    /// Everything where the divisor may be 0.
+    /// The whole real line if the divisor may be 0.
     #[inline]
     fn div(self, other: Self) -> Self {
         if other.holds_zero() {
@@ -384,7 +385,7 @@ impl Mul<f64> for Interval {
 impl Div<f64> for Interval {
     type Output = Self;
 
-    /// Everything where the divisor is 0.
+    /// The whole real line if the divisor is 0.
     #[inline]
     fn div(self, number: f64) -> Self {
         if number == 0.0 {

@@ -1,4 +1,4 @@
-//! All roots of equations in a box: by halving it, until each part holds none, or certainly one.
+//! Finds all roots of equations in a box by bisection, until each part contains no root, or exactly one.
 //!
 //! Krawczyk's operator about the middle m of a box X, with C near the inverse of the derivative J,
 //!
@@ -6,8 +6,8 @@
 //! K(X) = m - C F(m) + (1 - C J(X)) (X - m)
 //! ```
 //!
-//! holds every root of X. Where it lies inside of X there is exactly one (Krawczyk 1969, Moore 1977); where the two have nothing
-//! in common there is none. A root next to the border of a box is looked for in a somewhat larger one.
+//! contains every root of X. If it lies inside X there is exactly one (Krawczyk 1969, Moore 1977); if the two are disjoint there is none. A
+//! root next to the border of a box is looked for in a somewhat larger box.
 
 use std::ops::Add as _;
 
@@ -16,11 +16,13 @@ use nalgebra::SMatrix;
 use super::{Interval, Number};
 use crate::tolerance;
 
-/// Where a number that falls is 0, near a guess: of `of` over any range, the value and the rate. None where that is not shown.
+/// Encloses the root, near a guess, of a function that decreases there. `of` returns the value and the derivative over any range. `None`
+/// where no root is proved.
 ///
-/// By `t - g(t)/g'(T)`, t the guess, over what it maps into itself: Newton's method on intervals. It holds the one root in T.
+/// Applies Newton's method on intervals: `t - g(t)/g'(T)`, t the guess, over a range T that it maps into itself. T contains exactly one
+/// root.
 pub fn falls_to_zero(guess: f64, of: impl Fn(Interval) -> [Interval; 2]) -> Option<Interval> {
-    /// Each time the range is widened, or narrowed.
+    /// Attempts, each of which widens or narrows the range.
     const TRIES: usize = 8;
     let guessed = Interval::from(guess);
     let [value, rate] = of(guessed);
@@ -45,31 +47,31 @@ pub fn falls_to_zero(guess: f64, of: impl Fn(Interval) -> [Interval; 2]) -> Opti
 /// A box: an interval for each unknown.
 pub type IntervalBox<const N: usize> = [Interval; N];
 
-/// What equations are over a box: the values of N functions, and their derivatives by each unknown.
+/// Equations over a box: the values of N functions, and their derivatives by each unknown.
 #[derive(Clone, Copy, Debug)]
 pub struct BoxValues<const N: usize> {
-    /// What must be 0.
+    /// The functions whose roots are sought.
     pub values: [Interval; N],
     /// Row by row.
     pub derivatives: [[Interval; N]; N],
-    /// Whether the box may hold a root that is wanted.
+    /// Whether the box may contain a wanted root.
     pub is_wanted: bool,
 }
 
-/// What is known of the roots in a box.
+/// Result of a search for all roots in a box.
 #[derive(Clone, Debug, Default)]
 pub struct Isolated<const N: usize> {
-    /// Boxes that hold one root each, as narrow as rounding allows.
+    /// Boxes that contain one root each, as narrow as rounding allows.
     pub roots: Vec<IntervalBox<N>>,
-    /// Boxes that halving again would tell no more of: nothing is known of them. All other roots are in `roots`.
+    /// Boxes that further halving would not decide: they may contain roots. All other roots are in `roots`.
     pub undecided: Vec<IntervalBox<N>>,
-    /// How many boxes were looked at.
+    /// Number of boxes examined.
     pub boxes: usize,
 }
 
 /// Isolates all roots in `place`, in at most `most` boxes.
 ///
-/// `over` tells the values and derivatives over a box, also somewhat outside of `place`.
+/// `over` returns the values and derivatives over a box, which may reach somewhat beyond `place`.
 pub fn isolate<const N: usize>(
     place: IntervalBox<N>,
     most: usize,
@@ -136,15 +138,15 @@ pub fn isolate<const N: usize>(
     found
 }
 
-/// What one look at a box tells.
+/// Result of examining one box.
 enum Look<const N: usize> {
-    /// It holds no root.
+    /// The box contains no root.
     Nothing,
-    /// Its roots, if any, are in this box.
+    /// All roots of the box, if any, are in this one.
     Within(IntervalBox<N>),
-    /// Its derivative may be singular.
+    /// The derivative may be singular.
     Unknown,
-    /// All values in it are 0 but for what rounding makes of one of them: no part of it would tell more.
+    /// All values are 0 up to rounding, so halving the box would decide nothing.
     Rounding,
 }
 
@@ -169,7 +171,7 @@ fn look<const N: usize>(here: &IntervalBox<N>, over: &impl Fn(&IntervalBox<N>) -
     image(here, &whole, &middle).map_or(Look::Unknown, Look::Within)
 }
 
-/// Krawczyk's operator; none where the derivative in the middle has no inverse.
+/// Krawczyk's operator; `None` if the derivative in the middle has no inverse.
 fn image<const N: usize>(here: &IntervalBox<N>, whole: &BoxValues<N>, middle: &BoxValues<N>) -> Option<IntervalBox<N>> {
     let derivative = SMatrix::<f64, N, N>::from_fn(|row, column| whole.derivatives[row][column].middle());
     let inverse = derivative.try_inverse().filter(|inverse| inverse.iter().all(|entry| entry.is_finite()))?;
@@ -193,7 +195,7 @@ fn step<const N: usize>(
     image(here, &over(here), &over(&here.map(|side| side.middle().into())))
 }
 
-/// A box about both, with room on each side for a root on the border.
+/// A box around both boxes, with room on each side for a root on the border.
 fn around<const N: usize>(here: &IntervalBox<N>, image: &IntervalBox<N>) -> IntervalBox<N> {
     std::array::from_fn(|side| {
         let room = 0.25 * here[side].width();
@@ -203,12 +205,12 @@ fn around<const N: usize>(here: &IntervalBox<N>, image: &IntervalBox<N>) -> Inte
     })
 }
 
-/// The box of the one root in `here`, narrowed until rounding keeps it from getting narrower.
+/// Narrows the box of the one root in `here` until rounding stops its width from shrinking.
 fn closed_in<const N: usize>(
     mut here: IntervalBox<N>,
     over: &impl Fn(&IntervalBox<N>) -> BoxValues<N>,
 ) -> IntervalBox<N> {
-    /// Once it is narrow each step squares what is left.
+    /// Newton's method converges quadratically once the box is narrow.
     const STEPS: usize = 100;
     for _ in 0..STEPS {
         let Some(next) = step(&here, over).and_then(|image| common(&image, &here)) else { break };

@@ -15,23 +15,23 @@ use nalgebra::{DVector, Matrix2, Vector2};
 /// The equations of one flight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Link {
-    /// L, by the impact that the flight leaves.
+    /// L: derivative by the impact that the flight leaves.
     pub leaving: Matrix2<f64>,
-    /// N, by the impact that it comes to.
+    /// N: derivative by the impact at which the flight arrives.
     pub coming: Matrix2<f64>,
 }
 
 /// Two equations with an upper triangle in `x_i`, and two without it: columns of `x_i`, `x_0` and `x_{i+1}`, and the right sides.
 type Reflected = [[f64; 4]; 7];
 
-/// The equations after the pass: of each impact but the first, and `last x_0 = left`.
+/// The equations after the pass: a block for each impact but the first, and `last x_0 = left`.
 struct Eliminated {
     rows: Vec<Reflected>,
     last: Matrix2<f64>,
     left: Vector2<f64>,
 }
 
-/// Reflects the equations from `first` on, so that in the column of that number no other has an entry (Householder).
+/// Reflects the equations from `first` on, so that only equation `first` keeps an entry in the column of that number (Householder).
 fn reflect(columns: &mut Reflected, first: usize) {
     let dot = |one: &[f64; 4], other: &[f64; 4]| {
         one[0] * other[0] + one[1] * other[1] + (one[2] * other[2] + one[3] * other[3])
@@ -84,14 +84,14 @@ fn eliminate(links: &[Link], right: &DVector<f64>) -> Option<Eliminated> {
     Some(Eliminated { rows, last: leaving + coming, left })
 }
 
-/// The determinant of the equations; of none at all 1.
+/// Determinant of the equations; 1 if there are none.
 pub(super) fn determinant(links: &[Link]) -> f64 {
     let Some(Eliminated { rows, last, .. }) = eliminate(links, &DVector::zeros(2 * links.len())) else { return 1.0 };
     // Two reflections have the determinant 1, and to bring x_0 to the end moves two columns past pairs of others.
     rows.iter().map(|columns| columns[0][0] * columns[1][1]).product::<f64>() * last.determinant()
 }
 
-/// The unknowns, two for each impact in turn; where the equations do not determine them `None`, or not finite.
+/// Solves for the unknowns, two for each impact in turn. Where the equations do not determine them: `None`, or values that are not finite.
 pub(super) fn solve(links: &[Link], right: &DVector<f64>) -> Option<DVector<f64>> {
     let Eliminated { rows, last, left } = eliminate(links, right)?;
     let first = last.try_inverse()? * left;

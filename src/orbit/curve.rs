@@ -10,21 +10,21 @@ use nalgebra::{DMatrix, DVector};
 use crate::bracket::{Width, halve};
 use crate::tolerance;
 
-/// Equations whose solutions form a curve; unknowns are in units in which their changes are of one size.
+/// Equations whose solutions form a curve. Unknowns are scaled so that their changes are of one size.
 pub trait Equations {
-    /// Why they cannot be evaluated somewhere.
+    /// Reason why the equations cannot be evaluated at some place.
     type Error;
 
-    /// What n - 1 equations are off by at n unknowns, and its derivative, (n - 1) x n.
+    /// Residual of n - 1 equations at n unknowns, and its derivative, (n - 1) x n.
     fn linear(&self, unknowns: &DVector<f64>) -> Result<(DVector<f64>, DMatrix<f64>), Self::Error>;
 }
 
-/// Why there is no next point.
+/// Reason why there is no next point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum NoPoint<E> {
     /// The equations cannot be evaluated.
     Outside(E),
-    /// Newton's method does not settle.
+    /// Newton's method does not converge.
     NotClosed,
 }
 
@@ -34,7 +34,7 @@ impl<E> From<E> for NoPoint<E> {
     }
 }
 
-/// A point of the curve, its unit tangent, and what Newton's method took to get there.
+/// A point of the curve, its unit tangent, and the number of Newton steps that it took.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CurvePoint {
     pub unknowns: DVector<f64>,
@@ -44,14 +44,14 @@ pub struct CurvePoint {
     pub steps: usize,
 }
 
-/// A tangent at `unknowns` where none is known, of either sign.
+/// Unit tangent at `unknowns`, of either sign, where no earlier tangent is known.
 pub fn first_tangent<E: Equations>(equations: &E, unknowns: &DVector<f64>) -> Result<DVector<f64>, NoPoint<E::Error>> {
     let (_, jacobian) = equations.linear(unknowns)?;
     let [direction] = least_seen(jacobian).ok_or(NoPoint::NotClosed)?;
     Ok(direction)
 }
 
-/// The `N` unit directions that a matrix makes least of, the least first; none where it is not finite or has fewer columns.
+/// The `N` unit directions with the smallest images under a matrix, the smallest first. `None` where it is not finite or has fewer columns.
 pub fn least_seen<const N: usize>(matrix: DMatrix<f64>) -> Option<[DVector<f64>; N]> {
     let [rows, columns] = [matrix.nrows(), matrix.ncols()];
     // As many rows as columns, of zeros where there are fewer: a direction for each column, from most to least.
@@ -61,7 +61,7 @@ pub fn least_seen<const N: usize>(matrix: DMatrix<f64>) -> Option<[DVector<f64>;
     least.iter().flatten().all(|entry| entry.is_finite()).then(|| least.try_into().ok())?
 }
 
-/// The point of the curve in the plane across `along` at a distance `step` from `from`.
+/// Solves for the point of the curve in the plane across `along` at a distance `step` from `from`.
 pub fn step<E: Equations>(
     equations: &E,
     from: &DVector<f64>,
@@ -71,7 +71,7 @@ pub fn step<E: Equations>(
     closed(equations, from, along, step, from + along * step)
 }
 
-/// The same from a guess.
+/// Solves for the point of [`step`] from a guess.
 pub fn closed<E: Equations>(
     equations: &E,
     from: &DVector<f64>,
@@ -79,7 +79,7 @@ pub fn closed<E: Equations>(
     step: f64,
     guess: DVector<f64>,
 ) -> Result<CurvePoint, NoPoint<E::Error>> {
-    /// A step that needs more is too long.
+    /// Most Newton steps. A step along the curve that needs more is too long.
     const STEPS: usize = 12;
     let mut unknowns = guess;
     let mut last = f64::INFINITY;
@@ -108,15 +108,15 @@ pub fn closed<E: Equations>(
     Err(NoPoint::NotClosed)
 }
 
-/// A direction as long as 1; an error where it is none.
+/// Scales a direction to length 1. An error where its length is 0 or not finite.
 pub fn unit<E>(direction: DVector<f64>) -> Result<DVector<f64>, NoPoint<E>> {
     let length = direction.norm();
     if length.is_normal() { Ok(direction / length) } else { Err(NoPoint::NotClosed) }
 }
 
-/// The last value that is not refused on the way from one to `beyond`, which is; `None` where it is not.
+/// Last value between `value` and `beyond` that is not refused. `None` if `beyond` is not refused.
 pub fn limit(value: f64, beyond: f64, is_refused: impl Fn(f64) -> bool) -> Option<f64> {
-    /// Halvings that leave nothing of an interval of doubles.
+    /// Halvings that narrow an interval of doubles down to neighbours.
     const BINARY_DIGITS: u32 = 60;
     if !is_refused(beyond) {
         return None;

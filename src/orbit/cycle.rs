@@ -1,15 +1,15 @@
 //! A periodic orbit as the sequence of its impacts, and the equations that close it.
 //!
-//! Struck i is on a known segment of the cam, at angle `t_i` with velocity `v_i` before it. It is left with
-//! `w_i = (1 + r) c'_i - r v_i`, and the flight to the next one, over `t_{i+1} - t_i`, must end there:
+//! Impact i is on a known segment of the cam, at angle `t_i` with velocity `v_i` before it. The follower leaves it with `w_i = (1 + r) c'_i
+//! - r v_i`, and the flight to the next impact, over `t_{i+1} - t_i`, must end there:
 //!
 //! ```text
 //! q(t_{i+1}) = c_{i+1}        v(t_{i+1}) = v_{i+1}        the last is followed by the first, n revolutions on
 //! ```
 //!
-//! Each segment's law goes on smoothly past its ends, so the equations are smooth wherever an impact is: an orbit can be
-//! followed through a corner as if its law went on, and the corner is where an angle passes it. Whether the orbit is one of
-//! the cam as it is, is for the simulator to say ([`Cycle::departure`]).
+//! Each segment's law continues smoothly past its ends, so the equations are smooth wherever an impact is. An orbit can be followed through
+//! a corner as if its law went on; the corner is where an angle passes it. The simulator decides whether the orbit is one of the actual cam
+//! ([`Cycle::departure`]).
 
 use std::f64::consts::TAU;
 
@@ -26,11 +26,11 @@ use crate::tolerance;
 /// One impact of a cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Impact {
-    /// How often the cam has passed angle 0 since the cycle's start; counted modulo the cycle's revolutions.
+    /// Number of times that the cam has passed angle 0 since the cycle's start; counted modulo the cycle's revolutions.
     pub revolution: i64,
     /// Index of the segment of the cam whose law holds.
     pub segment: usize,
-    /// Cam angle, rad; outside of the segment where its law is continued.
+    /// Cam angle, rad. It may lie outside of the segment, where the segment's law is continued.
     pub cam_angle: f64,
     /// v-, m/s.
     pub velocity_before: f64,
@@ -43,7 +43,7 @@ impl Impact {
     }
 }
 
-/// A motion that repeats, as its impacts in order: at least one.
+/// A periodic motion, as its impacts in order: at least one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cycle {
     /// Turns of the cam in one period.
@@ -51,7 +51,7 @@ pub struct Cycle {
     pub impacts: Vec<Impact>,
 }
 
-/// A cycle that the equations of no machine are met by: Newton's method found none from the guess.
+/// Newton's method found no cycle near the guess that meets the equations.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error(
     "no periodic orbit near the guess: after {steps} Newton steps the equations are off by {residual:e} of their size"
@@ -61,7 +61,7 @@ pub struct NotClosed {
     pub residual: f64,
 }
 
-/// What the equations need of one impact.
+/// Quantities of one impact that the equations need.
 pub(super) struct Struck {
     pub(super) lift: Lift,
     /// c', m/s.
@@ -70,7 +70,7 @@ pub(super) struct Struck {
 }
 
 impl Cycle {
-    /// The cycle that the impacts of `revolutions` suggest.
+    /// Guesses a cycle from the impacts of a run over `revolutions`.
     pub fn of_events(revolutions: u64, events: &[Event]) -> Self {
         let impact = |event: &Event| Impact {
             revolution: event.revolution as i64,
@@ -90,12 +90,12 @@ impl Cycle {
         Struck { lift, cam_velocity, leaving: State { position: lift.value, velocity } }
     }
 
-    /// How fast follower and cam approach one another at an impact, m/s: `c' - v-`.
+    /// Speed at which follower and cam approach one another at an impact, m/s: `c' - v-`.
     pub fn approach(&self, machine: &Machine, index: usize) -> f64 {
         self.struck(machine, index).cam_velocity - self.impacts[index].velocity_before
     }
 
-    /// How often the cam passes angle 0 from one impact to the next.
+    /// Number of times that the cam passes angle 0 from one impact to the next.
     pub(super) fn turns(&self, index: usize) -> f64 {
         let next = (index + 1) % self.impacts.len();
         let later = if next == 0 { self.revolutions as f64 } else { 0.0 };
@@ -108,7 +108,7 @@ impl Cycle {
         self.turns(index) * TAU + (self.impacts[next].cam_angle - self.impacts[index].cam_angle)
     }
 
-    /// How near on the cam another impact is to one, rad.
+    /// Distance on the cam from one impact to the nearest other, rad.
     pub fn nearest_other(&self, impact: usize) -> f64 {
         let others = self.impacts.iter().enumerate().filter(|(index, _)| *index != impact);
         let near = |other: &Impact| apart(other.cam_angle, self.impacts[impact].cam_angle);
@@ -120,7 +120,7 @@ impl Cycle {
         (self.struck(machine, index).leaving, self.turn(index) / machine.angular_velocity())
     }
 
-    /// What the equations are off by: for each flight the position, m, and the velocity over omega, m/rad.
+    /// Residual of the equations: for each flight the position, m, and the velocity over omega, m/rad.
     pub fn residual(&self, machine: &Machine) -> DVector<f64> {
         self.equations(machine).0
     }
@@ -140,8 +140,8 @@ impl Cycle {
         (residual, rows)
     }
 
-    /// The determinant of that derivative where deviations are `multiplier` times as much one period on, with velocities over
-    /// omega by a unit, m/rad: 0 for a multiplier of the orbit. Each row has the length 1, so that it is 1 at most (Hadamard).
+    /// Determinant of that derivative for deviations that grow by `multiplier` in one period, with velocities over omega by a unit, m/rad.
+    /// It is 0 for a multiplier of the orbit. Each row has the length 1, so that it is 1 at most (Hadamard).
     pub fn characteristic(&self, machine: &Machine, multiplier: f64, velocity: f64) -> f64 {
         let (_, mut links) = self.equations(machine);
         let is_alone = links.len() == 1;
@@ -162,7 +162,7 @@ impl Cycle {
         chain::determinant(&links)
     }
 
-    /// Both, flight by flight.
+    /// Residual and its derivatives, flight by flight.
     fn equations(&self, machine: &Machine) -> (DVector<f64>, Vec<Link>) {
         let (count, omega, r) = (self.impacts.len(), machine.angular_velocity(), machine.restitution());
         let flight = machine.flight();
@@ -202,7 +202,7 @@ impl Cycle {
         moved
     }
 
-    /// The cycle near this one that closes, by Newton's method, and the last correction over the orbit's size.
+    /// Closes a cycle near this one by Newton's method. Returns it with the last correction over the orbit's size.
     pub fn closed(&self, machine: &Machine) -> Result<(Self, f64), NotClosed> {
         /// Newton's method doubles the digits once it is near; a guess far away takes longer.
         const STEPS: usize = 40;
@@ -236,7 +236,7 @@ impl Cycle {
         Err(NotClosed { steps: STEPS, residual: last })
     }
 
-    /// The impacts in the order that a cam meets them from `cam_angle`, rad, in `[0, 2 pi)`, each with the angle turned.
+    /// The impacts in the order in which the cam meets them from `cam_angle`, rad, in `[0, 2 pi)`, each with the angle turned.
     fn turned_from(&self, cam_angle: f64) -> Vec<(f64, usize)> {
         let period = self.revolutions as f64 * TAU;
         let turned = |impact: &Impact| {
@@ -267,21 +267,22 @@ impl Cycle {
         (state, machine.flight().propagator(since) * matrix)
     }
 
-    /// The determinant of that matrix, `r^(2 n) e^(-b T/m)` with n impacts in a period T: of the matrix itself, where a small
-    /// deviation grows a millionfold on the way, rounding leaves none of it.
+    /// Determinant of the matrix of one period, `r^(2 n) e^(-b T/m)` with n impacts in a period T. Computed from the matrix itself, it
+    /// would be lost to rounding where a small deviation grows a millionfold on the way.
     pub fn determinant(&self, machine: &Machine) -> f64 {
         let period = self.revolutions as f64 * TAU / machine.angular_velocity();
         let struck = machine.restitution().powi(2 * self.impacts.len() as i32);
         struck * elementary::exp(-2.0 * machine.flight().zeta() * period)
     }
 
-    /// `det(mu I - M) = mu^2 - mu tr M + det M` of that matrix M, for the multiplier `mu` 1 or -1: 0 where the orbit has it.
+    /// `det(mu I - M) = mu^2 - mu tr M + det M` of the matrix M of one period, for `mu` 1 or -1. It is 0 where the orbit has this
+    /// multiplier.
     pub(super) fn missing(&self, machine: &Machine, multiplier: f64) -> f64 {
         let (_, matrix) = self.at_section(machine, 0.0);
         1.0 - multiplier * matrix.trace() + self.determinant(machine)
     }
 
-    /// What an impact's saltation matrix is made of.
+    /// Quantities that determine an impact's saltation matrix.
     pub fn rates(&self, machine: &Machine, index: usize) -> ImpactRates {
         let struck = self.struck(machine, index);
         let omega = machine.angular_velocity();
@@ -315,7 +316,7 @@ impl Cycle {
     }
 }
 
-/// The size of the cam's lift, m: what lengths of an orbit are measured by. Of a cam that does not move, how far it is from 0.
+/// Span of the cam's lift, m, by which lengths of an orbit are measured. For a cam that does not move, its distance from 0.
 pub fn lift_size(machine: &Machine) -> f64 {
     let segments = machine.cam().segments();
     let low = segments.iter().fold(f64::INFINITY, |low, segment| low.min(segment.bounds.lift[0]));
@@ -325,8 +326,8 @@ pub fn lift_size(machine: &Machine) -> f64 {
     if span > 4.0 * tolerance::RANGE_ROUNDING.value * lift { span } else { lift.max(f64::MIN_POSITIVE) }
 }
 
-/// The machine's own speed, rpm: what it would turn at if the cam moved with the follower's own acceleration. `None` where there is
-/// no force that would give it one; of a damper alone it is `b/m`.
+/// Natural speed of the machine, rpm: the speed at which the cam would move with the follower's own acceleration. `None` where no force
+/// gives it one. With a damper alone it is `b/m`.
 ///
 /// ```text
 /// omega^2 = k/m + |g + k (c_min - rest)/m| / (c_max - c_min)
@@ -338,7 +339,7 @@ pub fn own_speed(machine: &Machine) -> Option<f64> {
     (squared > 0.0 && squared.is_finite()).then(|| squared.sqrt() * 60.0 / TAU)
 }
 
-/// The length of a step: angles as they are, velocities over omega by `size`.
+/// Length of a step: angles count as they are, velocities over omega in units of `size`.
 fn relative_length(step: &DVector<f64>, size: f64) -> f64 {
     let square = |(index, entry): (usize, &f64)| (if index % 2 == 0 { *entry } else { *entry / size }).powi(2);
     step.iter().enumerate().map(square).sum::<f64>().sqrt()

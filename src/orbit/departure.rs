@@ -1,4 +1,4 @@
-//! Whether a cycle that closes is an orbit of the cam as it is: its flights, simulated one by one.
+//! Checks whether a cycle that closes is an orbit of the actual cam, by simulating its flights one by one.
 
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
@@ -7,22 +7,22 @@ use super::cycle::Cycle;
 use crate::simulate::{Event, Goal, Machine, SimulateError};
 use crate::tolerance;
 
-/// How the motion of the cam as it is leaves a cycle.
+/// Event at which the motion on the actual cam leaves a cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Departure {
     /// An impact lies outside of its segment.
     Beyond { impact: usize },
-    /// The follower would come out of the cam at an impact, or touches it only.
+    /// The follower would come out of the cam at an impact, or only touches it.
     Tangent { impact: usize },
-    /// The flight that starts at this impact meets the cam before it should.
+    /// The flight that starts at this impact meets the cam too early.
     Earlier {
         /// Index of the impact that the flight starts at.
         impact: usize,
         event: Event,
-        /// How far from that impact, rad.
+        /// Angle turned since that impact, rad.
         turned: f64,
     },
-    /// The flight that starts at this impact does not come to the next; or there is none, since the follower sticks.
+    /// The flight that starts at this impact does not arrive at the next. Or there is no flight, since the follower sticks.
     Elsewhere {
         /// Index of the impact that the flight starts at.
         impact: usize,
@@ -30,13 +30,13 @@ pub enum Departure {
 }
 
 impl Cycle {
-    /// Where the cam as it is leaves this cycle, flight by flight, by simulation; `None` where it does not.
+    /// Returns where the motion on the actual cam leaves this cycle, by simulation of each flight. `None` where it does not.
     pub fn departure(&self, machine: &Machine) -> Result<Option<Departure>, SimulateError> {
         self.departure_but_for(machine, None)
     }
 
-    /// The same of an orbit that grazes, one of whose impacts is a `touch`: the flight that it cuts in two is simulated up to
-    /// there, and on from where the gap has opened again.
+    /// Checks an orbit that grazes, one of whose impacts is a `touch`. The flight that the touch cuts in two is simulated up to there, and
+    /// on from where the gap has opened again.
     pub fn departure_but_for(
         &self,
         machine: &Machine,
@@ -79,8 +79,8 @@ impl Cycle {
         Ok(None)
     }
 
-    /// The first event after an impact, seen from `since`, rad, on, and the angle turned to it from the impact, rad; `None`
-    /// where there is none for somewhat longer than `turn`.
+    /// Returns the first event after an impact, seen from `since`, rad, on, and the angle turned to it from the impact, rad. `None` where
+    /// there is none for somewhat longer than `turn`, or the follower does not leave the cam.
     fn next_event(
         &self,
         machine: &Machine,
@@ -90,7 +90,7 @@ impl Cycle {
     ) -> Result<Option<(Event, f64)>, SimulateError> {
         let impact = &self.impacts[index];
         let struck = self.struck(machine, index);
-        // A impact that rounding puts outside of its revolution is at the end of it.
+        // An impact that rounding puts outside of its revolution is at the end of it.
         let on_cam = |angle: f64| if (0.0..TAU).contains(&angle) { angle } else { 0.0 };
         let from = on_cam(impact.cam_angle);
         let mut motion = if since > 0.0 {

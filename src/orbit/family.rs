@@ -1,4 +1,4 @@
-//! Machines that differ in a few numbers: what a branch of orbits is followed through.
+//! Machines that differ in a few numbers, along which a branch of orbits is followed.
 
 use crate::cam::Cam;
 use crate::model::{Model, ModelError};
@@ -13,16 +13,16 @@ pub enum Parameter {
     Field(String),
 }
 
-/// Why there is no machine with these numbers.
+/// Reason why there is no machine with these numbers.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum FamilyError {
-    /// The model does not allow them.
+    /// The model does not allow the numbers.
     #[error("{0}")]
     Model(#[from] ModelError),
     /// The cam would not turn.
     #[error("{rpm} rpm: {ABOVE_0}")]
     Speed { rpm: f64 },
-    /// A segment of the cam would have no width, or one that has none would have some: the segments of impacts would be others.
+    /// A segment of the cam would lose its width, or one without width would gain some, so that segments would be counted differently.
     #[error("the cam would have {found} segments instead of {own}")]
     Segments { own: usize, found: usize },
 }
@@ -30,7 +30,7 @@ pub enum FamilyError {
 const ABOVE_0: &str = "the speed must be a finite number above 0";
 
 impl FamilyError {
-    /// What is allowed, without the number that is not.
+    /// The rule that is broken, without the number that breaks it.
     pub fn rule(&self) -> String {
         match self {
             Self::Model(error) => error.rule(),
@@ -41,7 +41,7 @@ impl FamilyError {
 }
 
 impl Parameter {
-    /// The parameter that a user calls `name`: `rpm`, a dotted path, or the end of one that no other field has.
+    /// Finds the parameter that a user calls `name`: `rpm`, a dotted path, or the end of one that no other field has.
     pub fn named(model: &Model, name: &str) -> Result<Self, FamilyError> {
         if name == "rpm" {
             return Ok(Self::Speed);
@@ -49,7 +49,7 @@ impl Parameter {
         Ok(Self::Field(model.path_of(name, &["rpm"])?.into()))
     }
 
-    /// Its name in tables and messages.
+    /// Name in tables and messages.
     pub fn name(&self) -> &str {
         match self {
             Self::Speed => "rpm",
@@ -57,7 +57,7 @@ impl Parameter {
         }
     }
 
-    /// Its value in `model` turning at `rpm`.
+    /// Value in `model` turning at `rpm`.
     pub fn value(&self, model: &Model, rpm: f64) -> Option<f64> {
         match self {
             Self::Speed => Some(rpm),
@@ -82,7 +82,7 @@ impl Family {
         Ok(Self { model: model.clone(), machine, rpm, free })
     }
 
-    /// The machines of `model`, whose own is there already, at `rpm`, with `free` to be chosen.
+    /// The machines of `model`, whose own is `machine`, at `rpm`, with `free` to be chosen.
     pub(crate) fn of(model: &Model, machine: &Machine, rpm: f64, free: Vec<Parameter>) -> Self {
         Self { model: model.clone(), machine: machine.clone(), rpm, free }
     }
@@ -106,7 +106,7 @@ impl Family {
         Ok(self.changed(values)?.1.unwrap_or_else(|| self.model.clone()))
     }
 
-    /// The speed, rpm, and the model with these values of the free numbers; none where the speed alone is free.
+    /// Speed, rpm, and model with these values of the free numbers. The model is `None` where only the speed is free.
     fn changed(&self, values: &[f64]) -> Result<(f64, Option<Model>), FamilyError> {
         let (mut rpm, mut model) = (self.rpm, None);
         for (parameter, value) in self.free.iter().zip(values) {
@@ -120,8 +120,8 @@ impl Family {
         Ok((rpm, model))
     }
 
-    /// The machine with these values of the free numbers, and its speed, rpm; refused where the cam has another number of segments, as
-    /// cycles name theirs by index.
+    /// Machine with these values of the free numbers, and its speed, rpm. An error where the cam has another number of segments, since
+    /// cycles name segments by index.
     pub fn machine_of_cycles(&self, values: &[f64]) -> Result<(Machine, f64), FamilyError> {
         let (machine, rpm) = self.machine(values)?;
         match [&self.machine, &machine].map(|machine| machine.cam().segments().len()) {

@@ -1,6 +1,6 @@
 //! The long-run motion that a run ends on, and the budget of revolutions within which it is judged.
 //!
-//! One rule decides it for every command. [`super::runs`] follows a run until it settles on an orbit, stays on the cam or rests there;
+//! Every command uses this one rule. [`super::runs`] follows a run until it settles on an orbit, stays on the cam or rests there;
 //! `study::survey` judges several at once, and lets those that wander share the revolutions that decide whether such motions ever rest.
 
 use std::f64::consts::LN_2;
@@ -14,49 +14,50 @@ use crate::simulate::ImpactTally;
 use crate::simulate::Record;
 use crate::tolerance;
 
-/// For how long runs are followed before it is said what they come to.
+/// Revolutions for which runs are followed before their long-run motion is decided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Budget {
-    /// Revolutions within which a run is to settle.
+    /// Revolutions within which a run should settle.
     pub transient: u64,
-    /// Revolutions after that over which the growth of a deviation is taken, where it settles on nothing; up to [`Self::RECORDS`] times as
-    /// many where that tells nothing yet.
+    /// Revolutions after that over which the growth of a deviation is recorded, if the run settles on nothing. Up to [`Self::RECORDS`]
+    /// times as many are recorded while the growth is undecided.
     pub record: u64,
     /// The longest period looked for, revolutions.
     pub longest: u64,
-    /// Revolutions that runs which settle on nothing are followed for before their growth is taken, all together: a chaos that is left once in
-    /// a tenth of them is seen to be left.
+    /// Revolutions for which all runs that settle on nothing are followed together, before their growth is recorded. Chaos that is left
+    /// once in a tenth of them is seen to be left.
     pub patience: u64,
 }
 
 impl Budget {
     /// The default of `speeds`, `basins`, `simulate` and `diagram --attractors`: all runs of a speed share the patience, and one run can afford it.
     pub const SURVEY: Self = Self { transient: 200, record: 1600, longest: 32, patience: 100_000 };
-    /// The default of `chart` and `diagram`: they run thousands of points, and a chaotic one costs as many revolutions as it is followed.
+    /// The default of `chart` and `diagram`: they run thousands of points, and a chaotic run costs all the revolutions for which it is
+    /// followed.
     pub const CHART: Self = Self { transient: 300, record: 100, longest: 32, patience: 0 };
-    /// The default of `design`: a rare rest leads to no load that is not there without it.
+    /// The default of `design`: a rare rest causes no load that does not occur without it.
     pub const DESIGN: Self = Self { transient: 200, record: 200, longest: 32, patience: 0 };
 
-    /// Records of a run of which nothing can be told, before it is undecided.
+    /// Most records of a run, after which it is undecided.
     pub const RECORDS: u64 = 8;
-    /// The most revolutions that an option of a budget takes.
+    /// Most revolutions that an option of a budget accepts.
     pub const MOST: u64 = 1_000_000_000;
 
-    /// Revolutions that are waited for the next rest of a follower that has rested.
+    /// Revolutions within which a follower that has rested should rest again.
     pub fn rest(&self) -> u64 {
-        /// Of the patience.
+        /// The patience is divided by this.
         const SHARE: u64 = 5;
         self.transient.max(self.patience / SHARE)
     }
 
-    /// Revolutions that are waited for the next rest of a follower that rested while its growth was recorded: rests are rarer there.
+    /// Revolutions allowed for the next rest of a follower that rested while its growth was recorded, since rests are rarer there.
     pub fn later_rest(&self) -> u64 {
         self.rest().max(self.transient.saturating_add(self.record))
     }
 
-    /// Revolutions of a block, of which the growth is the mean.
+    /// Revolutions of a block. The growth is the mean over blocks.
     pub fn block(&self) -> u64 {
-        /// Blocks of a record at least, and revolutions of one at most.
+        /// Fewest blocks of a record, and most revolutions of one.
         const PARTS: u64 = 8;
         const LONGEST: u64 = 25;
         (self.record / PARTS).clamp(1, LONGEST)
@@ -70,28 +71,28 @@ pub enum LongRun {
     PermanentContact,
     /// A stable periodic orbit that does not rest on the cam.
     Orbit(PeriodicOrbit),
-    /// It rests on the cam, and repeats what it did after it rested there before.
+    /// The follower rests on the cam, and repeats its motion from an earlier rest.
     Sticking(StickingOrbit),
-    /// None of these in the revolutions that were run, and small deviations grow exponentially.
+    /// None of these within the revolutions of the run, and small deviations grow exponentially.
     Chaotic(Recorded),
-    /// None of these, and no growth that is above 0 by its error, or none that is faster than that of a power.
+    /// None of these, and the growth is not above 0 by its error, or not faster than that of a power.
     Undecided(Recorded),
 }
 
 /// Growth and impacts of a motion that settles on nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Recorded {
-    /// The growth of a small deviation a revolution, a natural logarithm.
+    /// Growth of a small deviation per revolution, a natural logarithm.
     pub growth: Estimate,
-    /// How much of it there was over the first half of the record and over the second: not by revolution, but in all.
+    /// Growth over the first half of the record and over the second, in all, not per revolution.
     pub halves: [f64; 2],
-    /// The impacts.
+    /// Tally of the impacts.
     pub met: ImpactTally,
-    /// Revolutions, all together.
+    /// Revolutions of all runs together.
     pub revolutions: u64,
-    /// The number of runs that were recorded.
+    /// Number of runs recorded.
     pub runs: u64,
-    /// Whether any of them rested on the way.
+    /// Whether any run rested on the way.
     pub rested: bool,
 }
 
@@ -113,17 +114,17 @@ impl Recorded {
         Self { growth, halves: [half(0), half(1)], met, revolutions, runs, rested }
     }
 
-    /// Revolutions of each run, in the mean.
+    /// Mean revolutions per run.
     pub fn each(self) -> u64 {
         self.revolutions / self.runs.max(1)
     }
 
-    /// Whether the motion has impacts, and deviations grow by their error, and exponentially.
+    /// Whether the motion has impacts, and deviations grow by more than their error, and exponentially.
     ///
-    /// A deviation that grows as a power n^d of the revolutions, as those of a motion without loss do, gains d ln 2 over the second half of a
-    /// record, and far more over the first. What grows exponentially gains as much over either half, but for chance.
+    /// A deviation that grows as a power n^d of the revolutions, as in a motion without loss, gains d ln 2 over the second half of a
+    /// record, and far more over the first. An exponential gains as much over either half, except for chance.
     fn is_chaotic(&self) -> bool {
-        /// The power that is told from an exponential.
+        /// Power that is distinguished from an exponential.
         const POWER: f64 = 3.0;
         let (growth, [first, second]) = (self.growth, self.halves);
         let is_seen = growth.error < tolerance::CHAOTIC_EXPONENT.value * growth.value;
@@ -147,7 +148,7 @@ pub enum Kind {
 named!(Kind);
 
 impl LongRun {
-    /// Its kind.
+    /// Kind of the motion.
     pub fn kind(&self) -> Kind {
         match self {
             Self::PermanentContact => Kind::Stays,
@@ -158,10 +159,10 @@ impl LongRun {
         }
     }
 
-    /// Whether two runs of one machine end alike.
+    /// Whether two runs of one machine end on the same motion.
     ///
-    /// Chaos, and a motion that bounces as chaos does until it rests, are taken for one motion: how soon a run of it rests is
-    /// chance. Only many runs can tell chaos that does not rest beside one that does.
+    /// Chaos counts as the same motion as one that bounces chaotically until it rests, since chance decides how soon a run rests. Only many
+    /// runs can distinguish chaos that does not rest from chaos that does.
     pub fn is_same(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Orbit(one), Self::Orbit(two)) => one.is_same(two),
@@ -173,13 +174,13 @@ impl LongRun {
         }
     }
 
-    /// By what was recorded of a motion that settles on nothing.
+    /// Decides by the record of a motion that settles on nothing.
     pub fn by_growth(recorded: Recorded) -> Self {
         if recorded.is_chaotic() { Self::Chaotic(recorded) } else { Self::Undecided(recorded) }
     }
 
-    /// The growth of a small deviation a revolution, a natural logarithm: of an orbit by its multipliers; minus infinity where the follower
-    /// rests; else the mean over the record.
+    /// Growth of a small deviation per revolution, a natural logarithm. For an orbit it follows from the multipliers. It is minus infinity
+    /// where the follower rests, and otherwise the mean over the record.
     pub fn growth(&self) -> Estimate {
         let exactly = |value| Estimate { value, error: 0.0, error_is: ErrorIs::Correction };
         match self {
@@ -189,12 +190,12 @@ impl LongRun {
         }
     }
 
-    /// Growth and impacts, of a motion that is told by them.
+    /// Growth and impacts of a motion that settles on nothing; `None` for others.
     pub fn of_growth(&self) -> Option<Recorded> {
         if let Self::Chaotic(recorded) | Self::Undecided(recorded) = self { Some(*recorded) } else { None }
     }
 
-    /// The same motion, of a run that rested on the way to it.
+    /// Marks a recorded motion as one of a run that rested on the way.
     pub(super) fn having_rested(self) -> Self {
         match self {
             Self::Chaotic(recorded) => Self::Chaotic(Recorded { rested: true, ..recorded }),
@@ -203,22 +204,22 @@ impl LongRun {
         }
     }
 
-    /// Whether a motion is left by chance alone, if it is left at all: chaos, and what bounces as chaos does until it rests.
+    /// Whether the motion ends by chance alone, if at all: chaos, and motion that bounces as chaos does until it rests.
     pub fn wanders(&self) -> bool {
         self.of_growth().is_some() || self.is_long()
     }
 
-    /// Revolutions from one rest to the next, in the mean, where it rests.
+    /// Mean revolutions from one rest to the next; `None` for a motion without rests.
     pub fn between_rests(&self) -> Option<f64> {
         if let Self::Sticking(orbit) = self { Some(orbit.between_rests()) } else { None }
     }
 
-    /// Whether it rests so seldom that in between nothing tells it from chaos.
+    /// Whether rests are so rare that the motion between them cannot be distinguished from chaos.
     pub fn is_long(&self) -> bool {
         matches!(self, Self::Sticking(resting) if resting.is_long())
     }
 
-    /// Turns of the cam and impacts of one period, where it repeats and doubles can tell after how long.
+    /// Turns of the cam and impacts of one period, where the motion is periodic and doubles can resolve the period.
     pub fn period(&self) -> Option<(u64, u64)> {
         match self {
             Self::PermanentContact => Some((1, 0)),
@@ -229,40 +230,40 @@ impl LongRun {
     }
 }
 
-/// A motion of which the cam lets go again and again: an orbit, however long, since nothing but the angle of a release decides
-/// what follows it.
+/// A motion that the cam releases again and again. It is periodic, however long, since the angle of a release alone decides what follows.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StickingOrbit {
-    /// Where the cam lets go, rad, in the order of one period.
+    /// Angles of release, rad, in the order of one period.
     pub releases: Vec<f64>,
     /// Turns of the cam in one period.
     pub revolutions: u64,
     /// Impacts in one period.
     pub impacts: u64,
-    /// The speed of the fastest of them, of follower and cam against each other, m/s.
+    /// Speed of the fastest impact, of follower and cam against each other, m/s.
     pub impact_speed: f64,
-    /// What a deviation grows by from a release to the next rest, at most: a natural logarithm.
+    /// Largest growth of a deviation from a release to the next rest, a natural logarithm.
     pub growth: f64,
 }
 
 impl StickingOrbit {
-    /// Revolutions from one rest to the next, in the mean.
+    /// Mean revolutions from one rest to the next.
     pub fn between_rests(&self) -> f64 {
         self.revolutions as f64 / self.releases.len() as f64
     }
 
-    /// Whether it rests so seldom that rounding decides when: in between it is chaos, and its period is that of the rounded run.
+    /// Whether rests are so rare that rounding decides when they occur. Between them the motion is chaotic, and its period is that of the
+    /// rounded run.
     pub fn is_long(&self) -> bool {
         self.growth > elementary::ln(tolerance::SAME_ORBIT.value / tolerance::ULP.value)
     }
 
-    /// Whether two of them have a release in common: one motion at most goes on from there.
+    /// Whether two orbits have a release in common. Then they are the same motion, since at most one continues from there.
     fn is_same(&self, other: &Self) -> bool {
         self.releases.iter().any(|one| other.releases.iter().any(|two| is_same_release(*one, *two)))
     }
 }
 
-/// Whether two angles, rad, are one place where the cam lets go.
+/// Whether two angles, rad, are the same place of release.
 pub fn is_same_release(one: f64, two: f64) -> bool {
     (one - two).abs() <= tolerance::SAME_ORBIT.value
 }

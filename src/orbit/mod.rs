@@ -8,10 +8,10 @@
 //! | [`stability`] | whether small deviations from an orbit die out |
 //! | `departure` | whether a cycle is an orbit of the cam as it is, by simulation |
 //! | `complete` | all orbits of one impact, or of two in one revolution, by enclosures |
-//! | [`mod@search`] | orbits of one machine: those, and others from many starts |
+//! | [`mod@search`] | orbits of one machine: those of `complete`, and others from many starts |
 //! | [`near`] | the orbit near a guess or near a run |
-//! | [`long_run`] | what a run comes to: an orbit, rest again and again, chaos; and for how long it is followed |
-//! | [`runs`] | the runs of one machine: where they settle, and what follows when the cam lets go of a follower |
+//! | [`long_run`] | the long-run motion of a run: an orbit, recurring rests or chaos; and how long the run is followed |
+//! | [`runs`] | the runs of one machine: where they settle, and what follows when the cam releases the follower |
 //! | [`symmetry`] | where an orbit over equal lobes loses its symmetry |
 //! | `family` | machines that differ in a speed or a number of the model |
 //! | `curve` | pseudo-arclength steps along the solutions of one equation fewer than unknowns |
@@ -60,16 +60,16 @@ pub struct PeriodicOrbit {
     pub events: Vec<Event>,
     /// The follower when the cam is at angle 0.
     pub state: State,
-    /// How one period carries a small deviation of that state, 2x2; 0 where the follower sticks on the way, and not a number where it
-    /// rests on the cam with restitution 1, when no bounce ends in a rest.
+    /// Matrix that carries a small deviation of that state over one period, 2x2. It is 0 where the follower sticks on the way. It is NaN
+    /// where the follower rests on the cam with restitution 1, since no bounce then ends in a rest.
     pub matrix: Matrix2<f64>,
-    /// Whether small deviations die out, and how well the multipliers are known.
+    /// Whether small deviations die out, and the error of the multipliers.
     pub judgement: Judgement,
-    /// How far the orbit is from closing, over its size.
+    /// Closing error of the orbit, over its size.
     pub residual: f64,
-    /// What kind of motion it is.
+    /// Kind of motion.
     pub course: Course,
-    /// Whether it is proved that there is an orbit, or computed.
+    /// Whether the existence of the orbit is proved, or computed.
     pub known: Evidence,
 }
 
@@ -110,7 +110,7 @@ document!(Rest<'_> as it { event: it.0.kind, revolution: it.0.revolution, cam_an
 pub enum Course {
     /// Impacts, and flights from one to the next.
     Impacts(Cycle),
-    /// The follower sticks to the cam when this is at an angle, rad: what comes after follows from that alone.
+    /// The follower sticks to the cam when this is at an angle, rad. The motion after that follows from the angle alone.
     Sticking(f64),
     /// The follower never meets the cam.
     Free,
@@ -127,7 +127,7 @@ impl Course {
 }
 
 impl PeriodicOrbit {
-    /// The orbit of a cycle that closes, `residual` off.
+    /// The orbit of a cycle that closes up to `residual`.
     pub fn of_cycle(machine: &Machine, cycle: Cycle, residual: f64) -> Self {
         let cycle = cycle.in_order();
         let (state, matrix) = cycle.at_section(machine, 0.0);
@@ -142,7 +142,7 @@ impl PeriodicOrbit {
         self.events.iter().filter(|event| event.kind == EventKind::Impact)
     }
 
-    /// Where it begins to stick and where it is released.
+    /// Events at which the follower begins to stick or is released.
     pub(crate) fn rests(&self) -> impl Iterator<Item = &Event> {
         self.events.iter().filter(|event| event.kind != EventKind::Impact)
     }
@@ -152,13 +152,13 @@ impl PeriodicOrbit {
         eigenvalues(&self.matrix)
     }
 
-    /// Whether small deviations die out: neither of an unstable orbit nor of a neutral one.
+    /// Whether small deviations die out. They do not for an unstable or a neutral orbit.
     pub fn is_stable(&self) -> bool {
         self.judgement.stability == Stability::Stable
     }
 
-    /// A motion of `machine` that is on it, from where the cam passes angle 0: what rounding leaves of its impacts may put it below the cam there,
-    /// so that it comes from one of them.
+    /// Starts a motion of `machine` on the orbit, where the cam passes angle 0. The run starts from the last impact, since rounding may put
+    /// the follower below the cam at angle 0.
     pub fn motion(&self, machine: &Machine) -> Result<Motion, SimulateError> {
         let Some(impact) = self.impacts().last() else { return machine.start(0.0, self.state) };
         let mut motion = machine.start_on_cam(impact.cam_angle, impact.velocity_after - impact.cam_velocity)?;
@@ -167,7 +167,7 @@ impl PeriodicOrbit {
         Ok(motion)
     }
 
-    /// The growth of a small deviation a revolution, by the largest multiplier, a natural logarithm.
+    /// Growth of a small deviation per revolution, a natural logarithm, from the largest multiplier.
     pub fn growth(&self) -> f64 {
         let modulus = self.multipliers().iter().fold(0.0_f64, |largest, one| largest.max(one.modulus()));
         elementary::ln(modulus) / self.revolutions as f64
@@ -191,7 +191,7 @@ impl PeriodicOrbit {
     }
 }
 
-/// Why an orbit could not be looked for or followed.
+/// Reason why an orbit could not be found or followed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum OrbitError {
     /// A run could not go on.
@@ -200,7 +200,7 @@ pub enum OrbitError {
     /// No such machine.
     #[error(transparent)]
     Family(#[from] FamilyError),
-    /// Newton's method did not settle.
+    /// Newton's method did not converge.
     #[error(transparent)]
     NotClosed(#[from] NotClosed),
 }

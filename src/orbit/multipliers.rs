@@ -14,23 +14,23 @@ pub struct Eigenvalue {
 }
 
 impl Eigenvalue {
-    /// Its distance from 0.
+    /// Distance from 0.
     pub fn modulus(self) -> f64 {
         elementary::hypot(self.re, self.im)
     }
 }
 
-/// Both eigenvalues of a 2x2 matrix, the one with the larger real part first, of a pair the one with positive imaginary
-/// part.
+/// Both eigenvalues of a 2x2 matrix, the one with the larger real part first. Of a complex pair the one with positive imaginary part comes
+/// first.
 ///
-/// Not a number where the matrix is not finite. The entries off the diagonal have units, and only their product is taken, so that
-/// the eigenvalues are the same in any:
+/// NaN where the matrix is not finite. The entries off the diagonal have units, and only their product is used, so that the eigenvalues do
+/// not depend on the units:
 ///
 /// ```text
 /// m = (a + d)/2,  h = (a - d)/2        m +- sqrt(h^2 + b c) = d + z, d - b c/z,  z = h +- sqrt(h^2 + b c), which does not cancel
 /// ```
 ///
-/// with d the smaller of a and d: of the larger, d - b c/z would keep no digits of an eigenvalue that is far smaller still.
+/// with d the smaller of a and d. With the larger one, d - b c/z would keep no digits of an eigenvalue that is far smaller still.
 pub fn eigenvalues(matrix: &Matrix2<f64>) -> [Eigenvalue; 2] {
     let real = |re: f64| Eigenvalue { re, im: 0.0 };
     if !matrix.iter().all(|entry| entry.is_finite()) {

@@ -1,5 +1,5 @@
-//! One motion has many names: a cycle may begin with any revolution, and an angle near a seam of the cam belongs to either
-//! segment. What is the same motion, and the name that is kept.
+//! Names of one motion: a cycle may begin with any revolution, and an angle near a seam of the cam belongs to either segment. This module
+//! decides which cycles are the same motion, and which name is kept.
 
 use std::f64::consts::TAU;
 
@@ -8,10 +8,10 @@ use crate::simulate::Machine;
 use crate::tolerance;
 
 impl Cycle {
-    /// Angles moved into their segments' own revolution and names: an angle past the end of a revolution or of a segment
-    /// that meets the next smoothly belongs to the next.
+    /// Renames impacts by their own revolution and segment: an angle past the end of a revolution, or of a segment that meets the next
+    /// smoothly, belongs to the next.
     ///
-    /// An angle past a corner stays where it is.
+    /// An angle past a corner keeps its segment.
     pub fn renamed(&self, machine: &Machine, is_corner: impl Fn(usize) -> bool) -> Self {
         let segments = machine.cam().segments();
         let mut renamed = self.clone();
@@ -43,7 +43,7 @@ impl Cycle {
         renamed
     }
 
-    /// The same cycle with its revolutions counted from 0, and its impacts in order.
+    /// Counts revolutions from 0, and sorts the impacts.
     pub fn in_order(mut self) -> Self {
         let revolutions = self.revolutions.max(1) as i64;
         for impact in &mut self.impacts {
@@ -55,7 +55,7 @@ impl Cycle {
         self
     }
 
-    /// Where a impact stands once the impacts are [in order](Self::in_order).
+    /// Index of an impact once the impacts are [in order](Self::in_order).
     pub fn place_in_order(&self, impact: usize) -> usize {
         let key = |impact: &Impact| (impact.revolution.rem_euclid(self.revolutions.max(1) as i64), impact.cam_angle);
         let (revolution, angle) = key(&self.impacts[impact]);
@@ -66,7 +66,7 @@ impl Cycle {
         self.impacts.iter().filter(earlier).count()
     }
 
-    /// The same cycle begun `revolutions` later.
+    /// Moves the cycle's start by `revolutions`.
     pub fn begun_later(&self, revolutions: u64) -> Self {
         let mut later = self.clone();
         for impact in &mut later.impacts {
@@ -81,7 +81,7 @@ impl Cycle {
         self.impacts[index].turned() + TAU * period as f64 * self.revolutions as f64
     }
 
-    /// Whether each impact is `turned` rad before that of another cycle, which is so many impacts further on.
+    /// Whether each impact is `turned` rad before the impact of another cycle whose index is larger by `impacts`.
     fn is_before(&self, other: &Self, impacts: usize, turned: f64) -> bool {
         let off = |index: usize| other.angle(index + impacts) - self.angle(index) - turned;
         (0..self.impacts.len()).all(|index| off(index).abs() <= tolerance::SAME_ORBIT.value)
@@ -106,7 +106,7 @@ impl Cycle {
         self.is_before(self, impacts, TAU * revolutions as f64)
     }
 
-    /// The impact half a period after `impact`, if it is one on the same segment.
+    /// Index of the impact half a period after `impact`, if it is on the same segment.
     pub fn second_half(&self, impact: usize) -> Option<usize> {
         let half = self.impacts.len() / 2;
         let even = self.revolutions.is_multiple_of(2) && self.impacts.len().is_multiple_of(2);
@@ -115,14 +115,14 @@ impl Cycle {
         (even && later && one.segment == two.segment).then_some(impact + half)
     }
 
-    /// The same motion over twice as many revolutions.
+    /// Repeats the motion over twice as many revolutions.
     pub fn twice(&self) -> Self {
         let later = |impact: &Impact| Impact { revolution: impact.revolution + self.revolutions as i64, ..*impact };
         let impacts = self.impacts.iter().copied().chain(self.impacts.iter().map(later));
         Self { revolutions: 2 * self.revolutions, impacts: impacts.collect() }
     }
 
-    /// The same motion over as few revolutions as it repeats after.
+    /// Shortens the cycle to the fewest revolutions after which the motion repeats.
     pub fn shortest(self) -> Self {
         let cycle = self.in_order();
         let sooner = |revolutions: &u64| cycle.repeats_after(*revolutions);

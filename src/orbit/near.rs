@@ -1,7 +1,7 @@
 //! The orbit near a guess, or near a run.
 //!
-//! `near_run` looks for an orbit that a run is on already, or nearly; whether the run stays there is for [`super::runs`] to say. Whatever names an orbit goes through [`close`]: Newton's method from a guess, and
-//! a simulated period that confirms it.
+//! `near_run` looks for an orbit that a run is on already, or nearly; [`super::runs`] decides whether the run stays there. Every guess of a
+//! cycle goes through [`close`]: Newton's method, and a simulated period that confirms the result.
 
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
@@ -14,12 +14,12 @@ use crate::known::Evidence;
 use crate::simulate::{Event, EventKind, Machine, Motion, SimulateError};
 use crate::tolerance;
 
-/// Most impacts of an orbit whose equations are solved together: beyond, a follower chatters.
+/// Most impacts of an orbit whose equations are solved together. With more, a follower chatters.
 pub(super) const MOST_IMPACTS: usize = 64;
-/// Events of a revolution that are kept: a follower that chatters with restitution 0.99 makes thousands before it rests.
+/// Most events kept. A follower that chatters with restitution 0.99 makes thousands in a revolution before it rests.
 const MOST_EVENTS: usize = 100_000;
 
-/// The orbit near the motion of `revolutions` that starts at `cam_angle`, rad, with `state`: its impacts are the guess.
+/// Returns the orbit near the motion of `revolutions` that starts at `cam_angle`, rad, with `state`. Its impacts are the guess.
 pub fn near(
     machine: &Machine,
     cam_angle: f64,
@@ -37,8 +37,8 @@ pub fn near(
     Ok(close(machine, &Cycle::of_events(revolutions, &events).in_order()))
 }
 
-/// The orbit near a guess, by Newton's method; `None` where that leads nowhere, or to no motion of the cam as it is, or to
-/// one that repeats sooner.
+/// Returns the orbit near a guess, by Newton's method. `None` where that does not converge, or converges to no motion of the actual cam, or
+/// to one that repeats sooner.
 pub fn close(machine: &Machine, guess: &Cycle) -> Option<PeriodicOrbit> {
     // An impact or so a revolution is no chattering, however many revolutions there are.
     if guess.impacts.len() > MOST_IMPACTS.max(4 * guess.revolutions as usize) {
@@ -52,14 +52,14 @@ pub fn close(machine: &Machine, guess: &Cycle) -> Option<PeriodicOrbit> {
     is_orbit.then(|| PeriodicOrbit::of_cycle(machine, cycle, residual))
 }
 
-/// The orbit of at most `longest` revolutions that a run from `motion` is near after `revolutions`, if it draws in what is near it.
+/// Returns the orbit of at most `longest` revolutions that a run from `motion` is near after `revolutions`, unless it is unstable.
 pub(super) fn near_run(
     machine: &Machine,
     mut motion: Motion,
     revolutions: u64,
     longest: u64,
 ) -> Result<Option<PeriodicOrbit>, SimulateError> {
-    /// The growth of a deviation over a period beyond which a run is not near an orbit that draws it in.
+    /// Growth of a deviation over a period beyond which a run is not near an attracting orbit.
     const NEARLY_DRAWS: f64 = 3.0;
     machine.revolve(&mut motion, revolutions)?;
     machine.turn_to(&mut motion, 0.0)?;
@@ -87,13 +87,13 @@ pub(super) fn near_run(
             sticking::through(machine, 0.0, turns)?
         } else if impacts {
             let guess = Cycle::of_events(turns, &events);
-            // Next to what draws it in, a run draws in what is next to it, or nearly: most of what passes near where it was does not.
+            // Near an attracting orbit a run attracts its neighbours, or nearly. Most runs that only pass near an earlier state do not.
             let modulus = eigenvalues(&guess.at_section(machine, 0.0).1).into_iter().map(Eigenvalue::modulus);
             if modulus.fold(0.0, f64::max) <= NEARLY_DRAWS { close(machine, &guess) } else { None }
         } else {
             free(machine, motion.state)
         };
-        // What a run settles on draws it in, or keeps it; Newton's method finds what a run only passes too.
+        // A run settles only on orbits that are stable or neutral; Newton's method also finds orbits that a run only passes.
         let holds = |orbit: &PeriodicOrbit| orbit.judgement.stability != Stability::Unstable;
         if let Some(orbit) = orbit.filter(holds) {
             return Ok(Some(orbit));
@@ -102,12 +102,12 @@ pub(super) fn near_run(
     Ok(None)
 }
 
-/// The follower at rest above the cam, near `state`. `None` where it falls, or meets the cam.
+/// The follower at rest above the cam, near `state`. `None` where it falls or meets the cam.
 pub(super) fn free(machine: &Machine, state: State) -> Option<PeriodicOrbit> {
     at_rest(machine, state).filter(|orbit| orbit.state.position > machine.cam().highest().value)
 }
 
-/// The follower at rest near `state`, where no force is left on it, wherever the cam is; without a spring or gravity that is anywhere.
+/// The follower at rest near `state`, where no force acts on it, wherever the cam is. Without a spring or gravity it may rest anywhere.
 /// `None` where it falls.
 pub(super) fn at_rest(machine: &Machine, state: State) -> Option<PeriodicOrbit> {
     let (flight, force) = (machine.flight(), machine.flight().force(state.position));
@@ -123,7 +123,7 @@ pub(super) fn at_rest(machine: &Machine, state: State) -> Option<PeriodicOrbit> 
 
 /// Runs `revolutions` and returns the events on the way.
 ///
-/// It stops right after more than `most` of them.
+/// Stops right after more than `most` events.
 pub(super) fn period(
     machine: &Machine,
     motion: &mut Motion,

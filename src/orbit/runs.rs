@@ -1,7 +1,7 @@
-//! The runs of one machine: where they settle, and what follows when the cam lets go of a follower.
+//! The runs of one machine: where they settle, and what follows when the cam releases the follower.
 //!
-//! A run that rests on the cam has no past: the cam lets go of it at an angle that the speed decides, and what follows is the
-//! same each time. So all that comes of a rest is found once for each release, however many runs rest ([`LongRuns::after_release`]).
+//! A run that rests on the cam has no past: the speed decides the angle at which the cam releases it, and the motion after that is the same
+//! each time. So what follows a rest is computed once for each release, however many runs rest ([`LongRuns::after_release`]).
 
 use std::ops::ControlFlow;
 
@@ -17,58 +17,58 @@ use crate::simulate::Record;
 use crate::simulate::{Event, EventKind, Goal, ImpactTally, Machine, Motion, SimulateError};
 use crate::tolerance;
 
-/// What a run comes to within so many revolutions.
+/// Outcome of a run within a number of revolutions.
 #[derive(Clone, Debug, PartialEq)]
 pub enum RunOutcome {
     /// A stable periodic orbit.
     Arrives(PeriodicOrbit),
-    /// It stays on the cam for good.
+    /// The follower stays on the cam for good.
     PermanentContact,
-    /// It has rested on the cam, which let go of it at this angle, rad.
+    /// The follower has rested on the cam, which released it at this angle, rad.
     Released(f64),
     /// None of these.
     Wanders,
 }
 
-/// What follows a release.
+/// Motion that follows a release.
 #[derive(Clone, Debug, PartialEq)]
 #[expect(clippy::large_enum_variant, reason = "there is one for each release, and none is kept in bulk")]
 pub enum AfterRelease {
-    /// The same release again, in the end.
+    /// A release that recurs in the end.
     Recurs(StickingOrbit),
     /// A stable periodic orbit, and the run at it.
     Arrives(PeriodicOrbit, Motion),
-    /// Neither in the revolutions that are waited from one rest to the next.
+    /// Neither, in the revolutions allowed from one rest to the next.
     Wanders {
-        /// As the cam let go of it.
+        /// The run at its release.
         released: Motion,
-        /// After those revolutions.
+        /// The run after those revolutions.
         end: Motion,
     },
 }
 
-/// Revolutions after which a run has forgotten its start, if it is to be told by how it goes on.
+/// Revolutions after which a run has forgotten its start, if its further motion is to decide its outcome.
 const SETTLED: u64 = 100;
 
-/// The runs of one machine, with the stable orbits of it that are known beforehand: a run that comes to one of them is told
-/// sooner, and ends on the same orbit to the last bit as any other run that does.
+/// The runs of one machine, with its stable orbits that are known beforehand. A run that converges to a known orbit is decided sooner, and
+/// ends on the same orbit to the last bit as any other such run.
 #[derive(Clone, Debug)]
 pub struct LongRuns<'a> {
-    /// What turns.
+    /// The machine that runs.
     pub machine: &'a Machine,
-    /// For how long runs are followed.
+    /// Revolutions for which runs are followed.
     pub budget: Budget,
     /// The size of the cam's lift and its top, m.
     size: f64,
     top: f64,
-    /// Whether a flight may stay above the top: nothing draws the follower down to it from there.
+    /// Whether a flight may stay above the top, since nothing pulls the follower down to it from there.
     floats: bool,
-    /// With the states as the cam passes angle 0.
+    /// Known orbits, with their states as the cam passes angle 0.
     known: Vec<(PeriodicOrbit, Vec<State>)>,
 }
 
 impl<'a> LongRuns<'a> {
-    /// The runs of `machine`, with the stable orbits of one impact known beforehand.
+    /// Creates the runs of `machine`, with the stable orbits of one impact known beforehand.
     pub fn new(machine: &'a Machine, budget: Budget) -> Result<Self, SimulateError> {
         /// The most revolutions of an orbit with one impact.
         const ONE_IMPACT: u64 = 3;
@@ -80,8 +80,7 @@ impl<'a> LongRuns<'a> {
         Ok(new)
     }
 
-    /// Takes note of the stable orbits of two impacts in one revolution: of all but next to a fold, a graze or a corner. It takes up to
-    /// seconds.
+    /// Adds the stable orbits of two impacts in one revolution, except those next to a fold, a graze or a corner. This takes up to seconds.
     pub fn know_two_impacts(&mut self) -> Result<(), SimulateError> {
         let solved = of_two_impacts(self.machine, &Unwatched).into_iter();
         let may_be = solved.filter(|solved| solved.standing != Standing::NoOrbit);
@@ -89,7 +88,7 @@ impl<'a> LongRuns<'a> {
         orbits.iter().try_for_each(|orbit| self.know(orbit))
     }
 
-    /// The runs of `machine` without any orbit that is known beforehand, for a run or a few: a search for orbits takes as long as thousands of
+    /// Creates the runs of `machine` without known orbits, for a run or a few. A search for orbits takes as long as thousands of
     /// revolutions.
     pub fn unaided(machine: &'a Machine, budget: Budget) -> Self {
         let top = machine.cam().top();
@@ -102,7 +101,7 @@ impl<'a> LongRuns<'a> {
         self.known.iter().map(|(orbit, _)| orbit)
     }
 
-    /// Takes note of an orbit, if it is stable, meets the cam without resting on it, and is not known.
+    /// Adds an orbit, if it is stable, meets the cam without resting on it, and is not known yet.
     pub fn know(&mut self, orbit: &PeriodicOrbit) -> Result<(), SimulateError> {
         if draws(orbit) && !self.known.iter().any(|(known, _)| known.is_same(orbit)) {
             self.known.push((orbit.clone(), passages(self.machine, orbit)?));
@@ -110,24 +109,24 @@ impl<'a> LongRuns<'a> {
         Ok(())
     }
 
-    /// Runs `motion` for up to `revolutions`, or to where it is told what it comes to.
+    /// Runs `motion` for up to `revolutions`, or until its outcome is decided.
     ///
-    /// An orbit counts where the run repeats nearly, Newton's method leads from there to a stable one, and the run's distance
-    /// from that shrinks as its multipliers say: a chaotic run now and then passes by a stable orbit outside of its basin.
+    /// An orbit counts if the run nearly repeats, Newton's method leads from there to a stable orbit, and the run's distance from it
+    /// shrinks as its multipliers predict: a chaotic run sometimes passes a stable orbit outside of its basin.
     pub fn run(&self, motion: &mut Motion, revolutions: u64) -> Result<RunOutcome, SimulateError> {
         self.counted(motion, revolutions, &mut ImpactTally::default())
     }
 
-    /// The same, with the impacts on the way added to others.
+    /// Runs `motion` like `run`, and adds the impacts on the way to `met`.
     fn counted(
         &self,
         motion: &mut Motion,
         revolutions: u64,
         met: &mut ImpactTally,
     ) -> Result<RunOutcome, SimulateError> {
-        /// Revolutions before the first look for an orbit that is not known: what most starts near one need.
+        /// Revolutions before the first search for an unknown orbit; most starts near one need so many.
         const FIRST: u64 = 50;
-        /// Revolutions from one look for a known orbit to the next.
+        /// Revolutions from one check for a known orbit to the next.
         const OFTEN: u64 = 8;
         // Orbits are compared as the cam passes angle 0.
         if motion.cam_angle > 0.0
@@ -165,7 +164,7 @@ impl<'a> LongRuns<'a> {
                 continue;
             }
             look = revolutions.min(2 * look);
-            // A look takes revolutions: only where the run has come back to near where it was, and as many.
+            // A search takes revolutions: it is made only where the run has come back to near where it was, and over as many.
             let near = tolerance::NEARLY_REPEATS.value * self.size;
             let before = past.iter().position(|state| motion.state.apart(*state, omega) <= near);
             let repeats_after = before.map(|before| (past.len() - before) as u64);
@@ -187,7 +186,7 @@ impl<'a> LongRuns<'a> {
             && self.machine.flight().fall_to(self.top, motion.state).is_none()
     }
 
-    /// The long-run motion of a run that has come to a release; with what is `known` to follow other releases.
+    /// Long-run motion of a run after a release. `known` returns what follows other releases.
     pub fn ending_after(
         &self,
         after: &AfterRelease,
@@ -200,7 +199,7 @@ impl<'a> LongRuns<'a> {
         })
     }
 
-    /// Runs `motion` to where the cam lets go of it, rad, if it does so before the goal, and counts the impacts on the way.
+    /// Runs `motion` until the cam releases it, if it does so before the goal, and counts the impacts on the way. Returns the angle, rad.
     fn to_release(&self, motion: &mut Motion, goal: Goal, met: &mut ImpactTally) -> Result<Option<f64>, SimulateError> {
         let flow = self.machine.advance(motion, goal, &mut |event: &Event| {
             met.take(event);
@@ -209,16 +208,16 @@ impl<'a> LongRuns<'a> {
         Ok(flow.is_break().then_some(motion.cam_angle))
     }
 
-    /// Whether nothing happens in the next revolution of a follower on the cam: it stays there.
+    /// Whether a follower on the cam stays there, since nothing happens in its next revolution.
     fn stays(&self, mut motion: Motion) -> Result<bool, SimulateError> {
         let goal = motion.after(1);
         Ok(self.machine.advance(&mut motion, goal, &mut |_: &Event| ControlFlow::Break(()))?.is_continue())
     }
 
-    /// Whether `motion`, at cam angle 0, is so near to a stable orbit, with its `states` there, that it stays: its distance
-    /// shrinks by what the multipliers say.
+    /// Whether `motion`, at cam angle 0, is so near to a stable orbit, with its `states` there, that it stays: its distance shrinks as the
+    /// multipliers predict.
     fn has_arrived(&self, mut motion: Motion, orbit: &PeriodicOrbit, states: &[State]) -> Result<bool, SimulateError> {
-        /// Periods in which the distance is to shrink, at most.
+        /// Most periods in which the distance must shrink.
         const MOST: f64 = 100.0;
         let (size, omega) = (self.size, self.machine.angular_velocity());
         let distance = |motion: &Motion| {
@@ -239,8 +238,8 @@ impl<'a> LongRuns<'a> {
         Ok(distance(&motion) <= shrunk.max(tolerance::ORBIT_CLOSURE.value * size))
     }
 
-    /// What follows a release at `cam_angle`, rad, where the next rest is waited for as long as `rest` revolutions, as far as that is not `known`
-    /// of it or of a release that comes later; and the revolutions that it was followed for.
+    /// Follows a run from its release at `cam_angle`, rad, with up to `rest` revolutions to each next rest. It stops at a release whose
+    /// continuation is `known`. Also returns the revolutions that it followed.
     pub fn after_release(
         &self,
         cam_angle: f64,
@@ -283,10 +282,10 @@ impl<'a> LongRuns<'a> {
         }
     }
 
-    /// The orbit that chance takes some runs to from a release, rad, of which rounding decides what follows: what bounces there is
-    /// on its way to that.
+    /// Orbit on which some slightly faster runs from a release, rad, settle, where rounding decides what follows. Then the motion that
+    /// bounces there is on its way to this orbit.
     fn by_chance(&self, cam_angle: f64) -> Result<Option<AfterRelease>, SimulateError> {
-        /// How many runs, each a little faster at the release than the one before.
+        /// Number of runs, each a little faster at the release than the one before.
         const RUNS: u32 = 4;
         let faster = tolerance::SAME_ORBIT.value * self.size * self.machine.angular_velocity();
         for run in 1..=RUNS {
@@ -298,17 +297,17 @@ impl<'a> LongRuns<'a> {
         Ok(None)
     }
 
-    /// What a deviation grows by at most on the way from a release, rad, to the next rest, a natural logarithm: of a long way, on
-    /// its beginning.
+    /// Largest growth of a deviation from a release, rad, to the next rest, a natural logarithm. On a long way only the beginning is
+    /// followed.
     fn grown(&self, cam_angle: f64) -> Result<f64, SimulateError> {
-        /// Revolutions after which a deviation is as large as the motion, if it is to be at all.
+        /// Revolutions after which a deviation is as large as the motion, if it ever is.
         const LOOKED_AT: u64 = 200;
         let mut record = Record::over(1);
         record.take(self.machine, &mut self.released(cam_angle)?, LOOKED_AT)?;
         Ok(record.most())
     }
 
-    /// A follower of which the cam lets go at an angle, rad.
+    /// Motion of a follower that the cam releases at an angle, rad.
     pub fn released(&self, cam_angle: f64) -> Result<Motion, SimulateError> {
         let mut motion = self.machine.start_on_cam(cam_angle, 0.0)?;
         if motion.contact {
@@ -318,22 +317,22 @@ impl<'a> LongRuns<'a> {
         Ok(motion)
     }
 
-    /// A run that wanders from a release, when it has forgotten that: long before the end of what is waited for, where the follower may be
-    /// about to rest.
+    /// Continues a run that wanders from a release until it has forgotten that. This is long before the end of the allowed revolutions,
+    /// where the follower may be about to rest.
     pub fn settled(&self, mut released: Motion) -> Result<Motion, SimulateError> {
         self.machine.revolve(&mut released, SETTLED)?;
         Ok(released)
     }
 
-    /// What a motion comes to that has settled on nothing: chaotic or undecided by the growth of a small deviation, over up to so many
-    /// records; or what it settles on before that is known. What is `known` to follow a release is not followed again.
+    /// Decides the motion of a run that has settled on nothing: chaotic or undecided by the growth of a small deviation, over up to so many
+    /// records, or the motion on which it settles before that. A release whose continuation is `known` is not followed again.
     pub fn by_growth(
         &self,
         mut motion: Motion,
         records: u64,
         known: &dyn Fn(f64) -> Option<AfterRelease>,
     ) -> Result<LongRun, SimulateError> {
-        /// Revolutions from one record to the next, with a look for an orbit.
+        /// Revolutions from one record to the next, in which an orbit is looked for.
         const LOOK: u64 = 8;
         let (rest, later_rest) = (self.budget.rest(), self.budget.later_rest());
         // That no rest came in fewer revolutions does not answer for more.
@@ -372,7 +371,7 @@ impl<'a> LongRuns<'a> {
     }
 }
 
-/// Whether runs come to `orbit`, and do not rest on the way.
+/// Whether runs can converge to `orbit` without resting on the way.
 fn draws(orbit: &PeriodicOrbit) -> bool {
     orbit.is_stable() && matches!(orbit.course, Course::Impacts(_))
 }

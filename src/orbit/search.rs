@@ -1,8 +1,8 @@
-//! Orbits of one machine, stable or not.
+//! Finds orbits of one machine, stable or not.
 //!
-//! Orbits of one impact, and of two in one revolution where they are asked for, are all found, by enclosures. Of the others two
-//! ways each find what the other may miss: long runs settle on stable orbits, and short runs from many starts on the cam give
-//! Newton's method the guesses from which it finds unstable ones. The follower at rest above the cam is known in closed form.
+//! Enclosures find all orbits of one impact, and where requested all of two in one revolution. For the others there are two methods, and
+//! each finds orbits that the other may miss. Long runs settle on stable orbits. Short runs from many starts on the cam give Newton's
+//! method the guesses from which it finds unstable ones. The follower at rest above the cam is known in closed form.
 
 use std::f64::consts::TAU;
 
@@ -21,44 +21,44 @@ use crate::tolerance;
 pub struct Search {
     /// Turns of the cam in one period, the smallest number.
     pub revolutions: u64,
-    /// Impacts in one period; any number where there is none given.
+    /// Impacts in one period; `None` for any number.
     pub impacts: Option<usize>,
 }
 
 impl Search {
-    /// The most revolutions that an orbit is looked for over.
+    /// Longest period of an orbit that is looked for, revolutions.
     pub const MOST_REVOLUTIONS: u64 = 1000;
 }
 
 /// Cam angles that short runs start at, and velocities at each.
 const START_ANGLES: usize = 60;
 const START_VELOCITIES: usize = 20;
-/// Starts of long runs, and revolutions that they settle in.
+/// Number of long runs, and revolutions in which they settle.
 const LONG_RUNS: usize = 6;
 const SETTLING: u64 = 600;
-/// The same for those that come to rest on the cam.
+/// Revolutions in which runs settle that come to rest on the cam.
 const SETTLING_STICKING: u64 = 6;
 
-/// The orbits that a search found, and which of them are all there are.
+/// Orbits found by a search, and the numbers of impacts for which they are all there are.
 #[derive(Clone, Debug)]
 pub struct Searched {
-    /// In order of impacts, then of where the first one is.
+    /// Sorted by the number of impacts, then by the angle of the first impact.
     pub orbits: Vec<PeriodicOrbit>,
-    /// For which numbers of impacts they are all there is.
+    /// Numbers of impacts of which all orbits were looked for, and whether that is proved.
     pub complete: Vec<Complete>,
-    /// Where that could not be decided.
+    /// Angles where that could not be decided.
     pub undecided: Vec<Undecided>,
 }
 
-/// Every orbit that was found, in order of impacts, then of where its first impact is.
+/// Returns every orbit found, sorted by the number of impacts, then by the angle of the first impact.
 ///
-/// An error only where no run could go on.
+/// An error only where no orbit was found and a run could not go on.
 pub fn search(machine: &Machine, wanted: &Search) -> Result<Vec<PeriodicOrbit>, SimulateError> {
     let found = Found::new(machine, wanted);
     found.search().map(|searched| searched.orbits)
 }
 
-/// The same with all of two impacts in one revolution, where they are among the wanted, which takes seconds.
+/// Finds also all orbits of two impacts in one revolution, where these are wanted. This takes seconds.
 pub fn search_all(machine: &Machine, wanted: &Search, watch: &dyn Watch) -> Result<Searched, SimulateError> {
     let mut found = Found::new(machine, wanted);
     if wanted.revolutions == 1 && wanted.impacts.is_none_or(|impacts| impacts == 2) {
@@ -68,7 +68,8 @@ pub fn search_all(machine: &Machine, wanted: &Search, watch: &dyn Watch) -> Resu
     found.search()
 }
 
-/// A velocity that few impacts of the machine are faster than, m/s: a fall from rest over the size of its motion.
+/// Velocity that few impacts of the machine exceed, m/s: that of one revolution under the force at the top, plus four times the cam's
+/// fastest.
 pub(crate) fn velocity_scale(machine: &Machine) -> f64 {
     let cam = machine.cam();
     let omega = machine.angular_velocity();
@@ -94,7 +95,7 @@ impl<'a> Found<'a> {
         found
     }
 
-    /// Everything that solves the equations of so many impacts, or may.
+    /// Adds everything that solves, or may solve, the equations of so many impacts.
     fn all(&mut self, impacts: usize, solved: Vec<Solved>) {
         let mut undecided = Vec::new();
         for Solved { guess, angles, velocities, standing } in solved {
@@ -137,7 +138,7 @@ impl<'a> Found<'a> {
         self.searched.complete.push(Complete { revolutions, impacts, known });
     }
 
-    /// The other ways, and everything in order.
+    /// Searches in all other ways, and sorts the orbits.
     fn search(mut self) -> Result<Searched, SimulateError> {
         let mut error = None;
         // The equilibrium, if the cam does not reach it: no run from the cam need come to it.
@@ -171,7 +172,7 @@ impl<'a> Found<'a> {
     }
 
     fn keep(&mut self, orbit: PeriodicOrbit) {
-        // A long run may settle on what repeats sooner.
+        // A long run may settle on an orbit that repeats sooner.
         let wanted = orbit.revolutions == self.wanted.revolutions
             && self.wanted.impacts.is_none_or(|impacts| orbit.impacts().count() == impacts);
         if wanted && !self.searched.orbits.iter().any(|known| known.is_same(&orbit)) {
@@ -179,14 +180,14 @@ impl<'a> Found<'a> {
         }
     }
 
-    /// Newton's method from a guess; keeps what it leads to if that is an orbit of the cam as it is.
+    /// Applies Newton's method to a guess. Keeps the result if it is an orbit of the actual cam.
     fn close(&mut self, guess: &Cycle) {
         if let Some(orbit) = close(self.machine, guess) {
             self.keep(orbit);
         }
     }
 
-    /// A long run, which settles on something stable.
+    /// Keeps the orbit on which a long run settles.
     fn settle(&mut self, cam_angle: f64, relative_velocity: f64) -> Result<(), SimulateError> {
         let motion = self.machine.start_on_cam(cam_angle, relative_velocity)?;
         // A follower that comes to rest on the cam has settled: what comes after repeats at once.
@@ -199,7 +200,7 @@ impl<'a> Found<'a> {
         Ok(())
     }
 
-    /// One period from the cam: its impacts are a guess.
+    /// Runs one period from the cam, whose impacts are a guess.
     fn shoot(&mut self, cam_angle: f64, relative_velocity: f64) -> Result<(), SimulateError> {
         let mut motion = self.machine.start_on_cam(cam_angle, relative_velocity)?;
         let most = self.wanted.impacts.unwrap_or(MOST_IMPACTS);

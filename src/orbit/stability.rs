@@ -1,15 +1,15 @@
-//! Whether small deviations from a periodic motion die out: the one place that decides it.
+//! Decides whether small deviations from a periodic motion die out; no other module does.
 //!
-//! The matrix M that carries a deviation once around has the multipliers as its eigenvalues. Its determinant is known in closed form
-//! and is 1 at most, so that both are inside the unit circle, or one is outside (Jury 1962), as
+//! The matrix M that carries a deviation once around has the multipliers as its eigenvalues. Its determinant is known in closed form and is
+//! 1 at most. So both multipliers are inside the unit circle, or one is outside (Jury 1962), as
 //!
 //! ```text
 //! det M < 1 and |tr M| < 1 + det M        |tr M| > 1 + det M
 //! ```
 //!
-//! A lossless follower has det M = 1: its multipliers are a pair on the unit circle where |tr M| < 2. Between the two, within the
-//! error of the trace, a multiplier is 1 or -1. Deciding by the trace needs no root, so that multipliers that nearly meet, which an
-//! error moves by its square root, do no harm.
+//! A lossless follower has det M = 1: its multipliers are a pair on the unit circle where |tr M| < 2. Between the two cases, within the
+//! error of the trace, a multiplier is 1 or -1. A decision by the trace needs no root, so nearly equal multipliers, which an error moves by
+//! its square root, do no harm.
 
 use nalgebra::Matrix2;
 use serde::Serialize;
@@ -24,7 +24,7 @@ use crate::known::Evidence;
 use crate::simulate::Machine;
 use crate::tolerance;
 
-/// What becomes of small deviations from a periodic motion, by its multipliers.
+/// Behaviour of small deviations from a periodic motion, by its multipliers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Stability {
@@ -39,7 +39,7 @@ pub enum Stability {
 named!(Stability);
 
 impl Stability {
-    /// By the largest modulus of a multiplier and its error.
+    /// Decides by the largest modulus of a multiplier and its error.
     pub fn of_modulus(modulus: f64, error: f64) -> Self {
         if modulus + error < 1.0 {
             Self::Stable
@@ -50,7 +50,7 @@ impl Stability {
         }
     }
 
-    /// By the range of |tr M|, that of 1 + det M, and whether det M is below 1; none where a multiplier may be inside or outside.
+    /// Decides by the range of |tr M|, that of 1 + det M, and whether det M is below 1. `None` where a multiplier may be inside or outside.
     #[doc(hidden)]
     pub fn of_trace([least, most]: [f64; 2], [low, high]: [f64; 2], loses: bool) -> Option<Self> {
         if least > high {
@@ -63,15 +63,15 @@ impl Stability {
     }
 }
 
-/// The stability of a motion, with what is known of its multipliers.
+/// Stability of a motion, and the accuracy of its multipliers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Judgement {
     /// The verdict.
     pub stability: Stability,
-    /// Proved where the verdict holds for every number of the enclosures that the orbit is proved to be in, else computed.
+    /// Proved if the verdict holds for every number of the enclosures of a proved orbit, otherwise computed.
     pub known: Evidence,
-    /// A bound on the distance of each computed multiplier from the true one, to first order in the errors of the matrix; not a number
-    /// where there are no multipliers.
+    /// Bound on the distance of each computed multiplier from the true one, to first order in the errors of the matrix. NaN where there are
+    /// no multipliers.
     pub error: f64,
 }
 
@@ -82,7 +82,7 @@ pub type Rows = [[Interval; 2]; 2];
 /// The angle, rad, and the velocity before, m/s, of an impact.
 pub(super) type Place = [Interval; 2];
 
-/// The propagator of a flight of a time, s.
+/// Propagator of a flight over a time, s.
 fn propagator(flight: &Flight, time: Interval) -> Rows {
     let response = flight.response_over(time);
     let spring = flight.omega0_squared();
@@ -94,7 +94,7 @@ fn product(left: &Rows, right: &Rows) -> Rows {
     [0, 1].map(|row| [0, 1].map(|column| left[row][0] * right[0][column] + left[row][1] * right[1][column]))
 }
 
-/// Impact by impact its saltation matrix and the flight to the next one, wherever in `places` the impacts are.
+/// For each impact, encloses its saltation matrix and the flight to the next, for all impacts within `places`.
 fn factors(machine: &Machine, cycle: &Cycle, places: &[Place]) -> Vec<Rows> {
     let (flight, r, omega) = (machine.flight(), machine.restitution(), machine.angular_velocity());
     let count = cycle.impacts.len();
@@ -122,7 +122,7 @@ fn middle(rows: &Rows) -> Matrix2<f64> {
     Matrix2::from_fn(|row, column| rows[row][column].middle())
 }
 
-/// tr M of a product of factors, and its error to first order.
+/// Trace tr M of a product of factors, and its error to first order.
 ///
 /// With P the product of the factors before one of them, F, and R that of those after it, an error dF changes the trace by
 /// tr(R dF P) = tr(P R dF), and an error E of the product F P, whose rounding makes at most 2 u |F| |P|, by tr(R E):
@@ -148,10 +148,10 @@ pub fn trace(factors: &[Rows]) -> (f64, f64) {
     (before.trace(), error)
 }
 
-/// How far eigenvalues of `matrix` may be from those with the trace and the determinant that are known better.
+/// Bound on the distance of the eigenvalues of `matrix` from those with the trace and the determinant, which are known better.
 ///
-/// A computed multiplier mu misses the true characteristic polynomial by p, and the true multipliers by d1 and d2 with d1 d2 = p: the
-/// nearer one by the root of p at most, and by 2 p/g where they are as far apart as g.
+/// A computed multiplier mu misses the true characteristic polynomial by p, and the true multipliers by d1 and d2 with d1 d2 = p. The
+/// nearer one is at most the root of p away, and at most 2 p/g where they are a distance g apart.
 #[doc(hidden)]
 pub fn multipliers_error(matrix: &Matrix2<f64>, (trace, error): (f64, f64), determinant: f64) -> f64 {
     let pair = eigenvalues(matrix);
@@ -166,7 +166,7 @@ pub fn multipliers_error(matrix: &Matrix2<f64>, (trace, error): (f64, f64), dete
 }
 
 impl Judgement {
-    /// The verdict on a product of factors with a determinant that is known, and the error of the eigenvalues of `matrix`.
+    /// Verdict on a product of factors with a known determinant, and the error of the eigenvalues of `matrix`.
     fn of(factors: &[Rows], determinant: f64, loses: bool, matrix: &Matrix2<f64>) -> Self {
         let (middle, error) = trace(factors);
         let size = middle.abs();
@@ -176,12 +176,12 @@ impl Judgement {
         Self { stability: decided.unwrap_or(Stability::Neutral), known: Evidence::Computed, error }
     }
 
-    /// The verdict on a cycle that closes within `residual` of its size, and whose matrix at angle 0 was computed as `matrix`.
+    /// Verdict on a cycle that closes within `residual` of its size, and whose matrix at angle 0 was computed as `matrix`.
     ///
-    /// The impacts are known to the last correction of Newton's method, or to what rounding makes of it next to a fold, where the
-    /// equations hardly determine them: an ulp over det(I - M), and half of the digits at most.
+    /// The impacts are known to the last correction of Newton's method. Next to a fold, where the equations hardly determine them, rounding
+    /// limits this to an ulp over det(I - M), which takes half of the digits at most.
     pub(super) fn of_cycle(machine: &Machine, cycle: &Cycle, residual: f64, matrix: &Matrix2<f64>) -> Self {
-        /// How many times as far off as that they may be.
+        /// Safety factor on this uncertainty.
         const ROOM: f64 = 4.0;
         let determinant = cycle.determinant(machine);
         let singular = (1.0 - matrix.trace() + determinant).abs().clamp(tolerance::ULP.value.sqrt(), 1.0);
@@ -197,7 +197,7 @@ impl Judgement {
         Self::of(&factors, determinant, loses(machine), matrix)
     }
 
-    /// The verdict on a follower that stays above the cam.
+    /// Verdict on a follower that stays above the cam.
     pub(super) fn of_flight(machine: &Machine, matrix: &Matrix2<f64>) -> Self {
         let (flight, omega) = (machine.flight(), machine.angular_velocity());
         let time = Interval::TURN / Interval::from(omega);
@@ -206,18 +206,18 @@ impl Judgement {
         Self::of(&[propagator(flight, time)], determinant, flight.zeta() > 0.0, matrix)
     }
 
-    /// The verdict on a follower that rests on the cam.
+    /// Verdict on a follower that rests on the cam.
     ///
-    /// With restitution below 1 infinitely many impacts leave nothing of a deviation. With restitution 1 no bounce ends in a rest, and
-    /// there is no matrix. A low bounce of speed u then keeps u^3 over the force of contact, an adiabatic invariant of many
-    /// bounces in a revolution, but for what the damper takes of it: `u ~ e^{-b t/(3 m)}`.
+    /// With restitution below 1 infinitely many impacts erase a deviation. With restitution 1 no bounce ends in a rest, and there is no
+    /// matrix. A low bounce of speed u then keeps u^3 over the force of contact, an adiabatic invariant of many bounces in a revolution,
+    /// except for what the damper takes: `u ~ e^{-b t/(3 m)}`.
     pub(super) fn of_rest(machine: &Machine) -> Self {
         let stability = if loses(machine) { Stability::Stable } else { Stability::Neutral };
         let error = if machine.restitution() < 1.0 { 0.0 } else { f64::NAN };
         Self { stability, known: Evidence::Computed, error }
     }
 
-    /// The verdict that holds wherever in `places` the impacts of a cycle are; none where it is not the same for all of them.
+    /// Verdict that holds for all impacts of a cycle within `places`. `None` where it is not the same for all of them.
     pub(super) fn proved(machine: &Machine, cycle: &Cycle, places: &[Place]) -> Option<Stability> {
         let factors = factors(machine, cycle, places);
         let determinant = |of: &Rows| of[0][0] * of[1][1] - of[0][1] * of[1][0];
@@ -231,7 +231,7 @@ impl Judgement {
     }
 }
 
-/// Whether impacts or flights lose anything, so that det M is below 1.
+/// Whether impacts or flights lose energy, so that det M is below 1.
 fn loses(machine: &Machine) -> bool {
     machine.restitution() < 1.0 || machine.flight().zeta() > 0.0
 }

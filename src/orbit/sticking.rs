@@ -1,4 +1,4 @@
-//! Orbits on which the follower sticks to the cam for a while: everything after follows from the cam alone.
+//! Orbits on which the follower sticks to the cam for a while. Everything after that follows from the cam alone.
 
 use std::f64::consts::TAU;
 
@@ -9,8 +9,8 @@ use crate::flight::State;
 use crate::known::Evidence;
 use crate::simulate::{Event, EventKind, Machine, SimulateError};
 
-/// The orbit of `revolutions` that sticks to the cam at `anchor`, rad, in `[0, 2 pi)`; `None` where the follower that is
-/// put on the cam there does not stick, or is not there again.
+/// The orbit of `revolutions` that sticks to the cam at `anchor`, rad, in `[0, 2 pi)`. `None` where a follower put on the cam there does
+/// not stick, or is not on the cam again one period later.
 pub fn through(machine: &Machine, anchor: f64, revolutions: u64) -> Result<Option<PeriodicOrbit>, SimulateError> {
     let mut motion = machine.start_on_cam(anchor, 0.0)?.with_each_impact();
     if !motion.contact {
@@ -41,13 +41,13 @@ pub fn through(machine: &Machine, anchor: f64, revolutions: u64) -> Result<Optio
     }))
 }
 
-/// The matrix that carries a small deviation once around an orbit that sticks, 2x2: 0, as infinitely many impacts before a rest leave
-/// nothing of it. With restitution 1 no bounce ends in a rest, and there is no such matrix.
+/// Matrix that carries a small deviation once around an orbit that sticks, 2x2. It is 0, since infinitely many impacts before a rest erase
+/// the deviation. With restitution 1 no bounce ends in a rest, and the matrix is NaN.
 pub fn matrix(machine: &Machine) -> Matrix2<f64> {
     Matrix2::from_element(if machine.restitution() < 1.0 { 0.0 } else { f64::NAN })
 }
 
-/// The follower at the next passage of angle 0.
+/// State of the follower at the next passage of angle 0.
 pub fn at_zero(machine: &Machine, anchor: f64) -> Result<State, SimulateError> {
     let mut motion = machine.start_on_cam(anchor, 0.0)?;
     if anchor == 0.0 {
@@ -57,14 +57,14 @@ pub fn at_zero(machine: &Machine, anchor: f64) -> Result<State, SimulateError> {
     Ok(motion.state)
 }
 
-/// The middle of the longest stretch on the cam among the events of one period, rad, in `[0, 2 pi)`; `None` where it never comes to rest or
-/// never leaves the cam.
+/// Middle of the longest stretch on the cam among the events of one period, rad, in `[0, 2 pi)`. `None` where the follower never comes to
+/// rest or never leaves the cam.
 pub fn anchor(events: &[Event], revolutions: u64) -> Option<f64> {
     let longest = stretches(events, revolutions).max_by(|one, two| (one.1 - one.0).total_cmp(&(two.1 - two.0)))?;
     Some(longest.0.midpoint(longest.1).rem_euclid(TAU)).filter(|angle| *angle < TAU)
 }
 
-/// From where to where the follower is on the cam among the events of one period, rad. It leaves the cam where it is released, or where a
+/// Stretches on the cam among the events of one period: start and end, rad. The follower leaves the cam where it is released, or where a
 /// corner that turns up throws it off, as an impact does.
 fn stretches(events: &[Event], revolutions: u64) -> impl Iterator<Item = (f64, f64)> {
     let period = revolutions as f64 * TAU;
@@ -81,7 +81,7 @@ fn stretches(events: &[Event], revolutions: u64) -> impl Iterator<Item = (f64, f
     sticks.map(move |stick| (stick, end(stick))).filter(|(_, end)| end.is_finite())
 }
 
-/// How long the follower sticks in one period, rad.
+/// Angle over which the follower sticks in one period, rad.
 pub fn time_on_cam(orbit: &PeriodicOrbit) -> f64 {
     if matches!(orbit.course, Course::Sticking(_)) && orbit.events.is_empty() {
         return orbit.revolutions as f64 * TAU;

@@ -1,13 +1,13 @@
-//! Where an orbit over equal lobes loses its symmetry: located by its own equations.
+//! Locates where an orbit over equal lobes loses its symmetry, by its own equations.
 //!
-//! Over a cam of equal lobes an orbit may do the same from lobe to lobe: p times in a period. What carries a deviation of it once around is
-//! then the p-th power of what carries it on by a p-th of a period, and p is even where
+//! Over a cam of equal lobes an orbit may repeat from lobe to lobe: p times in a period. The matrix M that carries a deviation once around
+//! is then the p-th power of the matrix S of a p-th of a period, and p is even where
 //!
 //! ```text
 //! M = S^p        1 + tr S + det S = 0: S has the multiplier -1, and M has 1 of a pair of orbits that branch off
 //! ```
 //!
-//! Nothing passes 0 there along either branch: 1 - tr M + det M only touches it. So S is asked, of the orbit that is symmetric.
+//! Nothing passes 0 there along either branch: 1 - tr M + det M only touches it. So S of the symmetric orbit is evaluated.
 
 use std::f64::consts::{PI, TAU};
 
@@ -19,16 +19,16 @@ use crate::cam::Cam;
 use crate::simulate::Machine;
 use crate::tolerance;
 
-/// The value near `begun` with whose `machine` the symmetric orbit near `near` has the multiplier -1 of a p-th of its period; and that orbit
-/// right beside it, as the equations of the whole period do not determine it there. `None` where the cam has no such lobes, or the orbit is
-/// not symmetric near by, and where the value is 0.
+/// Returns the value near `begun` at whose `machine` the symmetric orbit near `near` has the multiplier -1 of a p-th of its period. Also
+/// returns that orbit right beside it, since the equations of the whole period do not determine it there. `None` where the cam has no such
+/// lobes, the orbit is not symmetric nearby, or the value is 0.
 pub fn breaking(machine: impl Fn(f64) -> Option<Machine>, begun: f64, near: &Cycle) -> Option<(f64, PeriodicOrbit)> {
-    /// Where the orbit is asked, over the value: far enough from where it is not determined, and so near that a cubic through these errs by
-    /// less than rounding.
+    /// Relative distances from the value at which the orbit is computed. They are far enough from where it is not determined, and so near
+    /// that a cubic through the results errs by less than rounding.
     const BESIDE: [f64; 4] = [-2e-4, -1e-4, 1e-4, 2e-4];
-    /// How often that is done about what came out before.
+    /// Rounds of this, each about the result of the one before.
     const ROUNDS: usize = 8;
-    /// How far from where it is looked for it may be, of the value.
+    /// Largest distance of the result from the start, relative to the value.
     const FAR: f64 = 0.02;
     let first = machine(begun)?;
     let parts = parts(first.cam(), near)?;
@@ -54,7 +54,7 @@ pub fn breaking(machine: impl Fn(f64) -> Option<Machine>, begun: f64, near: &Cyc
     None
 }
 
-/// Where the polynomial through these points, a value and where it is, has the value 0: Neville's scheme; `None` where two values are the same.
+/// Root of the polynomial through these points, each a value and its place, by Neville's scheme. `None` where two values are the same.
 fn at_zero(seen: &[(f64, f64)]) -> Option<f64> {
     let mut row: Vec<f64> = seen.iter().map(|(_, place)| *place).collect();
     for width in 1..seen.len() {
@@ -66,9 +66,10 @@ fn at_zero(seen: &[(f64, f64)]) -> Option<f64> {
     row.first().copied().filter(|place| place.is_finite())
 }
 
-/// How many times in its period the cycle nearly does the same, an even number; `None` where it does not, or the cam does not.
+/// Number of parts in which the cycle nearly repeats, an even number. `None` where the cycle does not repeat, or the cam does not.
 fn parts(cam: &Cam, cycle: &Cycle) -> Option<usize> {
-    /// Rad, and of a velocity: next to where they branch off, orbits are as near to symmetric as their distance from there is to its root.
+    /// Tolerance, rad, and relative for velocities: near the branching, orbits differ from symmetric ones by the root of their distance
+    /// from it.
     const NEAR: f64 = 0.2;
     let count = cycle.impacts.len();
     let fastest = cycle.impacts.iter().fold(0.0_f64, |most, impact| most.max(impact.velocity_before.abs()));
@@ -84,9 +85,9 @@ fn parts(cam: &Cam, cycle: &Cycle) -> Option<usize> {
     (2..=count).rev().filter(|parts| parts.is_multiple_of(2) && count.is_multiple_of(*parts)).find(is_near)
 }
 
-/// Whether the cam is the same when it is turned by an angle, rad, as far as its digits go.
+/// Whether the cam is unchanged when it is turned by an angle, rad, within its digits.
 fn has_lobes(cam: &Cam, turn: f64) -> bool {
-    /// Places in each segment at which it is looked at.
+    /// Places in each segment that are compared.
     const PLACES: usize = 16;
     let size = cam.top() - cam.lowest().value;
     let places = cam.segments().iter().flat_map(|segment| {
@@ -100,7 +101,7 @@ fn has_lobes(cam: &Cam, turn: f64) -> bool {
     size > 0.0 && places.into_iter().all(is_same)
 }
 
-/// The cycle with the mean of what it does in each of its parts in all of them.
+/// Replaces each part of the cycle by the mean of all parts.
 fn symmetric(cam: &Cam, cycle: &Cycle, parts: usize) -> Cycle {
     let count = cycle.impacts.len();
     let (each, period) = (count / parts, cycle.revolutions as f64 * TAU);
@@ -127,7 +128,7 @@ fn symmetric(cam: &Cam, cycle: &Cycle, parts: usize) -> Cycle {
     Cycle { revolutions: cycle.revolutions, impacts: (0..count).map(impact).collect() }
 }
 
-/// S: what carries a deviation right before the first impact on to where the next part begins.
+/// S: the matrix that carries a deviation from right before the first impact to the start of the next part.
 fn step(machine: &Machine, cycle: &Cycle, parts: usize) -> Matrix2<f64> {
     let flown = |index: usize| {
         let (_, time) = cycle.flight(machine, index);
@@ -137,7 +138,7 @@ fn step(machine: &Machine, cycle: &Cycle, parts: usize) -> Matrix2<f64> {
 }
 
 impl PeriodicOrbit {
-    /// Its impacts as a cycle; none where it rests on the cam or never meets it.
+    /// The orbit's impacts as a cycle; `None` where it rests on the cam or never meets it.
     pub fn cycle(&self) -> Option<&Cycle> {
         if let Course::Impacts(cycle) = &self.course { Some(cycle) } else { None }
     }

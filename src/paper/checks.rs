@@ -1,4 +1,4 @@
-//! One check for each statement of the ledger: its id, and what decides it.
+//! One check for each statement of the ledger: its id, and the method that decides it.
 //!
 //! An equation's id names its proof, a number's id its quantity: only the others have a row here.
 
@@ -20,7 +20,7 @@ const LABELLED: &str = "in the drawing's coordinates the impact is at t = -0.5, 
 
 const LITERATURE: &str = "about other papers, none of which was read for this";
 
-/// What the piecewise-linear map rests on, whatever the cam.
+/// Hypotheses of the piecewise-linear map, whatever the cam.
 const HYPOTHESES: &str = "for one follower with a linear spring, of any damping and stiffness, any cam whose c and c' are continuous and \
     whose c'' jumps, and an orbit of one impact a revolution; given r > 0, v < c' at the impact and phi12(T/2) != 0";
 
@@ -28,12 +28,12 @@ const NO_APPENDIX: &str = "the paper ends with Appendix A; eq:gff is proved with
 
 const WORDING: &str = "the formulas around it mean what is right";
 
-/// What decides a statement.
+/// Method that decides a statement.
 #[derive(Clone, Copy)]
 pub enum Check<'a> {
     /// A proof by computer algebra, by the equation's label.
     Equation(&'a str),
-    /// Statements that are proved by computer algebra: what follows from them, and under which hypotheses.
+    /// Statements proved by computer algebra: the verdict that follows from them, and under which hypotheses.
     Proofs(Verdict, &'static [&'static str], &'a str),
     /// A printed number, by its quantity.
     Number(&'a str),
@@ -41,14 +41,14 @@ pub enum Check<'a> {
     Any(Evidence, fn(&Context<'_>) -> Decision),
     /// A computation on the paper's model.
     Paper(Evidence, fn(&Context<'_>) -> Decision),
-    /// Somebody who read it: what was found, and why.
+    /// A reader: the verdict, and the reason.
     Read(Verdict, &'a str),
 }
 
-/// What makes the map one of two sides.
+/// Proved statements that give the map its two sides.
 const RANK_ONE: [&str; 2] = ["A+ - A- = kappa F e2 (h F), of rank one", "B+ - B- = kappa F e2 v/2"];
 
-/// The checks that the ids of their statements do not name.
+/// The checks of statements whose ids do not name one.
 pub static CHECKS: &[(&str, Check<'_>)] = &[
     ("equation: eq:fb1", Check::Read(Verdict::Definition, MODEL)),
     ("equation: eq:i1", Check::Read(Verdict::Definition, MODEL)),
@@ -143,7 +143,7 @@ pub static CHECKS: &[(&str, Check<'_>)] = &[
     ("wording: mu", Check::Read(Verdict::Misprint, WORDING)),
 ];
 
-/// The check of a statement: that of the table, or else the proof or the number that its id names.
+/// The check of a statement: from the table, or else the proof or the number that its id names.
 pub fn find(id: &str) -> Option<Check<'_>> {
     let listed = CHECKS.iter().find(|(name, _)| *name == id).map(|(_, check)| *check);
     listed
@@ -152,12 +152,12 @@ pub fn find(id: &str) -> Option<Check<'_>> {
 }
 
 impl Check<'_> {
-    /// Whether another model than the paper's leaves it open.
+    /// Whether the statement stays open for a model other than the paper's.
     pub(crate) fn is_about_the_papers_model(self) -> bool {
         matches!(self, Self::Number(_) | Self::Paper(..))
     }
 
-    /// Decides the statement. What no check comes to is known by reading alone.
+    /// Decides the statement. A check that ends with an error leaves it open, with reading as the only evidence.
     pub(crate) fn run(self, context: &Context<'_>) -> CheckResult {
         let (known, decision) = match self {
             _ if self.is_about_the_papers_model() && !context.is_paper => {
@@ -182,7 +182,7 @@ fn proofs(context: &Context<'_>, verdict: Verdict, statements: &[&str], so: &str
     Ok((verdict, format!("residual 0, by computer algebra: {}; {so}", statements.join("; "))))
 }
 
-/// By the residuals: all zero as printed holds; otherwise the repaired form must have none.
+/// Decides by the residuals: if all are zero as printed, the equation holds; otherwise the repaired form must have none.
 fn equation(context: &Context<'_>, label: &str) -> Decision {
     let equation = context.equations.get(label).ok_or("not among the derivations")?;
     let Residuals { residual_as_printed, residual_repaired, subsets } = &equation.evidence;

@@ -1,4 +1,4 @@
-//! What a check may look at, and what it gives back.
+//! Input and result of a check.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::error::Error;
@@ -11,13 +11,13 @@ use crate::model::Model;
 use crate::published::{PrintedNumber, Verdict};
 use crate::study::verify::Verification;
 
-/// What computer algebra found about the printed equations; `make derive` writes it, `make derive-check` redoes it.
+/// Findings of computer algebra on the printed equations; `make derive` writes it, `make derive-check` redoes it.
 const EQUATIONS: &str = include_str!("../../golden/derived/printed_equations.json");
 
 /// Every statement that computer algebra proves, written and redone with them.
 const PROOFS: &str = include_str!("../../golden/derived/proofs.json");
 
-/// What checks may look at.
+/// Input of the checks.
 pub struct Context<'a> {
     pub(super) model: &'a Model,
     pub(super) cam: &'a Cam,
@@ -25,7 +25,7 @@ pub struct Context<'a> {
     /// Whether follower and cam are the paper's.
     pub(super) is_paper: bool,
     pub(super) equations: BTreeMap<String, Equation>,
-    /// The statements that are proved; what was measured is not among them.
+    /// The statements that are proved; measured results are not among them.
     pub(super) proved: BTreeSet<String>,
 }
 
@@ -76,7 +76,7 @@ fn stages() -> Result<Vec<Stage>, LedgerError> {
     Ok(read.map_err(|error| derived("proofs.json", &error))?.stages)
 }
 
-/// Of each printed equation by its label, and of each statement that is proved by itself: the script, and what it states.
+/// Script and statement of each printed equation, by its label, and of each statement that is proved by itself.
 pub fn proofs() -> Result<BTreeMap<String, [String; 2]>, LedgerError> {
     let printed = |equation: Equation| (equation.label, [script("printed equations"), equation.statement]);
     let of_stage = |stage: Stage| stage.proved.into_iter().map(move |it| (it.clone(), [script(&stage.stage), it]));
@@ -97,21 +97,21 @@ impl<'a> Context<'a> {
         Ok(Self { model, cam, findings, is_paper, equations, proved })
     }
 
-    /// What the paper prints for a quantity, as it was compared.
+    /// The paper's printed values of a quantity, as they were compared.
     pub(super) fn printed(&self, quantity: &str) -> Result<&'a PrintedNumber, String> {
         let mut numbers = self.findings.published.iter();
         let found = numbers.find(|number| number.agreement.quantity.to_string() == quantity);
         found.ok_or_else(|| format!("{quantity} was not compared with the print"))
     }
 
-    /// An entry of it.
+    /// An entry of the printed values of a quantity.
     pub(super) fn printed_entry(&self, quantity: &str, index: usize) -> Result<f64, Box<dyn Error>> {
         let entry =
             self.printed(quantity)?.printed.get(index).ok_or_else(|| format!("{quantity}: no entry {index}"))?;
         Ok(entry.parse()?)
     }
 
-    /// Whether computer algebra proves each of these statements; which one it does not, otherwise.
+    /// Checks that computer algebra proves each of these statements; the error names one that it does not.
     pub(super) fn proves(&self, statements: &[&str]) -> Result<(), String> {
         match statements.iter().find(|statement| !self.proved.contains(**statement)) {
             Some(missing) => Err(format!("not among the derivations: {missing}")),
@@ -120,18 +120,18 @@ impl<'a> Context<'a> {
     }
 }
 
-/// What a check found.
+/// Result of a check.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CheckResult {
     /// Its verdict.
     pub verdict: Verdict,
-    /// How that is known.
+    /// Evidence for the verdict.
     pub known: Evidence,
     /// The numbers that it rests on.
     pub evidence: String,
 }
 
-/// The verdict that a check comes to, with its evidence; an error says why the statement stays open.
+/// Verdict of a check, with its evidence; an error says why the statement stays open.
 pub(super) type Decision = Result<(Verdict, String), Box<dyn Error>>;
 
 /// `holds` or `otherwise`, with the numbers.
@@ -139,7 +139,7 @@ pub(super) fn decide(holds: bool, otherwise: Verdict, evidence: String) -> Decis
     Ok((if holds { Verdict::Holds } else { otherwise }, evidence))
 }
 
-/// Why the ledger cannot be held against anything.
+/// Reason why the ledger cannot be checked.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LedgerError {
     /// The file does not read.
@@ -148,7 +148,7 @@ pub enum LedgerError {
     /// A statement without a check.
     #[error("claims.toml: no check for \"{0}\"")]
     Unchecked(String),
-    /// What the checks need is not there.
+    /// Data that the checks need is missing.
     #[error("claims: {0}")]
     Derived(String),
 }

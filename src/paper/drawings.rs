@@ -1,4 +1,4 @@
-//! Appendix A and the drawn cams: what the coordinates of the pictures in the arXiv source say, and what the printed lift does.
+//! Appendix A and the drawn cams: the coordinates of the pictures in the arXiv source, and the behaviour of the printed lift.
 
 use std::f64::consts::{PI, TAU};
 
@@ -16,7 +16,7 @@ use crate::tolerance;
 /// The arcs of the drawn cams.
 const DRAWN: &str = include_str!("../../golden/published/drawings.json");
 
-/// What the letters of Appendix A are called, in the order in which they are given here.
+/// Names of the letters of Appendix A, in the order used here.
 const LETTERS: [&str; 6] = ["rho0", "kappa1", "rho1", "kappa2", "rho2", "rho3"];
 
 #[derive(Deserialize)]
@@ -69,7 +69,7 @@ impl Drawing {
         [flank.at(flank.4), flank.at(flank.3), nose.at(nose.3)].map(|point| point - base.centre())
     }
 
-    /// By how much two circles that should touch miss it at most; and by how many degrees an arc runs past the next at most.
+    /// Largest miss between two circles that should touch; and largest number of degrees by which an arc runs past the next.
     fn misses(&self) -> (f64, f64) {
         let neighbours = self.arcs.iter().zip(self.arcs.iter().cycle().skip(1));
         neighbours.fold((0.0, 0.0), |(gap, past), (one, next)| {
@@ -202,7 +202,7 @@ pub(super) fn angles_defined(_: &Context<'_>) -> Decision {
     decide(rises(ends(unsigned)), if rises(ends(signed)) { Verdict::Misprint } else { Verdict::Refuted }, evidence)
 }
 
-/// The lift of Appendix A, as printed, at an angle of (0, pi]; where no piece holds it, none.
+/// The lift of Appendix A, as printed, at an angle of (0, pi]; none where no piece contains the angle.
 fn printed_lift(lengths: [f64; 6], [theta1, theta2, theta3]: [f64; 3], angle: f64) -> Option<f64> {
     let [rho0, kappa1, rho1, kappa2, rho2, rho3] = lengths;
     let [r, p, q] = [theta1, theta2, theta3].map(|theta| PI / 2.0 - theta);

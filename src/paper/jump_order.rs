@@ -14,7 +14,7 @@ use crate::published::Verdict;
 /// A flight onto a corner of a model that is built in.
 #[derive(Clone, Copy, Debug)]
 pub struct Example {
-    /// Which machine and what happens, in a few words.
+    /// The machine and the event, in a few words.
     pub name: &'static str,
     file: &'static str,
     text: &'static str,
@@ -84,7 +84,7 @@ impl Example {
         Ok((model, cam, approach))
     }
 
-    /// What is predicted and what is measured there.
+    /// Predictions and measurements for the flight.
     pub fn compare(&self) -> Result<Compared, Box<dyn Error>> {
         let (model, cam, approach) = self.build()?;
         Ok(compare(&model, &cam, &approach)?)

@@ -1,4 +1,4 @@
-//! The ledger: what the paper says, what was found, and whether the check still finds it.
+//! The ledger: each statement of the paper, the verdict on it, and whether the check still gives that verdict.
 
 use std::collections::BTreeMap;
 
@@ -17,68 +17,68 @@ const CLAIMS: &str = include_str!("claims.toml");
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Claim {
-    /// Names it for good; checks go by it.
+    /// Permanent name, by which checks refer to it.
     pub id: String,
-    /// Where the paper has it.
+    /// Place in the paper.
     #[serde(rename = "where")]
     pub place: String,
-    /// What it says, in words of this project.
+    /// The statement, in words of this project.
     pub statement: String,
-    /// What was found.
+    /// Verdict found.
     pub verdict: Verdict,
-    /// What is right instead; with every misprint, refutation and what holds in part.
+    /// Correction; given with every misprint, every refutation and every statement that holds in part.
     pub correct: Option<String>,
-    /// Of what is wrong, the statements whose slips it has, by id: its own where nothing is listed.
+    /// For a wrong statement, the statements whose slips it has, by id: its own where nothing is listed.
     #[serde(default)]
     pub slips: Vec<String>,
     /// The function that decides it, `FILE: FUNCTION`, where that is neither a proof nor a printed number's comparison.
     pub check: Option<String>,
 }
 
-/// A statement with what its check found.
+/// A statement with the result of its check.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Held {
     /// Names the statement.
     pub id: String,
-    /// Where the paper has it.
+    /// Place in the paper.
     #[serde(rename = "where")]
     pub place: String,
-    /// What it says.
+    /// The statement.
     pub statement: String,
-    /// What the check found; `open` for another model where the statement is about the paper's.
+    /// Verdict of the check; `open` for another model where the statement is about the paper's.
     pub verdict: Verdict,
-    /// What the ledger says.
+    /// Verdict in the ledger.
     #[serde(skip)]
     pub listed: Verdict,
-    /// How the verdict is known.
+    /// Evidence for the verdict.
     pub known: Evidence,
     /// The numbers that the verdict rests on.
     pub evidence: String,
-    /// What is right instead, where the check finds it wrong.
+    /// Correction, where the check finds the statement wrong.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub correct: Option<String>,
-    /// The statements whose slips make it wrong, by id: it makes one itself where its own is among them.
+    /// The statements whose slips make it wrong, by id. If its own is among them, it makes a slip itself.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub slips: Vec<String>,
-    /// Whether that is the ledger's verdict, or the statement is not about this model.
+    /// Whether the check confirms the ledger's verdict, or the statement is not about this model.
     pub as_found: bool,
 }
 
 impl Held {
-    /// Whether it is wrong by a slip that is made here, and not only by one that was made before.
+    /// Whether the statement makes a slip itself, and is not wrong only by slips that were made before.
     pub fn makes_a_slip(&self) -> bool {
         self.slips.contains(&self.id)
     }
 }
 
-/// What the statements were taken from.
+/// Source of the statements.
 pub(crate) const SOURCE: &str = "the paper's source on arXiv (0711.1008)";
 
-/// Every statement held against its check: what `claims` finds; serializes to `corner-impact/claims/1`.
+/// Every statement with the result of its check: the output of `claims`; serializes to `corner-impact/claims/1`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Claims {
     schema: &'static str,
-    /// What all of it is about.
+    /// Source of all statements.
     pub source: &'static str,
     /// Name of the model.
     pub model: String,
@@ -86,7 +86,7 @@ pub struct Claims {
     pub claims: Vec<Held>,
     /// How many statements have each verdict.
     pub counts: BTreeMap<Verdict, usize>,
-    /// Whether every check comes to the ledger's verdict.
+    /// Whether every check confirms the ledger's verdict.
     pub agrees: bool,
 }
 
@@ -102,7 +102,7 @@ pub fn claims() -> Result<Vec<Claim>, LedgerError> {
 }
 
 impl Claims {
-    /// Holds every statement against its check, told to `watch` statement by statement.
+    /// Runs the check of every statement; reports progress to `watch`, statement by statement.
     pub fn hold(context: &Context<'_>, watch: &dyn Watch) -> Result<Self, LedgerError> {
         let claims = claims()?;
         let total = claims.len() as u64;

@@ -1,7 +1,7 @@
 //! The paper's statements, one by one, with a verdict that a check computes.
 //!
 //! `claims.toml` lists what the paper says and what was found; [`checks`] has one check for each id.
-//! A check that comes to another verdict than the ledger is an error, never an update: a misprint stays a
+//! A check that reaches another verdict than the ledger is an error, never an update: a misprint stays a
 //! misprint until somebody looks.
 
 pub mod checks;

@@ -36,7 +36,7 @@ impl fmt::Display for Shown {
 
 /// A motion beside x* that hits the cam left of t = 0, and one that hits it right of it: the t_i that solves eq:H for each.
 pub(super) fn side_of_the_impact(context: &Context<'_>) -> Decision {
-    /// What is taken from the velocity at x*, m/s: the follower is lower and hits the cam earlier, or later.
+    /// Decreases of the velocity at x*, m/s: the follower is lower and hits the cam earlier, or higher and hits it later.
     const SLOWER: [f64; 2] = [1.0, -1.0];
     let at = &context.findings.at;
     let (omega, corner) = (at.angular_velocity(), at.corner.angle);
@@ -150,7 +150,7 @@ pub(super) fn profile_is_continuous(context: &Context<'_>) -> Decision {
     decide(!continuous, Verdict::Misprint, evidence)
 }
 
-/// What `of` says of the corner impact of the same machine with zeta = 1/s.
+/// Value of `of` at the corner impact of the same machine with zeta = 1/s.
 fn damped<T>(context: &Context<'_>, of: impl Fn(&Model, &CornerImpact) -> T) -> Result<T, LocateError> {
     let mut model = context.model.clone();
     model.follower.damping = 2.0 * model.follower.mass;
@@ -226,7 +226,7 @@ pub(super) fn five_decimals(context: &Context<'_>) -> Decision {
     decide(all, Verdict::Refuted, format!("largest differences: {}; five decimals allow 5e-6", parts.join(", ")))
 }
 
-/// What decides about the local map; a degenerate one has none.
+/// Classification of the local map; a degenerate map has none.
 fn classification<'a>(context: &'a Context<'_>) -> Result<&'a Classification, &'static str> {
     context.findings.classification.as_ref().map_err(|_| "the map is degenerate")
 }

@@ -1,4 +1,4 @@
-//! What is a cam made of? Its segments, and the corners where they meet.
+//! The segments of a cam, and the corners where they meet.
 
 use serde::Serialize;
 
@@ -12,26 +12,26 @@ pub struct CamSheet {
     schema: &'static str,
     /// Name of the model.
     pub model: String,
-    /// Where its numbers come from.
+    /// Source of its numbers.
     pub source: String,
-    /// The law that `[cam]` names.
+    /// Name of the law in `[cam]`.
     pub law: &'static str,
-    /// Its lowest and its highest lift.
+    /// Lowest and highest lift.
     pub lift_m: [f64; 2],
-    /// How well it is known, if it is measured.
+    /// Accuracy of the cam, if it is measured.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub measured: Option<Measured>,
-    /// In order of angle.
+    /// Segments, in order of angle.
     pub segments: Vec<Segment>,
-    /// What the user calls each of them: the motion of a program, the circle of a cam of arcs, else the kind of its law.
+    /// The user's name of each segment: the motion of a program, the circle of a cam of arcs, else the kind of its law.
     pub motions: Vec<&'static str>,
-    /// The largest velocity, acceleration and jerk between corners, with where they are.
+    /// Largest velocity, acceleration and jerk between corners, with their places.
     pub largest: [Largest; 3],
-    /// The highest order of a jump that is listed.
+    /// Highest order of the listed jumps.
     pub highest_order: usize,
-    /// In order of angle.
+    /// Corners, in order of angle.
     pub corners: Vec<Corner>,
-    /// Those of the cam itself: where polynomials of a smoothing spline meet is nothing of it.
+    /// Corners of the cam itself, without the knots of a smoothing spline.
     #[serde(skip)]
     pub own_corners: Vec<Corner>,
 }
@@ -39,16 +39,16 @@ pub struct CamSheet {
 /// The largest size of a derivative of the lift between corners.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Largest {
-    /// Of which: 1 velocity, 2 acceleration, 3 jerk.
+    /// Order of the derivative: 1 velocity, 2 acceleration, 3 jerk.
     pub order: usize,
-    /// With its sign, m/rad^order.
+    /// Value with its sign, m/rad^order.
     pub value_m: f64,
-    /// Where, rad.
+    /// Cam angle, rad.
     pub cam_angle_rad: f64,
 }
 
 impl Largest {
-    /// Of a cam.
+    /// Finds the largest size of one derivative on a cam.
     pub(super) fn of(cam: &Cam, order: usize) -> Self {
         let least = |sign: f64| {
             let mut weights = [0.0; 4];
@@ -61,9 +61,9 @@ impl Largest {
     }
 }
 
-/// What the user calls each segment.
+/// Returns the user's name of each segment.
 fn motions(model: &Model, cam: &Cam) -> Vec<&'static str> {
-    /// From the middle of the base circle on, as Appendix A has them.
+    /// Arcs from the middle of the base circle on, as in Appendix A.
     const ARCS: [&str; 7] = ["base circle", "flank", "nose", "top dwell", "nose", "flank", "base circle"];
     let mut profile = &model.cam;
     while let CamProfile::Rounded { sharp, .. } = profile {
@@ -90,12 +90,12 @@ fn motions(model: &Model, cam: &Cam) -> Vec<&'static str> {
 }
 
 impl CamSheet {
-    /// Whether it is a smoothing spline near the rows of a table.
+    /// Whether the cam is a smoothing spline near the rows of a table.
     pub(crate) fn is_smoothed(&self) -> bool {
         self.measured.as_ref().is_some_and(|measured| measured.is_smoothed)
     }
 
-    /// What a model's cam is made of, with corners up to an order.
+    /// Lists the segments of a model's cam, and its corners up to an order.
     pub fn new(model: &Model, cam: &Cam, highest_order: usize) -> Result<Self, ModelError> {
         let segments = cam.segments().to_vec();
         let highest_order = highest_order.min(Jet::HIGHEST_JUMP);

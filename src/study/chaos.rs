@@ -1,4 +1,4 @@
-//! Is there a set of chaotic motions, at a speed or at every speed of a range? Proved, or how far it came.
+//! Proofs of sets of chaotic motions, at a speed or at every speed of a range, and how near a failed proof came.
 
 use crate::cam::Cam;
 use crate::covering::find::{ProofScope, Proved, Short, find};
@@ -11,20 +11,20 @@ use crate::progress::Watch;
 use crate::study::trapping::{Trapping, trapping};
 use crate::study::{StudyError, hypotheses, machine};
 
-/// What is proved of a model's chaos: the document of `chaos --json`.
+/// The proofs of a model's chaos: the document of `chaos --json`.
 #[derive(Clone, Debug)]
 pub struct Chaos {
     /// The model's name.
     pub model: String,
-    /// From which speed to which, rpm.
+    /// Range of speeds, rpm.
     pub rpm: [f64; 2],
-    /// What is taken for granted of the machine where anything is proved.
+    /// Hypotheses on the machine, for all proofs.
     pub hypotheses: Vec<&'static str>,
-    /// By rising speed.
+    /// Theorems, by rising speed.
     pub theorems: Vec<Theorem>,
-    /// Where nothing is proved.
+    /// Ranges of speeds at which nothing is proved.
     pub open: Vec<Open>,
-    /// Regions that trap, at the lowest speed, where they were asked for.
+    /// Trapping regions at the lowest speed, if requested.
     pub trapping: Option<Trapping>,
 }
 
@@ -40,7 +40,7 @@ document!(Chaos as it {
 });
 
 impl Chaos {
-    /// Whether there is a set of chaotic motions or a region that traps.
+    /// Whether there is a set of chaotic motions or a trapping region.
     pub fn proves_something(&self) -> bool {
         !self.theorems.is_empty() || self.trapping.as_ref().is_some_and(|trapping| !trapping.regions.is_empty())
     }
@@ -49,13 +49,13 @@ impl Chaos {
 /// A set of chaotic motions at every speed of a range.
 #[derive(Clone, Debug)]
 pub struct Theorem {
-    /// The h-set, for this range of speeds, with the strips that are proved to cover it.
+    /// The h-set for this range of speeds, with the strips that are proved to cover it.
     pub set: HSet,
-    /// What is proved of each strip.
+    /// Proof of each strip.
     pub strips: Vec<Covered>,
-    /// Strips that were tried in vain.
+    /// Strips whose proof failed.
     pub refused: Vec<Refused>,
-    /// What is taken for granted.
+    /// Hypotheses of the theorem.
     pub hypotheses: Vec<&'static str>,
 }
 
@@ -71,12 +71,12 @@ document!(Theorem as it {
     refused: it.refused,
 });
 
-/// Speeds at which no chaos is proved, and how far it came.
+/// Speeds at which no chaos is proved, with the result of the search.
 #[derive(Clone, Debug)]
 pub struct Open {
-    /// From which speed to which, rpm.
+    /// Range of speeds, rpm.
     pub rpm: [f64; 2],
-    /// What was found.
+    /// Result of the search.
     pub short: Short,
 }
 
@@ -87,17 +87,17 @@ document!(Open as it {
     refused: it.short.refused,
 });
 
-/// The widest and the narrowest range of speeds, rpm, that one h-set is looked for. A narrower one is like a speed: as much is proved
-/// there as can be.
+/// Widest and narrowest range of speeds, rpm, for which one h-set is looked for. A narrower range counts as one speed: as much as
+/// possible is proved there.
 const WIDEST: f64 = 0.5;
 const NARROWEST: f64 = 0.03;
 
-/// Looks for sets of chaotic motions at a speed, or at every speed of a range, rpm; and at the lowest for regions that trap, where
-/// those are wanted.
+/// Looks for sets of chaotic motions at a speed, or at every speed of a range, rpm. If requested, it also looks for trapping regions at
+/// the lowest speed.
 pub fn chaos(model: &Model, rpm: [f64; 2], wants_regions: bool, watch: &dyn Watch) -> Result<Chaos, StudyError> {
     let mut found = sets(model, rpm, watch)?;
     if wants_regions {
-        // Of a range the strips of higher speeds lie elsewhere.
+        // The strips of a range's higher speeds lie elsewhere.
         let strips = found.theorems.iter().map(|theorem| &theorem.set).rfind(|set| set.rpm[0] == rpm[0]);
         found.trapping = Some(trapping(model, rpm[0], strips, watch)?);
     }
@@ -155,21 +155,21 @@ fn sets(model: &Model, rpm: [f64; 2], watch: &dyn Watch) -> Result<Chaos, StudyE
     }
 }
 
-/// What a theorem is drawn with: impacts of a long run, and the strips' images, in degrees of the cam and m/s relative to it.
+/// The drawing of a theorem: impacts of a long run, and the strips' images, in degrees of the cam and m/s relative to it.
 #[derive(Clone, Debug)]
 pub struct Portrait {
-    /// The impacts of a run that starts in the h-set.
+    /// Impacts of a run that starts in the h-set.
     pub impacts: Vec<[f64; 2]>,
-    /// For each strip the outline of where it is carried, as far as that is seen.
+    /// Outline of each strip's image, where it is found.
     pub images: Vec<Vec<[f64; 2]>>,
 }
 
-/// Draws the numbers of a theorem at its lowest speed.
+/// Computes the drawing of a theorem at its lowest speed.
 pub fn portrait(model: &Model, set: &HSet) -> Result<Portrait, StudyError> {
-    /// Impacts of the run, and those that are left out before.
+    /// Number of impacts of the run, and of those left out before.
     const SHOWN: usize = 400_000;
     const SETTLING: usize = 500;
-    /// Points along each side of an image.
+    /// Number of points along each side of an image.
     const POINTS: usize = 400;
     let machine = machine(model, set.rpm[0])?;
     let impacts = impacts(&machine, [set.centre[0].to_radians(), set.centre[1]], SETTLING, SHOWN)?;

@@ -1,4 +1,4 @@
-//! Where orbits go when a number changes: branches of them, the points that they pass, and what runs settle on.
+//! Continuation of orbits as a number changes: their branches, the special points on them, and the motions on which runs settle.
 
 use super::{StudyError, inside, machine};
 use crate::model::Model;
@@ -12,14 +12,14 @@ use crate::study::survey::settled_impacts;
 pub struct Branches<'a> {
     model: &'a Model,
     from_rpm: f64,
-    /// How they were followed.
+    /// Settings with which they were followed.
     pub following: Following,
     /// Each branch once.
     pub branches: Vec<Branch>,
 }
 
-/// Follows the orbits that a search finds at `from_rpm`, and what branches off from them with twice the period or crosses them, so
-/// many times over.
+/// Follows the orbits that a search finds at `from_rpm`. Then it follows the orbits that branch off with twice the period or cross them,
+/// and repeats this `doublings` times.
 pub fn branches<'a>(
     model: &'a Model,
     from_rpm: f64,
@@ -55,7 +55,8 @@ pub fn branches<'a>(
 }
 
 impl Branches<'_> {
-    /// What runs settle on at `count` values of what changes, by rising value: the value, and the cam angle of an impact, rad.
+    /// Returns impacts of the motions on which runs settle, at `count` rising values of the varied number: each value, and the cam angle
+    /// of an impact, rad.
     pub fn settled(&self, count: u32, watch: &dyn Watch) -> Result<Vec<[f64; 2]>, StudyError> {
         const TRANSIENT: u64 = 300;
         const RECORD: u64 = 100;
@@ -65,14 +66,14 @@ impl Branches<'_> {
         for index in 0..count {
             watch.at("what runs settle on", u64::from(index), u64::from(count));
             let value = low + (high - low) * (f64::from(index) + 0.5) / f64::from(count);
-            // The edge of what the model allows has been told already.
+            // The edge of the values that the model allows has been reported already.
             let Ok((machine, _)) = family.machine(&[value]) else { continue };
             settled.extend(settled_impacts(&machine, TRANSIENT, RECORD)?.into_iter().map(|angle| [value, angle]));
         }
         Ok(settled)
     }
 
-    /// What a picture of them is called.
+    /// Title of a picture of the branches.
     pub fn title(&self) -> String {
         let parameter = &self.following.parameter;
         let what = if *parameter == Parameter::Speed { "speed" } else { parameter.name() };

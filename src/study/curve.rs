@@ -1,4 +1,4 @@
-//! Where events such as corner impacts, folds, flips and grazes go when a number of the model changes: their speed, and where
+//! Curves of events such as corner impacts, folds, flips and grazes as a number of the model changes: their speed, and the points where
 //! their type changes.
 
 use super::StudyError;
@@ -12,12 +12,13 @@ use crate::progress::Watch;
 /// The curves through the events of a model.
 #[derive(Clone, Debug)]
 pub struct Curves {
-    /// The model's own value of what changes; events were looked for there, or where the range is nearest to it.
+    /// The model's own value of the number that changes. Events were looked for there, or at the nearest value of the range.
     pub own: f64,
-    /// Of the nonsmooth folds of the cam with sharp corners, where the angle that corners are rounded over is what changes: the
-    /// speed, rpm, and by how much rounding moves the fold.
+    /// Nonsmooth folds of the cam with sharp corners, if the changing number is the angle over which corners are rounded: the speed, rpm,
+    /// and the fold's shift by rounding.
     pub sharp: Vec<(f64, RoundedCorner)>,
-    /// One for each event that was found and is on none before it: those of one kind after the other, as they were asked for.
+    /// One curve for each event found that is on no earlier curve. Curves of one kind follow each other, in the order of the requested
+    /// kinds.
     pub curves: Vec<EventCurve>,
 }
 
@@ -33,7 +34,8 @@ pub fn curves(
     let Parameter::Field(path) = &following.parameter else { return Err(StudyError::SpeedFollowed) };
     let [low, high] = following.range;
     let own = following.parameter.value(model, rpm[0]).unwrap_or(f64::NAN);
-    // What has no event at its own value, as a sharp corner has no fold, is looked at where the range is nearest to it.
+    // A cam may have no event at its own value, as a sharp corner has no fold. Then events are looked for at the nearest value of the
+    // range.
     let start = own.clamp(low, high);
     let model = &if start == own { model.clone() } else { model.with_number(path, start)? };
     let is_wanted = |kind: SpecialKind| kind.bifurcation().is_some_and(|event| events.contains(&event));
@@ -63,7 +65,7 @@ pub fn curves(
     Ok(Curves { own, sharp, curves })
 }
 
-/// The nonsmooth folds between two speeds, rpm, of a cam with sharp corners.
+/// Finds the nonsmooth folds between two speeds, rpm, of a cam with sharp corners.
 fn sharp(
     model: &Model,
     [rpm_min, rpm_max]: [f64; 2],

@@ -1,4 +1,4 @@
-//! What the motion settles on, value by value of the speed or of another number.
+//! Diagrams of the motions on which runs settle, over the speed or another number.
 
 use std::time::Instant;
 
@@ -15,7 +15,7 @@ use crate::study::survey::{
     SweepTally,
 };
 
-/// A motion on each of the attractors of `machine`, as they are found without a look at other machines.
+/// Returns a motion on each attractor of `machine`, as found without other machines.
 pub fn on_attractors(machine: &Machine, sample: &Sample, budget: Budget) -> Result<Vec<Motion>, SimulateError> {
     let found = AttractorsAtValue::new(machine, sample, budget)?;
     let mut motions: Vec<Motion> = found.attractors.into_iter().map(|attractor| attractor.motion).collect();
@@ -23,7 +23,7 @@ pub fn on_attractors(machine: &Machine, sample: &Sample, budget: Budget) -> Resu
     Ok(motions)
 }
 
-/// What a run from `start` comes to at each value, side by side on `threads` threads, for `None` on one for each core.
+/// Finds the long-run motion of a run from `start` at each value, in parallel on `threads` threads; `None` takes one for each core.
 pub fn one_row(
     over: &Survey,
     start: Start,
@@ -34,7 +34,7 @@ pub fn one_row(
     over.run(threads, watch, |_, machine| Point::from(machine, start, budget))
 }
 
-/// The loads of each recorded revolution of a run from `start` at each value; an error where it cannot be run.
+/// Computes the loads of each recorded revolution of a run from `start` at each value. Fails if a run fails.
 pub fn loads(
     over: &Survey,
     start: Start,
@@ -50,7 +50,7 @@ pub fn loads(
             Loads::recorded(&model, machine, motion, budget.record)
         };
         let loads = recorded().map_err(|error: SimulateError| error.to_string())?;
-        // As it was asked for, and not as the angular velocity has it.
+        // The place as requested, not as computed from the angular velocity.
         Ok(loads.into_iter().map(|loads| Loads { place: over.place(index), ..loads }).collect())
     });
     let one = |(index, found): (usize, Result<Vec<Loads>, String>)| {
@@ -59,25 +59,25 @@ pub fn loads(
     found?.into_iter().enumerate().map(one).collect()
 }
 
-/// What a sweep came to: the document of `diagram --summary`.
+/// Summary of a sweep: the document of `diagram --summary`.
 #[derive(Clone, Debug, Serialize)]
 pub struct Swept {
     schema: &'static str,
     /// The model's name.
     pub model: String,
-    /// Rows recorded, impacts among them, revolutions run.
+    /// Numbers of rows recorded, impacts among them, and revolutions run.
     #[serde(flatten)]
     pub tally: SweepTally,
-    /// Revolutions that each run was followed for, recorded or not: what it comes to is not judged.
+    /// Revolutions that each run was followed for, recorded or not. The long-run motion is not judged.
     pub followed: u64,
     /// Threads used.
     pub threads: usize,
-    /// Seconds that the sweep took, with writing what it found.
+    /// Seconds that the sweep took, including writing its results.
     pub wall_s: f64,
 }
 
 impl Swept {
-    /// Sweeps on `threads` threads, for `None` on one for each core; `take` gets what is found, in order.
+    /// Runs a sweep on `threads` threads; `None` takes one for each core. `take` gets the results in order.
     pub fn new<B: RecordBlock, E: From<SweepError>>(
         model: &str,
         sweep: &Sweep,
@@ -101,19 +101,19 @@ impl Swept {
     }
 }
 
-/// What a picture shows of a sweep: where impacts are, in degrees, or positions at the section, m, and exponents; across as the values
-/// are spaced.
+/// The points that a picture of a sweep shows: impact angles, in degrees, or positions at the section, m, and Lyapunov exponents. The
+/// horizontal axis has the spacing of the values.
 #[derive(Clone, Debug)]
 pub struct Shown {
     in_degrees: bool,
     spacing: Spacing,
     cloud: Cloud,
-    /// Where the value is, and the Lyapunov exponent per revolution, of each that has one.
+    /// Place of each value that has a Lyapunov exponent, and that exponent per revolution.
     pub exponents: Vec<[f64; 2]>,
 }
 
 impl Shown {
-    /// Nothing of a sweep yet.
+    /// Builds an empty picture of a sweep.
     pub fn new(sweep: &Sweep) -> Self {
         let spacing = sweep.over.axis().spacing;
         let [low, high] = sweep.over.axis().ends().map(|end| spacing.place(end));
@@ -121,7 +121,7 @@ impl Shown {
         Self { in_degrees: sweep.section == Section::Impacts, spacing, cloud, exponents: Vec::new() }
     }
 
-    /// Adds what was found.
+    /// Adds the results of a block.
     pub fn take(&mut self, found: &Places) {
         for [value, place] in &found.places {
             self.cloud.push(self.spacing.place(*value), if self.in_degrees { place.to_degrees() } else { *place });
@@ -131,7 +131,7 @@ impl Shown {
         self.exponents.extend(found.exponent.map(placed).filter(is_new));
     }
 
-    /// The places.
+    /// Returns the density of the points, and the exponents.
     pub fn places(self) -> (Density, Vec<[f64; 2]>) {
         (self.cloud.finish(), self.exponents)
     }

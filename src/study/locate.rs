@@ -1,8 +1,8 @@
-//! Every corner impact of a range of speeds with its local map: by routes that must agree, and what happens there.
+//! Every corner impact in a range of speeds, with its local map by routes that must agree, and the event there.
 //!
-//! What a corner does depends on the lowest derivative of the lift that jumps. Where that is the velocity, the map has a gap
-//! and each side ends on its own; where it is the acceleration, two matrices meet and Feigin's classification tells the rest;
-//! where it is a higher one, both sides have one matrix, and nothing happens to first order.
+//! The event depends on the lowest derivative of the lift that jumps at the corner. If the velocity jumps, the map has a gap and each
+//! side's orbit ends by itself. If the acceleration jumps, two matrices meet, and Feigin's classification gives the event. If only a
+//! higher derivative jumps, both sides have one matrix, and nothing happens to first order.
 
 use std::collections::BTreeMap;
 
@@ -28,21 +28,21 @@ use crate::study::{ModelLabel, hypotheses};
 /// The corner impacts of a range of speeds: the document `corner-impact/locate/1`.
 #[derive(Clone, Debug)]
 pub struct Located {
-    /// The model that was looked at.
+    /// The model.
     pub model: ModelLabel,
     /// Each corner impact, by rising speed.
     pub found: Vec<LocatedImpact>,
-    /// What was looked at for them, and refused.
+    /// Record of the search, with the refused candidates.
     pub looked_at: FoundCornerImpacts,
-    /// What is taken for granted where it is proved that there are no others; none where nothing is.
+    /// Hypotheses on the machine for the proof that there are no others; empty if nothing is proved.
     pub hypotheses: Vec<&'static str>,
     /// The range, rpm.
     pub range: Study,
     /// Turns of the cam in one period of the orbits looked for.
     pub revolutions: u64,
-    /// How well the cam is known, if it is measured.
+    /// Accuracy of the cam, if it is measured.
     pub measured: Option<Measured>,
-    /// Whether the routes agree at every one; true where there is none.
+    /// Whether the routes agree at every corner impact; true if there is none.
     pub agrees: bool,
 }
 
@@ -62,7 +62,7 @@ document!(Located as it {
     agrees: it.agrees,
 });
 
-/// What was looked at, without what was found there.
+/// The extent of the search, without its results.
 struct Searched<'a>(&'a FoundCornerImpacts);
 
 document!(Searched<'_> as it {
@@ -75,7 +75,7 @@ document!(Searched<'_> as it {
     found_by: it.0.recaptured(),
 });
 
-/// How shots from corners were made.
+/// Settings of the shots from corners.
 struct Shots {
     speed_ratio: f64,
     velocities: usize,
@@ -88,15 +88,15 @@ document!(Shots as it { speed_ratio: it.speed_ratio, velocities: it.velocities }
 pub struct LocatedImpact {
     /// The orbit.
     pub at: CornerImpact,
-    /// How far a measured cam may have moved its speed, rpm; none where the cam is not measured or that is not known.
+    /// Shift of the speed that the noise of a measured cam may cause, rpm; none if the cam is not measured or the shift is unknown.
     pub speed_error: Option<f64>,
-    /// Its map by the product of propagators and saltation matrices; at a corner of velocity only `at.side` of it holds.
+    /// Map by the product of propagators and saltation matrices. At a corner of velocity it is valid on `at.side` only.
     pub map: CornerMap,
-    /// What happens there.
+    /// The event at the corner impact.
     pub local: Happens,
-    /// The danger of a border collision, if there is any.
+    /// Danger of a border collision, if there is any.
     pub danger: Option<Danger>,
-    /// The routes pairwise.
+    /// Comparisons of the routes, pairwise.
     pub comparisons: Vec<Agreement>,
     /// Routes that did not run.
     pub skipped: Vec<Skipped>,
@@ -129,30 +129,30 @@ document!(LocatedImpact as it {
 });
 
 impl LocatedImpact {
-    /// The side whose orbit this is, where the velocity jumps.
+    /// The side whose orbit this is, if the velocity jumps.
     pub(crate) fn side(&self) -> Option<Side> {
         (self.at.corner.jump_order == 1).then_some(self.at.side)
     }
 
-    /// The sides that have a map.
+    /// Sides that have a map.
     fn sides(&self) -> impl Iterator<Item = Side> {
         [Side::Minus, Side::Plus].into_iter().filter(|side| self.side().is_none_or(|only| only == *side))
     }
 }
 
-/// What happens at a corner impact.
+/// The event at a corner impact.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Happens {
-    /// Velocity jumps: impacts across the corner are thrown elsewhere.
+    /// The velocity jumps: impacts across the corner are thrown elsewhere.
     Gap,
-    /// Acceleration jumps: two matrices meet on a border; Feigin's verdict, where there is one.
+    /// The acceleration jumps: two matrices meet on a border. Contains Feigin's verdict, if there is one.
     BorderCollision(Result<Classification, Refusal>),
-    /// A higher derivative jumps: one matrix.
+    /// A higher derivative jumps: both sides have one matrix.
     Smooth,
 }
 
 impl Happens {
-    /// Its name in documents.
+    /// Name in documents.
     pub(crate) fn scenario(&self) -> String {
         match self {
             Self::Gap => "gap".into(),
@@ -163,7 +163,7 @@ impl Happens {
         }
     }
 
-    /// What that is, in words; of a border collision its fixed points tell more.
+    /// Meaning of the event, in words. For a border collision the fixed points give more.
     pub(crate) fn meaning(&self) -> String {
         match self {
             Self::BorderCollision(Ok(_)) => "two matrices meet on a border".into(),
@@ -182,7 +182,7 @@ impl Happens {
     }
 }
 
-/// What happens, with the danger of a border collision: the document of both.
+/// The event, with the danger of a border collision: the document of both.
 struct Told<'a>(&'a Happens, Option<&'a Danger>);
 
 impl Serialize for Told<'_> {
@@ -196,13 +196,13 @@ impl Serialize for Told<'_> {
     }
 }
 
-/// Why a range cannot be looked through.
+/// Reason why a range cannot be searched.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LocateRangeError {
-    /// The cam.
+    /// The cam is invalid.
     #[error("{0}")]
     Model(#[from] ModelError),
-    /// The range.
+    /// The range is invalid.
     #[error(transparent)]
     Range(#[from] RangeError),
 }
@@ -233,7 +233,7 @@ pub fn locate(model: &Model, range: Study, revolutions: u64, watch: &dyn Watch) 
     })
 }
 
-/// How far a measured cam may have moved a corner impact, rpm.
+/// Shift of a corner impact that the noise of a measured cam may cause, rpm.
 fn speed_error(model: &Model, cam: &Cam, likely: &PlausibleCams, at: &CornerImpact) -> Option<f64> {
     let machine = Machine::new(cam.clone(), &model.follower, at.angular_velocity());
     let at_end = at.cycle.impacts.get(at.impact)?.segment != at.corner.segment;
@@ -241,11 +241,11 @@ fn speed_error(model: &Model, cam: &Cam, likely: &PlausibleCams, at: &CornerImpa
     likely.error([at.speed_rpm()], |model, cam| event.moved(model, cam).map(|rpm| [rpm])).map(|[error]| error)
 }
 
-/// A corner impact with its map by each route that its corner has.
+/// Computes the map of a corner impact by each route that its corner has.
 pub(super) fn located(model: &Model, cam: &Cam, at: &CornerImpact) -> LocatedImpact {
     let mut log = Log::default();
     let (mut routes, sticking) = routes::routes(model, cam, at, &mut log);
-    // The route that knows every kind of orbit comes first: its map is told.
+    // The route that handles every kind of orbit comes first: its map is reported.
     routes.sort_by_key(|route| route.name != RouteName::Variational);
     let comparisons = routes::comparisons(at, &routes, &mut log);
     let (map, border) = (variational::route(model, cam, at).map, variational::border(model, cam, at));

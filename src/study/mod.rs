@@ -28,12 +28,12 @@ use crate::orbit::branch::Following;
 use crate::orbit::{FamilyError, OrbitError};
 use crate::simulate::{Machine, SimulateError, angular_velocity};
 
-/// Which model a finding is about.
+/// Label of the model that a finding is about.
 #[derive(Clone, Debug, Serialize)]
 pub struct ModelLabel {
-    /// Its name.
+    /// Name of the model.
     pub name: String,
-    /// Where its numbers come from.
+    /// Source of its numbers.
     pub source: String,
 }
 
@@ -43,7 +43,7 @@ impl ModelLabel {
     }
 }
 
-/// Why a question has no answer.
+/// Reason why a question has no answer.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[expect(missing_docs, reason = "the message says what each number is")]
 pub enum StudyError {
@@ -62,38 +62,38 @@ pub enum StudyError {
     /// Corner impacts cannot be looked for.
     #[error(transparent)]
     Locate(#[from] locate::LocateRangeError),
-    /// Matrices in two units of length.
+    /// The matrices of two models are in different units of length.
     #[error(
         "lengths are in \"{a}\" in the one and in \"{b}\" in the other model: state both in one unit ([units], length)"
     )]
     Lengths { a: String, b: String },
-    /// What changes is not within its range where a search begins.
+    /// The value at which a search begins is outside the range to be followed.
     #[error("{file}: {name} = {value}, where orbits are looked for, is outside of {}:{}", range[0], range[1])]
     Outside { file: String, name: String, value: f64, range: [f64; 2] },
     /// A search found no orbit.
     #[error("{file}: no periodic orbit of {revolutions} revolution(s) found at {rpm} rpm to follow")]
     NothingToFollow { file: String, revolutions: u64, rpm: f64 },
-    /// A curve of events tells their speed.
+    /// The speed was to be followed, but a curve of events gives their speed.
     #[error("--parameter must be a number of the model: the speed is what the events are at")]
     SpeedFollowed,
-    /// A run up to a number of impacts has no more of them.
+    /// A run up to a number of impacts met no further impact.
     #[error(
         "simulate: no impact in {waited} revolutions after impact {impacts}; the cam is at {:.4} deg of revolution {revolution}",
         cam_angle.to_degrees()
     )]
     NoImpact { waited: u64, impacts: u64, cam_angle: f64, revolution: u64 },
-    /// Nothing can be gone over.
+    /// The number cannot be varied.
     #[error(transparent)]
     Over(#[from] survey::OverError),
-    /// A range of speeds beside another number that varies.
+    /// A range of speeds was given together with another number that varies.
     #[error("--rpm {low}:{high} and --over are two ranges: with --over, --rpm is one speed")]
     RangeAndNumber {
-        /// Lowest, rpm.
+        /// Lowest speed, rpm.
         low: f64,
-        /// Highest, rpm.
+        /// Highest speed, rpm.
         high: f64,
     },
-    /// No speeds were named, and the machine has none of its own.
+    /// No speeds were given, and the machine has no range of its own.
     #[error(
         "no range of speeds: the follower leaves the cam at every speed or at none, and the model has no [study]; give --rpm"
     )]
@@ -101,17 +101,17 @@ pub enum StudyError {
     /// Starts cannot be run.
     #[error(transparent)]
     Basins(#[from] basins::GridError),
-    /// No starts were named, and the machine has none of its own.
+    /// No starts were given, and the machine has no range of its own.
     #[error("no range to put starts in: give --position and --velocity")]
     NoStarts,
 }
 
-/// The machine of a model at a speed, rpm.
+/// Builds the machine of a model at a speed, rpm.
 fn machine(model: &Model, rpm: f64) -> Result<Machine, ModelError> {
     Ok(Machine::new(Cam::new(model)?, &model.follower, angular_velocity(rpm)))
 }
 
-/// The value of what is followed where it is looked for, which must be within its range.
+/// Returns the value at which the followed number begins. Fails if it is outside its range.
 fn inside(model: &Model, rpm: f64, following: &Following) -> Result<f64, StudyError> {
     let Following { parameter, range, .. } = following;
     let value = parameter.value(model, rpm).unwrap_or(f64::NAN);
@@ -122,7 +122,7 @@ fn inside(model: &Model, rpm: f64, following: &Following) -> Result<f64, StudyEr
     Err(StudyError::Outside { file, name, value, range: *range })
 }
 
-/// Hypotheses of what is proved by intervals of doubles: what is taken for granted of the machine.
+/// Hypotheses on the machine for proofs by intervals of doubles.
 pub(crate) fn hypotheses(cam: &Cam) -> Vec<&'static str> {
     let doubles = "the machine is the one whose numbers are the doubles that those of the model file became";
     let meets = "where one law of the lift ends the next goes on with the same lift and the same slope, as the model means it, but at corners \

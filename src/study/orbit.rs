@@ -1,4 +1,4 @@
-//! Which periodic orbits there are at one speed.
+//! The periodic orbits at one speed.
 
 use serde::Serialize;
 
@@ -20,43 +20,43 @@ pub struct Orbits {
     schema: &'static str,
     /// The model's name.
     pub model: String,
-    /// rpm.
+    /// Speed, rpm.
     pub speed_rpm: f64,
-    /// The cam angle at which their states are, rad.
+    /// Cam angle at which their states are given, rad.
     pub section_angle_rad: f64,
-    /// For which numbers of impacts the list is all there is.
+    /// Numbers of impacts for which the list is complete.
     pub complete: Vec<Complete>,
-    /// What is taken for granted where orbits, or that there are no others, are proved; none where nothing is.
+    /// Hypotheses on the machine for proofs of orbits or of completeness; empty if nothing is proved.
     pub hypotheses: Vec<&'static str>,
-    /// Where orbits of these numbers of impacts may be missing.
+    /// Places where orbits of these numbers of impacts may be missing.
     pub undecided: Vec<Undecided>,
-    /// Those that were found.
+    /// The orbits found.
     pub orbits: Vec<PeriodicOrbit>,
-    /// How well a measured cam is known, where its rows have noise.
+    /// Accuracy of a measured cam, if its rows have noise.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub measured: Option<Measured>,
-    /// What that leaves open of each of the orbits; none of one that too few of the cams have that are as likely.
+    /// Uncertainty of each orbit from the measured cam; none if too few of the cams that are as likely have the orbit.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub errors: Vec<Option<OrbitUncertainty>>,
 }
 
-/// How far an orbit's numbers may be off, as far as its cam is known.
+/// Uncertainty of an orbit's numbers from the accuracy of its cam.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct OrbitUncertainty {
-    /// Either multiplier, in the complex plane.
+    /// Uncertainty of either multiplier, in the complex plane.
     pub multiplier: f64,
     /// Position and velocity of the state, m and m/s.
     pub state: [f64; 2],
-    /// The cam angle of an impact, or of where it begins or ends to stick, rad.
+    /// Largest uncertainty of the cam angle of an impact, or of the start or end of sticking, rad.
     pub cam_angle_rad: f64,
-    /// The velocity before or after one of these, m/s.
+    /// Largest uncertainty of the velocity before or after one of these, m/s.
     pub velocity_m_s: f64,
 }
 
-/// What is looked for.
+/// The orbits to be looked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum OrbitQuery {
-    /// Whatever a search finds.
+    /// All orbits that a search finds.
     All(Search),
     /// The orbit of so many revolutions that Newton's method finds from a state at cam angle 0.
     Near(State, u64),
@@ -96,13 +96,13 @@ pub fn orbits(model: &Model, speed_rpm: f64, wanted: OrbitQuery, watch: &dyn Wat
     })
 }
 
-/// How far an orbit of `machine` may be off: by where the same orbit is on the cams that are as likely.
+/// Uncertainty of an orbit of `machine`, from the same orbit on the cams that are as likely.
 fn error(likely: &PlausibleCams, machine: &Machine, orbit: &PeriodicOrbit) -> Option<OrbitUncertainty> {
-    /// Multipliers and the state.
+    /// Number of values for the multipliers and the state.
     const OF_ORBIT: usize = 6;
-    /// An angle and the velocities before and after.
+    /// Number of values for each event: an angle and the velocities before and after.
     const OF_EVENT: usize = 3;
-    /// Impacts that are compared: of those that lead to a rest, the last are lost in rounding.
+    /// Number of impacts that are compared. The last impacts before a rest are lost in rounding.
     const IMPACTS: usize = 64;
     let compared =
         |orbit: &PeriodicOrbit| -> Vec<Event> { orbit.impacts().take(IMPACTS).chain(orbit.rests()).copied().collect() };
@@ -112,7 +112,7 @@ fn error(likely: &PlausibleCams, machine: &Machine, orbit: &PeriodicOrbit) -> Op
         let of_orbit = [one.re, one.im, two.re, two.im, found.state.position, found.state.velocity];
         let there = compared(found);
         let is_alike = there.iter().map(|event| event.kind).eq(events.iter().map(|event| event.kind));
-        // An angle is told from where it is in the orbit: on another cam it may be on the other side of angle 0.
+        // Angles are measured from the event's angle in the orbit: on another cam it may be on the other side of angle 0.
         let of_event = |(there, here): (&Event, &Event)| {
             [apart(there.cam_angle, here.cam_angle), there.velocity_before, there.velocity_after]
         };
@@ -120,7 +120,7 @@ fn error(likely: &PlausibleCams, machine: &Machine, orbit: &PeriodicOrbit) -> Op
     };
     let there = |model: &Model, cam: &Cam| {
         let there = Machine::new(cam.clone(), &model.follower, machine.angular_velocity());
-        // What touches the one cam may be within the other.
+        // A state that touches one cam may be inside another.
         let state = State { position: orbit.state.position.max(cam.lift(0.0).value), ..orbit.state };
         let found = near(&there, 0.0, state, orbit.revolutions).ok()??;
         numbers(&found).filter(|_| found.revolutions == orbit.revolutions)

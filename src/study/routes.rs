@@ -1,4 +1,4 @@
-//! The map of a corner impact by every route of this program that its corner has, and the routes against one another.
+//! The map of a corner impact by every route of this program that its corner has, and the comparison of the routes.
 
 use std::fmt::Display;
 
@@ -14,18 +14,18 @@ use crate::corner::{CornerImpact, CornerMap, Route, SideMap};
 use crate::corner::{closed_form, finite_difference, least_squares, variational};
 use crate::model::Model;
 
-/// Something that did not run.
+/// A route or result that was not computed.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Skipped {
     /// The route, or the result that it would have given.
     pub route: String,
-    /// Why.
+    /// Reason.
     pub why: String,
-    /// Whether it should have run; then the whole disagrees.
+    /// Whether it should have run. If so, the verification as a whole disagrees.
     pub failed: bool,
 }
 
-/// What did not run: on purpose, or because it failed.
+/// Routes and results that were left out or failed.
 #[derive(Default)]
 pub(super) struct Log(pub Vec<Skipped>);
 
@@ -48,17 +48,17 @@ impl Log {
         result.map_err(|error| self.fail(route, error)).ok()
     }
 
-    /// Whether everything ran that should have, and agrees.
+    /// Whether everything that should have run did run, and all comparisons agree.
     pub(super) fn agrees(&self, comparisons: &[Agreement]) -> bool {
         self.0.iter().all(|skipped| !skipped.failed) && comparisons.iter().all(|item| item.agrees)
     }
 }
 
-/// The map of `at` by every route of this program that its corner has, and the side on which the follower sticks, so that
-/// there is no map to find by simulation.
+/// Computes the map of `at` by every route of this program that its corner has. Also returns the side on which the follower sticks, where
+/// simulation finds no map.
 ///
-/// The closed form knows the paper's orbits only; a polynomial is fitted where two matrices meet; and where the velocity jumps,
-/// the differences have the side alone that the impact is on.
+/// The closed form covers the paper's orbits only. A polynomial is fitted if two matrices meet. If the velocity jumps, the differences
+/// have only the side of the impact.
 pub(super) fn routes(model: &Model, cam: &Cam, at: &CornerImpact, log: &mut Log) -> (Vec<Route>, Option<Side>) {
     let order = at.corner.jump_order;
     let mut routes = Vec::new();
@@ -81,7 +81,7 @@ pub(super) fn routes(model: &Model, cam: &Cam, at: &CornerImpact, log: &mut Log)
     (routes, sticking)
 }
 
-/// What happens at a corner impact whose map is `map`, if next to it the follower flies off the cam on both sides.
+/// Classifies a corner impact whose map is `map`. Refuses if the follower sticks to the cam on one side next to it.
 pub(super) fn classified(
     map: &CornerMap,
     border: LinearForm,
@@ -93,18 +93,18 @@ pub(super) fn classified(
     }
 }
 
-/// The danger at a corner impact where the acceleration jumps, if the follower flies off the cam next to it.
+/// Returns the danger at a corner impact where the acceleration jumps, if the follower flies off the cam next to it.
 pub(super) fn danger(model: &Model, cam: &Cam, at: &CornerImpact) -> Option<Danger> {
     let (map, border) = (variational::route(model, cam, at).map, variational::border(model, cam, at));
     classify(&map, border).ok()?;
     let local = LocalMap::new(&map, border);
     let danger = local.danger(&local.outcomes(), at.period)?;
-    // The simulation is asked only where there is something to say.
+    // The simulation runs only if there is a danger to report.
     let (_, sticking) = routes(model, cam, at, &mut Log::default());
     sticking.is_none().then_some(danger)
 }
 
-/// The estimate of the side that the impact is on, in the place of both.
+/// Returns the estimate of the impact's side in the place of both sides.
 fn one_side(model: &Model, cam: &Cam, at: &CornerImpact) -> Result<Route, SampleError> {
     let found = finite_difference::side_map(model, cam, at, at.side, &Varied::Period)?;
     let both = |side| CornerMap { minus: side, plus: side };
@@ -113,7 +113,7 @@ fn one_side(model: &Model, cam: &Cam, at: &CornerImpact) -> Result<Route, Sample
     Ok(Route { name: RouteName::FiniteDifference, map, own, uncertainty })
 }
 
-/// Every pair of routes in every quantity that both know; where the velocity jumps, of the side alone that the impact is on.
+/// Compares every pair of routes in every quantity that both have. If the velocity jumps, only the impact's side is compared.
 pub(super) fn comparisons(at: &CornerImpact, routes: &[Route], log: &mut Log) -> Vec<Agreement> {
     let mut all = compare_routes(routes);
     if at.corner.jump_order == 1 {
@@ -122,11 +122,12 @@ pub(super) fn comparisons(at: &CornerImpact, routes: &[Route], log: &mut Log) ->
     split_by_knowledge(all, routes, log)
 }
 
-/// The comparisons but for those with an estimate that says itself that it knows the quantity less closely than is asked,
-/// and which those are. Over a whole period of several impacts, and next to a graze, rounding is amplified as deviations are.
+/// Returns the comparisons without those that an estimate cannot decide, because its own uncertainty in the quantity exceeds the bound.
+/// Logs one left-out quantity for each route. Over a whole period of several impacts, and next to a graze, rounding is amplified as
+/// deviations are.
 ///
-/// A fit is left out wherever it says so: it would be no check. The differences add up the largest that every rounding can
-/// do, and are mostly closer than that: they are left out only where they miss by no more than they say.
+/// A fit with too large an uncertainty is always left out: it would not test anything. The differences state the largest error that all
+/// roundings together can cause, and are mostly closer. They are left out only if they disagree by no more than that error.
 fn split_by_knowledge(mut comparisons: Vec<Agreement>, routes: &[Route], log: &mut Log) -> Vec<Agreement> {
     for route in routes {
         let Some(uncertainty) = &route.uncertainty else { continue };
@@ -150,8 +151,8 @@ fn split_by_knowledge(mut comparisons: Vec<Agreement>, routes: &[Route], log: &m
     comparisons
 }
 
-/// Three standard errors and the bias of a fit's worst entry of a quantity, or the error of an extrapolation's; of what
-/// derives from A and B, of both sides.
+/// Returns the uncertainty of a quantity. For a fit it is three standard errors and the bias of the worst entry, for an extrapolation its
+/// error. For quantities derived from A and B it covers both sides.
 fn known_to(route: &Route, uncertainty: &Uncertainty, quantity: Quantity) -> f64 {
     if quantity == Quantity::Border {
         return route.own.border_error.unwrap_or(0.0);

@@ -1,4 +1,4 @@
-//! What one motion does: its events and states in order, and what it came to.
+//! Simulation of one motion: its events and states in order, and a summary.
 
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
@@ -14,18 +14,18 @@ use crate::progress::Watch;
 use crate::simulate::{Event, EventKind, Goal, Machine, Motion};
 use crate::study::survey::{Judged, Start, long_run};
 
-/// A machine at a speed, and the motion that begins there.
+/// A machine at a speed, and the initial state of a motion.
 #[derive(Clone, Debug)]
 pub struct Simulation {
     model: String,
     rpm: f64,
     /// The machine.
     pub machine: Machine,
-    /// The beginning.
+    /// The initial motion.
     pub first: Motion,
 }
 
-/// How far a run goes.
+/// Length of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Until {
     /// Turns of the cam.
@@ -34,31 +34,31 @@ pub enum Until {
     Impacts(u64),
 }
 
-/// What is asked of a run.
+/// Settings of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RunRequest {
-    /// Its end.
+    /// End of the run.
     pub until: Until,
-    /// Whether its events are shown.
+    /// Whether to show its events.
     pub events: bool,
-    /// A cam angle, rad, in `[0, 2 pi)`, at which the states are shown.
+    /// Cam angle, rad, in `[0, 2 pi)`, at which to show the states.
     pub strobe: Option<f64>,
-    /// How many of its last revolutions are drawn.
+    /// Number of the last revolutions to be drawn.
     pub drawn: u64,
-    /// For how long it is followed to tell what it comes to in the long run and how fast a small deviation grows, if that is asked for.
+    /// Budget for finding the long-run motion and the growth of a small deviation, if requested.
     pub long_run: Option<Budget>,
 }
 
-/// What a run shows on its way.
+/// Events or a state that a run shows on its way.
 #[derive(Clone, Copy, Debug)]
 pub enum Sight<'a> {
     /// Some events, in order.
     Events(&'a [Event]),
-    /// The motion at the angle that was asked for.
+    /// The motion at the requested cam angle.
     State(&'a Motion),
 }
 
-/// What a run came to: the document of `simulate --summary`.
+/// Summary of a run: the document of `simulate --summary`.
 #[derive(Clone, Debug, Serialize)]
 pub struct Run {
     schema: &'static str,
@@ -70,42 +70,42 @@ pub struct Run {
     pub revolutions: f64,
     /// Impacts.
     pub impacts: u64,
-    /// How often the follower began to stay on the cam.
+    /// Number of times that the follower began to stick to the cam.
     pub sticks: u64,
-    /// How often the cam let go of it.
+    /// Number of times that the cam released the follower.
     pub releases: u64,
-    /// Where it ended.
+    /// State at the end.
     #[serde(rename = "final")]
     pub end: RunEnd,
-    /// What the run comes to in the long run, if asked for.
+    /// Long-run motion, if requested.
     #[serde(skip_serializing_if = "Option::is_none", flatten)]
     pub long_run: Option<Lyapunov>,
     /// Seconds that the simulation took, without reading, writing and drawing.
     pub wall_s: f64,
-    /// Where the revolutions that are drawn begin.
+    /// Motion at the start of the revolutions that are drawn.
     #[serde(skip)]
     pub before_drawn: Motion,
 }
 
-/// What a run comes to in the long run, and how fast a small deviation grows there.
+/// Long-run motion of a run, and the growth of a small deviation in it.
 #[derive(Clone, Debug, Serialize)]
 pub struct Lyapunov {
-    /// Growth of a small deviation per revolution, as a natural logarithm; minus infinity, which JSON has as null, where the follower comes to
-    /// rest on the cam.
+    /// Growth of a small deviation per revolution, as a natural logarithm. Minus infinity (null in JSON) if the follower comes to rest on
+    /// the cam.
     pub lyapunov_per_revolution: f64,
-    /// Its standard error; none where it is by multipliers.
+    /// Standard error of the growth; none if the growth follows from multipliers.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lyapunov_standard_error: Option<f64>,
     /// The kind of motion.
     pub kind: Kind,
-    /// What it is.
+    /// The motion.
     #[serde(skip)]
     pub ending: LongRun,
-    /// Revolutions that the run was followed for until that was told.
+    /// Revolutions that the run was followed for until it was judged.
     pub followed: u64,
-    /// Those that it might have been.
+    /// Budget of the run.
     pub budget: Budget,
-    /// How all this is known.
+    /// Evidence for these results.
     pub known: Evidence,
 }
 
@@ -122,40 +122,40 @@ impl Lyapunov {
 /// The end of a run.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct RunEnd {
-    /// rad, in [0, 2 pi).
+    /// Cam angle, rad, in [0, 2 pi).
     pub cam_angle_rad: f64,
-    /// m, in the cam's coordinates.
+    /// Position, m, in the cam's coordinates.
     pub position_m: f64,
-    /// m/s.
+    /// Velocity, m/s.
     pub velocity_m_s: f64,
-    /// Whether it sticks to the cam.
+    /// Whether the follower sticks to the cam.
     pub contact: bool,
 }
 
-/// Events that are kept before they are shown.
+/// Number of events kept before they are shown.
 const KEPT: usize = 4096;
-/// Revolutions between two looks at the progress, and events.
+/// Revolutions, and events, between two reports of the progress.
 const STRIDE: u64 = 4096;
 const LOOKED: u32 = 1024;
-/// Parts of a revolution that progress is told in.
+/// Parts of a revolution in which progress is reported.
 const PARTS: f64 = 1000.0;
-/// Revolutions without an impact after which none is waited for.
+/// Revolutions without an impact after which the run gives up.
 const PATIENCE: u64 = 100_000;
 
 impl Simulation {
-    /// The motion of a machine at a speed, rpm, from where it is.
+    /// Builds a simulation of a machine at a speed, rpm, from an initial motion.
     pub fn of(model: &str, rpm: f64, machine: Machine, first: Motion) -> Self {
         Self { model: model.into(), rpm, machine, first }
     }
 
-    /// The motion of a model at a speed from a start.
+    /// Builds a simulation of a model at a speed, rpm, from a start.
     pub fn new(model: &Model, rpm: f64, start: Start) -> Result<Self, StudyError> {
         let machine = machine(model, rpm)?;
         let first = start.motion(&machine)?;
         Ok(Self::of(&model.name, rpm, machine, first))
     }
 
-    /// Runs it; `see` is shown what is asked for as it comes.
+    /// Runs the simulation. `see` is shown the requested events and states as they occur.
     pub fn run<E: From<StudyError>>(
         &self,
         wanted: RunRequest,

@@ -1,5 +1,5 @@
-//! What a machine does at which speed, or at which value of another number: its attractors, where each begins and ends, and how many starts
-//! end on each.
+//! Survey of a machine over speeds, or over values of another number: its attractors, where each begins and ends, and how many starts end
+//! on each.
 
 use std::collections::BTreeMap;
 
@@ -31,37 +31,37 @@ use crate::study::routes;
 use crate::study::survey::{Attractor, Over, Place, Sample, Spacing, VariedNumber, Wandering};
 use crate::tolerance;
 
-/// What a machine does over a range of speeds, or of values of another number: the document of `speeds --json`.
+/// Survey of a machine over a range of speeds, or of values of another number: the document of `speeds --json`.
 #[derive(Clone, Debug)]
 pub struct SpeedSurvey {
     /// The model's name.
     pub model: String,
-    /// What varies.
+    /// The number that varies.
     pub over: VariedNumber,
-    /// The range; of the speed, rpm.
+    /// The range; for the speed, rpm.
     pub range: [f64; 2],
-    /// From one value to the next; of a logarithmic grid in decades.
+    /// Step from one value to the next; in decades for a logarithmic grid.
     pub step: f64,
-    /// The starts at each value.
+    /// Starts at each value.
     pub sample: Sample,
-    /// For how long runs were followed.
+    /// Budget of each run.
     pub budget: Budget,
-    /// Whether runs began on the stable orbits of two impacts in one revolution, too.
+    /// Whether runs also began on the stable orbits of two impacts in one revolution.
     pub two_impacts: bool,
-    /// Where the follower first leaves the cam above the lowest speed, by the force between them; its error has what a measured cam leaves open.
-    /// None where the speed does not vary.
+    /// Speed above the lowest at which the follower first leaves the cam, by the contact force. Its error includes that from a measured
+    /// cam. None if the speed does not vary.
     pub separation: Option<Separation>,
-    /// How well the cam is known, if it is measured.
+    /// Accuracy of the cam, if it is measured.
     pub measured: Option<Measured>,
     /// The attractors, by rising value.
     pub attractors: Vec<AttractorRow>,
-    /// Where there are several.
+    /// Ranges with several attractors.
     pub coexistence: Vec<Coexistence>,
-    /// Corner impacts of its attractors at which there is danger, by rising value.
+    /// Corner impacts of the attractors with a danger, by rising value.
     pub dangers: Vec<PassedDanger>,
-    /// Values at which starts leave the cam for good, by rising value, and how many do.
+    /// Values at which starts leave the cam for good, by rising value, with the share of these starts.
     pub off: Vec<Off>,
-    /// How many values of the range were run.
+    /// Number of values of the range that were run.
     pub run: usize,
     /// Values at which nothing, or not every start, could be run.
     pub failed: Vec<FailedValue>,
@@ -96,41 +96,41 @@ document!(SpeedSurvey as it {
 /// The share of the sample's starts that leave the cam for good at a value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Off {
-    /// Where.
+    /// Place of the value.
     pub at: Place,
-    /// Their share.
+    /// Share of these starts.
     pub share: Estimate,
 }
 
 document!(Off as it { speed_rpm: it.at.rpm, value if_any: it.at.value, share: it.share.value, error: it.share.error });
 
-/// Which starts leave the cam for good: a flight that never comes down to it again ends on no attractor that has impacts.
+/// Starts that leave the cam for good. A flight that never returns to the cam ends on no attractor with impacts.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct OffForGood {
-    /// In a sentence.
+    /// The finding in a sentence.
     pub words: String,
-    /// At each value at which there are any.
+    /// Share at each value with such starts.
     pub shares: Vec<Off>,
 }
 
 /// An attractor over a range of values.
 #[derive(Clone, Debug)]
 pub struct AttractorRow {
-    /// Its name.
+    /// Name of the attractor.
     pub id: String,
-    /// What it is at most of the values.
+    /// Kind of motion at most of the values.
     pub kind: Kind,
-    /// Turns of the cam in one period, where it is the same at every value.
+    /// Turns of the cam in one period, if equal at all values.
     pub revolutions: Option<u64>,
-    /// Impacts in one period, likewise.
+    /// Impacts in one period, if equal at all values.
     pub impacts: Option<u64>,
-    /// Where it is lowest and highest.
+    /// Places of its lowest and its highest value.
     pub ends: [Place; 2],
-    /// What it begins with at the lowest value; nothing at the end of the range.
+    /// Transition at its lowest value; none at the end of the range.
     pub birth: Option<Transition>,
-    /// What it ends with at the highest.
+    /// Transition at its highest value; none at the end of the range.
     pub death: Option<Transition>,
-    /// What it is at each value of the grid, by rising value.
+    /// The attractor at each value of the grid, by rising value.
     pub at: Vec<At>,
 }
 
@@ -152,20 +152,19 @@ document!(AttractorRow as it {
 /// An attractor at one value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct At {
-    /// Where.
+    /// Place of the value.
     pub place: Place,
-    /// The share of the sample's starts that end on it. They are spread better than by chance, so that its error errs on the
-    /// large side.
+    /// Share of the sample's starts that end on it. The starts are spread better than by chance, so the error is an overestimate.
     pub share: Estimate,
-    /// What it is.
+    /// The motion.
     pub ending: LongRun,
-    /// Revolutions that its runs were followed for, all together.
+    /// Revolutions that its runs were followed for, in total.
     pub followed: u64,
-    /// What runs did that neither rested nor came to an orbit soon.
+    /// Totals of the runs at this value that neither rest nor settle on an orbit soon.
     pub wandering: Wandering,
     /// Cam angles of its impacts, rad.
     pub impact_angles: Vec<f64>,
-    /// The fastest of its impacts, relative to the cam, m/s; nothing where it has none.
+    /// Speed of the fastest impact, relative to the cam, m/s; none if there are no impacts.
     pub impact_speed: Option<f64>,
 }
 
@@ -184,25 +183,25 @@ document!(At as it {
     followed: it.followed,
 });
 
-/// How often chaos rests on the cam, from runs that had wandered for long.
+/// Rate at which a chaotic motion rests on the cam, from runs that had wandered for long.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Rests {
-    /// Rests that were seen.
+    /// Number of rests seen.
     pub rests: u64,
-    /// In so many revolutions.
+    /// Number of revolutions observed.
     pub revolutions: u64,
-    /// A revolution: their ratio, and its standard error; of no rest at all the bound that it is below with 95 %.
+    /// Rests per revolution. Without any rest, the upper bound of the rate with 95 %.
     pub rate: f64,
-    /// None where there is no rest.
+    /// Standard error of the rate; none if there is no rest.
     pub rate_error: Option<f64>,
 }
 
-/// Two or more attractors at the same values, each of which runs have come to.
+/// A range of values with two or more attractors, each reached by runs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Coexistence {
-    /// Where they are lowest and highest.
+    /// Places of the lowest and the highest value.
     pub ends: [Place; 2],
-    /// Their names.
+    /// Names of the attractors.
     pub attractors: Vec<String>,
 }
 
@@ -214,16 +213,16 @@ document!(Coexistence as it {
     attractors: it.attractors,
 });
 
-/// A corner impact that attractors pass, begin or end with, and at which there is danger.
+/// A corner impact with a danger that attractors pass, begin or end with.
 #[derive(Clone, Debug)]
 pub struct PassedDanger {
-    /// The attractors' names.
+    /// Names of the attractors.
     pub attractors: Vec<String>,
-    /// Where.
+    /// Place of the corner impact.
     pub at: Place,
-    /// Where the corner is, rad.
+    /// Cam angle of the corner, rad.
     pub cam_angle: f64,
-    /// By the local map of the corner impact.
+    /// Danger by the local map of the corner impact.
     pub danger: Danger,
 }
 
@@ -238,27 +237,27 @@ document!(PassedDanger as it {
 /// A value at which nothing, or not every start, could be run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FailedValue {
-    /// Where.
+    /// Place of the value.
     pub at: Place,
-    /// How many starts could not be run; none are named where nothing could.
+    /// Number of starts that could not be run; none if nothing could.
     pub starts: Option<usize>,
-    /// Why.
+    /// Reason.
     pub why: String,
 }
 
 document!(FailedValue as it { speed_rpm: it.at.rpm, value if_any: it.at.value, starts if_any: it.starts, why: it.why });
 
-/// -ln(0.05): the mean number of starts in a basin that is hit by one of them with 95 %.
+/// -ln(0.05): the mean number of starts in a basin that at least one start hits with 95 %.
 const HIT: f64 = 2.995_732_273_553_991;
 
 impl SpeedSurvey {
-    /// The share of the starts' rectangle that a basin has which one of the starts of a value hits with 95 %, if they were drawn by
-    /// chance.
+    /// Returns the share of the starts' rectangle that a basin needs so that the starts of a value hit it with 95 %, if they were drawn
+    /// by chance.
     pub fn missed(&self) -> f64 {
         (HIT / self.sample.count() as f64).min(1.0)
     }
 
-    /// Which starts leave the cam for good, if any do.
+    /// Returns the starts that leave the cam for good, if any do.
     pub fn off_for_good(&self) -> Option<OffForGood> {
         let ([first, .., last] | [first @ last]) = self.off.as_slice() else { return None };
         let all = self.off.iter().filter(|off| off.share.value == 1.0).count();
@@ -281,7 +280,7 @@ impl SpeedSurvey {
         Some(OffForGood { words, shares: self.off.clone() })
     }
 
-    /// The value at which the follower first leaves the cam, or ceases to, and how far that may be off; none outside of the range, or where
+    /// Returns the value at which the follower first leaves the cam, or ceases to, and its uncertainty. None outside the range, or if
     /// there is no such value.
     pub fn detachment(&self) -> Option<[f64; 2]> {
         match self.separation {
@@ -297,13 +296,13 @@ impl SpeedSurvey {
         }
     }
 
-    /// How far a measured cam may have moved the detachment, rpm; none of another cam, or where that is not known.
+    /// Shift of the detachment that the noise of a measured cam may cause, rpm; none for another cam, or if unknown.
     pub fn detachment_error(&self) -> Option<f64> {
         Measured::noisy(&self.measured)?;
         self.detachment().map(|[_, error]| error).filter(|error| error.is_finite())
     }
 
-    /// The fastest impact that was seen on an attractor, m/s relative to the cam, and at which value.
+    /// Returns the speed of the fastest impact seen on an attractor, m/s relative to the cam, and its value.
     pub fn hardest(&self) -> Option<[f64; 2]> {
         let all = self.attractors.iter().flat_map(|attractor| &attractor.at);
         let all = all.filter_map(|at| Some([at.impact_speed?, at.value()]));
@@ -312,21 +311,21 @@ impl SpeedSurvey {
 }
 
 impl Coexistence {
-    /// The lowest and the highest value.
+    /// Lowest and highest value.
     pub fn range(&self) -> [f64; 2] {
         self.ends.map(|end| end.across())
     }
 }
 
 impl AttractorRow {
-    /// The lowest and the highest value.
+    /// Lowest and highest value.
     pub fn range(&self) -> [f64; 2] {
         self.ends.map(|end| end.across())
     }
 
-    /// How often it rests, if runs of it wandered for long enough to tell.
+    /// Returns the rate at which the attractor rests, if its runs wandered long enough.
     pub fn rests(&self) -> Option<Rests> {
-        /// Revolutions: what the runs of one value are given.
+        /// Least number of revolutions: that of the runs of one value.
         const TOLD: u64 = 100_000;
         let is_wandering = |at: &&At| matches!(at.ending, LongRun::Chaotic(_)) || at.ending.is_long();
         let all = self.at.iter().filter(is_wandering).fold(Wandering::default(), |all, at| all.with(at.wandering));
@@ -339,8 +338,8 @@ impl AttractorRow {
     }
 }
 
-/// The range of speeds to look at where none is named, rpm: from below the speed at which the follower first leaves the cam up to
-/// the fastest of `[study]`, or twice that speed, or twice the machine's own where it never does.
+/// Returns the default range of speeds, rpm. It goes from below the speed at which the follower first leaves the cam up to the fastest of
+/// `[study]`. Without a study it ends at twice that speed, or at twice the machine's own speed if the follower never leaves.
 pub fn usual_range(model: &Model) -> Result<[f64; 2], ModelError> {
     let machine = machine(model, FALLBACK)?;
     let own = own_speed(&machine).unwrap_or(FALLBACK);
@@ -351,16 +350,16 @@ pub fn usual_range(model: &Model) -> Result<[f64; 2], ModelError> {
     Ok(model.study.map_or([low, high], |study| [low.min(study.rpm_min), study.rpm_max]))
 }
 
-/// The own speed of a machine that has no scale of time, rpm: no force is on its follower.
+/// The own speed, rpm, of a machine without a time scale: no force acts on its follower.
 const FALLBACK: f64 = 100.0;
 
-/// A speed as a person would choose it.
+/// Rounds a speed to two digits.
 fn two_digits(rpm: f64, towards: fn(f64) -> f64) -> f64 {
     let scale = elementary::powf(10_f64, 1.0 - elementary::log10(rpm).floor());
     towards(rpm * scale) / scale
 }
 
-/// What a machine does over a range of speeds, rpm, or of values of another number; `watch` is told value by value.
+/// Surveys a machine over a range of speeds, rpm, or of values of another number. `watch` is notified at each value.
 pub fn speeds(
     over: &Over<'_>,
     range: [f64; 2],
@@ -372,7 +371,7 @@ pub fn speeds(
     let likely = PlausibleCams::of(over.model)?;
     let noisy = likely.as_ref().filter(|likely| likely.best.is_some());
     let separation = separation.map(|separation| known(separation, noisy));
-    // By another number an event moves along with the cam: how far is not known.
+    // If another number varies, an event moves along with the cam, by an unknown amount.
     if let (Some(likely), Some(separation)) = (noisy, separation) {
         let lowest = machine(over.model, range[0])?;
         families.par_iter_mut().for_each(|family| {
@@ -447,14 +446,14 @@ pub fn speeds(
     })
 }
 
-/// The kind that an attractor is at most values of the range.
+/// Returns the kind of an attractor at most values of the range.
 fn most(at: &[At]) -> Option<Kind> {
     let mut counts: BTreeMap<Kind, usize> = BTreeMap::new();
     at.iter().for_each(|at| *counts.entry(at.ending.kind()).or_default() += 1);
     counts.into_iter().max_by_key(|(_, count)| *count).map(|(kind, _)| kind)
 }
 
-/// The dangers at corner impacts that attractors pass, begin or end with.
+/// Finds the dangers at corner impacts that attractors pass, begin or end with.
 fn dangers(over: &Over<'_>, families: &[AttractorFamily], range: [f64; 2]) -> Vec<PassedDanger> {
     let mut found: Vec<(f64, CornerImpact, Vec<String>)> = Vec::new();
     for (index, family) in families.iter().enumerate() {
@@ -482,7 +481,7 @@ fn dangers(over: &Over<'_>, families: &[AttractorFamily], range: [f64; 2]) -> Ve
     found.into_par_iter().filter_map(danger).collect()
 }
 
-/// How far a measured cam may have moved what an attractor begins or ends with, rpm: by the event's equations, or by runs where it is
+/// Shift of an attractor's transition that the noise of a measured cam may cause, rpm: by the event's equations, or by runs if it is
 /// known by runs.
 fn error(
     (machine, runs): (&Machine, StartsAndBudget<'_>),
@@ -499,7 +498,7 @@ fn error(
         likely.error([rpm], |model, cam| moved(model, cam).map(|rpm| [rpm])).map(|[error]| error)
     };
     match (end.cause, event) {
-        // One speed has one error.
+        // One detachment speed has one error.
         (Cause::Detachment, _) => match separation {
             Separation::At { error, .. } => Some(error).filter(|error| error.is_finite()),
             _ => None,
@@ -517,7 +516,7 @@ fn name(index: usize) -> String {
 }
 
 impl At {
-    /// The value; of the speed, rpm.
+    /// The value; for the speed, rpm.
     pub fn value(&self) -> f64 {
         self.place.across()
     }
@@ -531,12 +530,12 @@ impl At {
     }
 }
 
-/// Where the impacts of an attractor are, cam angles in rad, and how fast relative to the cam, m/s: of a period, or of as many
+/// Returns the impacts of an attractor: the cam angle, rad, and the speed relative to the cam, m/s. They cover one period, or as many
 /// revolutions as a picture has room for.
 fn impacts(machine: &Machine, attractor: &Attractor) -> Result<Vec<[f64; 2]>, SimulateError> {
     /// Revolutions that a picture has room for.
     const SHOWN: u64 = 120;
-    /// Impacts of them: before a rest there are any number.
+    /// Largest number of impacts: before a rest there may be any number.
     const MOST: usize = 600;
     if let LongRun::Orbit(orbit) = &attractor.ending {
         let of =

@@ -1,4 +1,4 @@
-//! Which impacts are followed by impacts among them for ever, at a speed: regions that the impact map sends into itself.
+//! Trapping regions at a speed: regions of impacts that the impact map sends into themselves.
 
 use serde::Serialize;
 
@@ -13,23 +13,23 @@ use crate::model::Model;
 use crate::progress::Watch;
 use crate::study::{StudyError, machine};
 
-/// Regions that trap, and how far it came where none is proved.
+/// Trapping regions, and the failed attempts to prove one.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Trapping {
-    /// That next to the corner impact, where there is one, before that of all motions.
+    /// The region next to the corner impact, if there is one, before the region of all motions.
     pub regions: Vec<Trapped>,
-    /// For each size of squares that none was found in.
+    /// For each size of squares without a region, how the attempt failed.
     pub escapes: Vec<OpenRegion>,
 }
 
-/// A region that traps.
+/// A trapping region.
 #[derive(Clone, Debug)]
 pub struct Trapped {
     /// The region.
     pub region: Region,
-    /// Whether the strips of the last theorem at the speed lie in it, and with them its set of chaotic motions.
+    /// Whether the strips of the last theorem at the speed lie in the region, and with them its set of chaotic motions.
     pub holds_chaos: bool,
-    /// By what factor some deviations of every motion in it grow at each impact, at least; nothing where that is not proved.
+    /// Least factor by which some deviations of every motion in the region grow at each impact; none if not proved.
     pub parted: Option<f64>,
 }
 
@@ -40,13 +40,13 @@ document!(Trapped as it {
     region: it.region,
 });
 
-/// Impacts of a run, those that are left out before, and how many cells there may be: some ten seconds of work.
+/// Impacts of a run, impacts left out before, and the largest number of cells: some ten seconds of work.
 const SHOWN: usize = 5_000;
 const SETTLING: usize = 500;
 const CELLS: usize = 30_000;
 
-/// Looks for regions that trap at a speed, rpm: next to the corner impact, then about the strips of an h-set, and the impacts of a run from there,
-/// or of one from rest.
+/// Looks for trapping regions at a speed, rpm. First it looks next to the corner impact. Then it looks about the strips of an h-set, or
+/// about the impacts of a run from there or from rest.
 pub(super) fn trapping(model: &Model, rpm: f64, set: Option<&HSet>, watch: &dyn Watch) -> Result<Trapping, StudyError> {
     let machine = machine(model, rpm)?;
     let mut found = Trapping::default();
@@ -60,7 +60,7 @@ pub(super) fn trapping(model: &Model, rpm: f64, set: Option<&HSet>, watch: &dyn 
             [least.min(*angle), most.max(*angle)]
         });
         let run: Vec<[Interval; 2]> = run.into_iter().map(point).collect();
-        /// Squares across all that is there, the fewest first, and the smallest square that rounding leaves something of, of a degree.
+        /// Numbers of squares across the run, the fewest first, and the most squares a degree that rounding allows.
         const ACROSS: [f64; 3] = [32.0, 64.0, 128.0];
         const FINEST: f64 = 1_048_576.0;
         for across in ACROSS {
@@ -92,9 +92,9 @@ pub(super) fn trapping(model: &Model, rpm: f64, set: Option<&HSet>, watch: &dyn 
     Ok(found)
 }
 
-/// The impacts of a run that starts with the corner impact of `[study]`, where there is one and the run stays next to it.
+/// Returns the impacts of a run that starts with the corner impact of `[study]`, if there is one and the run stays next to it.
 fn beside_the_corner_impact(model: &Model, rpm: f64) -> Result<Option<Vec<[f64; 2]>>, StudyError> {
-    /// Farther away it is not next to it, degrees.
+    /// Farthest distance that counts as next to the corner impact, degrees.
     const BESIDE: f64 = 5.0;
     let Ok((corner_impact, _)) = locate(model, &Cam::new(model)?) else { return Ok(None) };
     let angle = corner_impact.corner.angle;

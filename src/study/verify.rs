@@ -1,4 +1,5 @@
-//! One model through the whole pipeline: locate, every route, every comparison, the classification, the paper's numbers.
+//! Verification of one model through the whole pipeline: the corner impact, every route, every comparison, the classification, the
+//! paper's numbers.
 
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
@@ -31,20 +32,20 @@ use crate::study::ModelLabel;
 use crate::study::certify::{self, Certificate, CertifyError, Outcome};
 use crate::study::routes::{self, Log, Skipped};
 
-/// What a verification found: the document `corner-impact/verify/1`.
+/// Results of a verification: the document `corner-impact/verify/1`.
 #[derive(Clone, Debug)]
 pub struct Verification {
-    /// The model that was verified.
+    /// The model.
     pub model: ModelLabel,
-    /// The orbit that was verified: the slowest in `[study]`.
+    /// The corner impact that was verified: the slowest in `[study]`.
     pub at: CornerImpact,
     /// Further corner impacts in `[study]`.
     pub others: Vec<CornerImpact>,
     /// The map by the closed form.
     pub map: CornerMap,
-    /// How far a measured cam leaves speed and map open, and how well it is known; none where the cam is not measured.
+    /// Uncertainty of speed and map from a measured cam, and the cam's accuracy; none if the cam is not measured.
     pub measured: Option<LeftOpen>,
-    /// What of it is proved.
+    /// Proof of the corner impact, if there is one.
     pub certificate: Option<Certificate>,
     /// The map by each route that ran.
     pub routes: Vec<Route>,
@@ -54,27 +55,27 @@ pub struct Verification {
     pub comparisons: Vec<Agreement>,
     /// `(e, f)`: the impact comes before the corner where `e dx + f dT < 0`.
     pub border: LinearForm,
-    /// The map with its parameter out of the border.
+    /// The map in normal form, with its parameter out of the border.
     pub normal_form: Result<NormalForm, Degenerate>,
-    /// What happens at the corner impact.
+    /// Classification of the corner impact.
     pub classification: Result<Classification, Refusal>,
-    /// What classification, stability and normal form rest on, each with how far it is from failing.
+    /// Conditions of classification, stability and normal form, each with its distance from failing.
     pub conditions: Vec<Condition>,
     /// The local map's own motions at dT = -1, 1 and 0; empty without a classification.
     pub outcomes: Vec<LocalOutcome>,
-    /// The danger at the corner impact that the classification does not show, if there is any.
+    /// Danger at the corner impact that the classification does not show, if there is any.
     pub danger: Option<Danger>,
     /// The map to second order; none without a classification.
     pub second_order: Option<Sides<CurvedMap>>,
-    /// What rounding the corner does, where it is a nonsmooth fold.
+    /// Effect of rounding the corner, if it is a nonsmooth fold.
     pub rounded_corner: Option<RoundedCorner>,
-    /// How far the local map holds; empty without a classification.
+    /// Ranges in which the local map is valid; empty without a classification.
     pub ranges: Vec<Range>,
     /// The paper's numbers; empty for another model.
     pub published: Vec<PrintedNumber>,
-    /// What did not run, and why.
+    /// Routes and results that were not computed, with the reason.
     pub skipped: Vec<Skipped>,
-    /// Whether every comparison agrees, every printed number is as found, and every route ran.
+    /// Whether every comparison agrees, every printed number is as the ledger has it, and every route ran that should have.
     pub agrees: bool,
 }
 
@@ -103,19 +104,20 @@ document!(Verification as found {
     agrees: found.agrees,
 });
 
-/// An orbit by a route.
+/// The orbit by one route.
 struct Orbit<'a>(&'a Vector2<f64>, f64);
 
 document!(Orbit<'_> as it { period_s: it.1, state: it.0.as_slice() });
 
-/// What the accuracy of a measured cam leaves open.
+/// Uncertainty that the accuracy of a measured cam leaves.
 #[derive(Clone, Debug)]
 pub struct LeftOpen {
-    /// How well the cam is known.
+    /// Accuracy of the cam.
     pub cam: Measured,
-    /// How far speed, rpm, and each entry of the map may be off; none where too few of the cams that are as likely have the corner impact.
+    /// Uncertainties of the speed, rpm, and of each entry of the map. None if too few of the cams that are as likely have the corner
+    /// impact.
     pub error: Option<(f64, CornerMap)>,
-    /// How many of the cams that are as likely come to each verdict, or to none; those without the corner impact are left out.
+    /// Number of the cams that are as likely with each verdict, or with none. Cams without the corner impact are left out.
     pub verdicts: Vec<Verdicts>,
 }
 
@@ -127,17 +129,17 @@ document!(LeftOpen as it {
     measured: it.cam,
 });
 
-/// A verdict, and how many cams come to it.
+/// A verdict, and the number of cams with it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Verdicts {
-    /// What happens at the corner impact; none where its map is refused.
+    /// Scenario at the corner impact; none if its map is refused.
     pub scenario: Option<Scenario>,
-    /// How many say so.
+    /// Number of cams.
     pub cams: usize,
 }
 
 impl LeftOpen {
-    /// Of a corner impact with its map.
+    /// Computes the uncertainty of a corner impact and its map from the cams that are as likely.
     fn new(likely: PlausibleCams, at: &CornerImpact, map: &CornerMap, sticking: Option<Side>) -> Self {
         let numbers = |speed: f64, map: &CornerMap| -> [f64; 13] {
             let mut all = [speed; 13];
@@ -167,7 +169,7 @@ impl LeftOpen {
                 None => verdicts.push(Verdicts { scenario, cams: 1 }),
             }
         }
-        // In no order of threads.
+        // The order must not depend on the threads.
         verdicts.sort_by_key(|told| (Reverse(told.cams), told.scenario.map(|scenario| scenario.to_string())));
         Self {
             verdicts,
@@ -177,7 +179,7 @@ impl LeftOpen {
     }
 }
 
-/// A corner impact with everything that is known of it.
+/// A corner impact with all its known quantities.
 pub(super) struct Whole<'a>(pub(super) &'a CornerImpact);
 
 document!(Whole<'_> as it {
@@ -196,7 +198,7 @@ document!(Whole<'_> as it {
     cam_acceleration_m_s2: it.0.cam_acceleration(),
 });
 
-/// A corner impact by its place alone.
+/// A corner impact with its place only.
 struct Place<'a>(&'a CornerImpact);
 
 document!(Place<'_> as it { speed_rpm: it.0.speed_rpm(), cam_angle_rad: it.0.corner.angle });
@@ -207,7 +209,7 @@ impl Verification {
         self.routes.iter().map(|route| (route.name, route)).collect::<BTreeMap<_, _>>().into_values()
     }
 
-    /// The entries of A and B of a side by every route.
+    /// Returns the entries of A and B of one side by every route.
     pub fn entries(&self, side: Side) -> Vec<Entry> {
         let maps: Vec<[f64; 6]> = self.routes_by_name().map(|route| route.map.of(side).entries()).collect();
         let printed = |quantity| self.published.iter().find(|number| number.agreement.quantity == quantity);
@@ -222,7 +224,7 @@ impl Verification {
         ["A11", "A12", "A21", "A22", "B1", "B2"].into_iter().enumerate().map(one).collect()
     }
 
-    /// Comparisons and printed numbers by what came of them.
+    /// Counts comparisons and printed numbers by their result.
     pub fn tally(&self) -> ComparisonTally {
         let numbers = &self.published;
         let (following, pairs): (Vec<_>, Vec<_>) = self.comparisons.iter().partition(|pair| pair.follows);
@@ -242,26 +244,26 @@ impl Verification {
     }
 }
 
-/// How many comparisons and printed numbers there are of each kind.
+/// Numbers of comparisons and printed numbers of each kind.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ComparisonTally {
-    /// Comparisons of two routes, but for those that follow from A and B.
+    /// Comparisons of two routes, without those that follow from A and B.
     pub comparisons: usize,
-    /// Those that agree.
+    /// Agreeing comparisons among these.
     pub agreeing: usize,
-    /// Those that follow from A and B, and test nothing more.
+    /// Comparisons that follow from A and B. They test nothing more.
     pub following: usize,
-    /// Those of these that agree.
+    /// Agreeing comparisons among those that follow.
     pub following_agreeing: usize,
-    /// Decimals that every entry of A and B shares between any two routes; none where they are the same in all digits.
+    /// Decimals that every entry of A and B shares between any two routes; none if they are equal in all digits.
     pub shared_decimals: Option<u32>,
-    /// The paper's printed numbers that were looked at.
+    /// Printed numbers of the paper that were checked.
     pub printed: usize,
-    /// Those that hold.
+    /// Printed numbers that are right.
     pub printed_right: usize,
-    /// Those that are wrong as the ledger says.
+    /// Printed numbers that are wrong as the ledger says.
     pub printed_wrong: usize,
-    /// Those that came out otherwise than the ledger says.
+    /// Printed numbers whose result differs from the ledger.
     pub printed_otherwise: usize,
 }
 
@@ -270,37 +272,37 @@ pub struct ComparisonTally {
 pub struct Entry {
     /// `A11` to `B2`.
     pub entry: &'static str,
-    /// By each route, in the order of their names.
+    /// Values by each route, in the order of the routes' names.
     pub values: Vec<f64>,
-    /// The largest less the smallest of them.
+    /// Largest value minus smallest value.
     pub spread: f64,
-    /// As the paper prints it.
+    /// Number as printed in the paper.
     pub printed: Option<String>,
 }
 
 /// Whether to run the routes outside this program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum External {
-    /// Run them; one that cannot run disagrees.
+    /// Run them. A route that cannot run counts as disagreeing.
     Run,
-    /// Leave them out, and say so.
+    /// Leave them out, and log that.
     LeftOut,
 }
 
 /// Locates the corner impact of a model, computes its map by every route, and compares.
 ///
-/// Fails only where there is nothing to compare; a route that fails is listed as skipped, and then the whole disagrees.
+/// Fails only if there is nothing to compare. A failed route is listed as skipped, and then the verification disagrees.
 pub fn verify(model: &Model, external: External) -> Result<Verification, LocateError> {
     verify_watched(model, external, &Unwatched)
 }
 
-/// The same, told to `watch` step by step.
+/// Runs [`verify`] and notifies `watch` at each step.
 pub fn verify_watched(model: &Model, external: External, watch: &dyn Watch) -> Result<Verification, LocateError> {
     watch.at("looking for the corner impact", 0, 0);
     let cam = Cam::new(model)?;
     let (at, others) = corner::locate(model, &cam)?;
     let mut log = Log::default();
-    // The programs outside take seconds and this one's routes a few hundredths: they run beside each other.
+    // The programs outside take seconds, this program's routes a few hundredths: they run in parallel.
     let outside = start_outside(model, external)?;
     let is_beyond = certify::is_beyond(model);
     let proving = (external == External::Run && !is_beyond).then(|| {
@@ -408,7 +410,7 @@ pub fn verify_watched(model: &Model, external: External, watch: &dyn Watch) -> R
 
 type Proving = JoinHandle<Result<Vec<Outcome>, CertifyError>>;
 
-/// The certificate that was waited for; where what happens is not classified either, there need be none.
+/// Waits for the certificate. A refusal is a failure, unless the corner impact is not classified either.
 fn certificate(
     proving: Option<Proving>,
     (is_unclassified, is_beyond): (bool, bool),

@@ -1,4 +1,4 @@
-//! What is predicted at a corner beside what is measured there.
+//! Predictions at a corner beside measurements there.
 
 use nalgebra::Vector3;
 
@@ -10,7 +10,7 @@ use crate::estimate::Estimate;
 use crate::model::Model;
 use crate::tolerance;
 
-/// What a power law is of.
+/// Quantity that a power law describes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PowerLawQuantity {
     /// The velocities of the cam as it is, on either side of the corner, against the gap at the corner's moment.
@@ -28,29 +28,29 @@ pub enum PowerLawQuantity {
 /// One power law, predicted and measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PowerLawRow {
-    /// What it is of.
+    /// Quantity.
     pub quantity: PowerLawQuantity,
-    /// By the formulas.
+    /// Law from the formulas.
     pub predicted: PowerLaw,
-    /// By simulation.
+    /// Law from simulation.
     pub measured: MeasuredLaw,
 }
 
 impl PowerLawRow {
-    /// How far the coefficients are apart, of the predicted one.
+    /// Difference of the two coefficients, relative to the predicted one.
     pub fn relative_difference(&self) -> f64 {
         let predicted = self.predicted.coefficient;
         ((self.measured.coefficient.value - predicted) / predicted).abs()
     }
 
-    /// Whether exponent and coefficient are the predicted ones.
+    /// Whether the measured exponent and coefficient agree with the predicted ones.
     pub fn agrees(&self) -> bool {
         let off = (self.measured.exponent.value - f64::from(self.predicted.exponent)).abs();
         off <= tolerance::JUMP_EXPONENT.value && self.relative_difference() <= tolerance::JUMP_COEFFICIENT.value
     }
 }
 
-/// Everything that is predicted at a corner, and measured.
+/// All predictions and measurements at a corner.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Compared {
     /// The flight.

@@ -27,7 +27,7 @@ use crate::tolerance;
 pub struct MeasuredLaw {
     /// The slope of the log-log fit.
     pub exponent: Estimate,
-    /// Of the nearest whole power.
+    /// Coefficient of the nearest whole power.
     pub coefficient: Estimate,
 }
 
@@ -52,7 +52,7 @@ struct Passage {
     omega: f64,
 }
 
-/// What a run did.
+/// Result of a run.
 #[derive(Clone, Copy, Debug)]
 struct Run {
     end: Vector2<f64>,
@@ -62,7 +62,7 @@ struct Run {
 }
 
 impl Passage {
-    /// The longest that `free` accepts, half a turn at most.
+    /// The longest passage that `free` accepts, half a turn at most.
     fn longest(follower: &Follower, approach: &Approach, free: impl Fn(&Self) -> bool) -> Result<Self, JumpOrderError> {
         let mut span = PI;
         for _ in 0..HALVINGS {
@@ -112,7 +112,7 @@ impl Passage {
         Vector3::new(z[0], z[1], 0.0)
     }
 
-    /// What rounding may make of a difference of two ends at the corner's moment: a few ulps of the state.
+    /// Rounding error of a difference of two ends at the corner's moment: a few ulps of the state.
     fn rounding(&self, approach: &Approach) -> Vector2<f64> {
         let position = self.start.position.abs().max(approach.corner.minus.value.abs());
         let velocity = self.start.velocity.abs().max(approach.velocity_before.abs());
@@ -182,7 +182,7 @@ impl<'a> SideFlights<'a> {
         scales(self.approach, self.passage.span, self.reach)
     }
 
-    /// The flight that is off by `z`: m, m/s and s.
+    /// Runs the flight that deviates by `z`: m, m/s and s.
     pub fn pair(&self, z: Vector3<f64>) -> Option<FlightPair> {
         let [minus, plus] = self.machines.each_ref().map(|machine| self.passage.run(machine, z, self.reach));
         let (minus, plus) = minus.zip(plus).filter(|(minus, plus)| minus.impacts == 1 && plus.impacts == 1)?;
@@ -228,9 +228,9 @@ impl<'a> SideFlights<'a> {
 /// A gap, measured over the cam as it is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gap {
-    /// Of position and velocity at the corner's moment, m and m/s, in the limit of flights on either side of the corner.
+    /// Gap in position and velocity at the corner's moment, m and m/s, in the limit of flights on either side of the corner.
     pub limit: [Estimate; 2],
-    /// The exponent of the velocity's.
+    /// Exponent of the gap in velocity.
     pub exponent: Estimate,
     /// Impacts near the corner of flights that come down before it, and after it.
     pub impacts: [usize; 2],
@@ -238,7 +238,7 @@ pub struct Gap {
 
 /// The gap between flights that come down after the corner and before it, over the cam as it is.
 pub fn gap(model: &Model, cam: &Cam, approach: &Approach) -> Result<Gap, JumpOrderError> {
-    /// How far from the corner an impact may be, rad: a second one follows the first by times that shrink with the distance.
+    /// Largest distance of an impact from the corner, rad: a second one follows the first by times that shrink with the distance.
     const NEAR: f64 = 0.1;
     let machine = Machine::new(cam.clone(), &model.follower, approach.angular_velocity);
     let scale = |passage: &Passage| scales(approach, passage.span, NEAR)[0];

@@ -1,4 +1,4 @@
-//! The order of the derivative that jumps at a corner, and what it makes of the map of a flight that hits the cam there.
+//! The order of the derivative that jumps at a corner, and its effect on the map of a flight that hits the cam there.
 //!
 //! With J the jump of the lift's j-th derivative in time, u = c' - v the velocity of approach, and s the time of the impact
 //! from the corner, the states after an impact under the law before the corner and under the law after it, both carried to
@@ -10,8 +10,8 @@
 //!
 //! to leading order: a map with a gap for j = 1, a continuous piecewise-linear one for j = 2, one with a continuous derivative
 //! and a jump in its second for j = 3. [`mod@predicted`] has the formulas, which `derivations/jump_order.py` proves;
-//! [`mod@measured`] finds exponents and coefficients by simulation and knows none of them;
-//! [`mod@compared`] holds the two against each other.
+//! [`mod@measured`] finds exponents and coefficients by simulation, without these formulas;
+//! [`mod@compared`] compares the two.
 
 pub mod compared;
 pub mod measured;
@@ -60,7 +60,7 @@ impl Approach {
     }
 }
 
-/// Why there is nothing to predict or to measure.
+/// Reason why nothing can be predicted or measured.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[expect(missing_docs, reason = "the message says what each number is")]
 pub enum JumpOrderError {

@@ -18,7 +18,7 @@ pub struct PowerLaw {
     pub coefficient: f64,
 }
 
-/// How often flights next to the one on the corner hit the cam near it.
+/// Number of times that flights next to the one on the corner hit the cam near it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Hits {
     /// Once, whichever side they come down on.
@@ -29,22 +29,22 @@ pub enum Hits {
     TwiceBefore,
 }
 
-/// What the two sides' states after the impact differ by at the corner's moment, after less before, to leading order in the
-/// time s from the corner to the impact under the law before it.
+/// Difference of the two sides' states after the impact, at the corner's moment, after less before. It is given to leading order in
+/// the time s from the corner to the impact under the law before it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Difference {
-    /// Of the positions, m.
+    /// Difference of the positions, m.
     pub position: PowerLaw,
-    /// Of the velocities, m/s.
+    /// Difference of the velocities, m/s.
     pub velocity: PowerLaw,
 }
 
-/// J, m/s^j: what the j-th derivative of the lift in time jumps by.
+/// J, m/s^j: jump of the j-th derivative of the lift in time.
 pub fn jump(approach: &Approach) -> f64 {
     approach.corner.jump * approach.angular_velocity.powi(approach.corner.jump_order as i32)
 }
 
-/// How often flights near `approach` hit the cam, from the velocities alone.
+/// Number of times that flights near `approach` hit the cam, from the velocities alone.
 pub fn hits(follower: &Follower, approach: &Approach) -> Hits {
     let closing = approach.closing_velocity();
     match approach.corner.jump_order {
@@ -54,7 +54,7 @@ pub fn hits(follower: &Follower, approach: &Approach) -> Hits {
     }
 }
 
-/// At the corner's moment, for flights that hit the cam once under the law of either side.
+/// Difference at the corner's moment, for flights that hit the cam once under the law of either side.
 pub fn difference(follower: &Follower, approach: &Approach) -> Difference {
     let order = approach.corner.jump_order as u32;
     let r = follower.restitution;
@@ -86,14 +86,14 @@ fn factorial(n: u32) -> f64 {
     (1..=n).map(f64::from).product()
 }
 
-/// What the two sides of a map from a section before the corner to one after it differ by, to leading order:
+/// Difference of the two sides of a map from a section before the corner to one after it, to leading order:
 /// `P+ - P- = step (n z)^(j-1)` for a deviation `z = (dx, dT)` of the state and the period.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SectionJump {
     /// j - 1: the order of the derivative of the map that jumps; 0 is a gap.
     pub exponent: u32,
     /// `(1+r) J/(j-1)! F e2`, m and m/s per power of a second, F the flight from the corner to the end. With j = 1 the J in it
-    /// is held between `-u-` and `r u-`: beyond them flights miss the cam, or hit it twice.
+    /// is limited to the range from `-u-` to `r u-`: beyond it flights miss the cam, or hit it twice.
     pub step: Vector2<f64>,
     /// n, the time of the impact from the corner for each unit of position, velocity and period: s/m, s^2/m, 1. The border is
     /// `n z = 0`.
@@ -107,7 +107,7 @@ impl SectionJump {
     }
 }
 
-/// Over flights that start `before` rad before the corner and end `after` rad after it. Half a turn each is the stroboscopic
+/// Section jump for flights that start `before` rad before the corner and end `after` rad after it. Half a turn each is the stroboscopic
 /// map: there `step n` is `(A+ - A-, B+ - B-)` for j = 2, and `2 step n n` the jump of the second derivatives for j = 3.
 pub fn over(follower: &Follower, approach: &Approach, before: f64, after: f64) -> SectionJump {
     let zeta = follower.damping / (2.0 * follower.mass);

@@ -1,4 +1,4 @@
-//! Branches of orbits that stick to the cam: there is one for each value of the parameter, found by one simulated period.
+//! Branches of orbits that stick to the cam. There is one orbit for each value of the parameter, found by one simulated period.
 
 use std::f64::consts::TAU;
 
@@ -7,8 +7,7 @@ use crate::orbit::{Family, OrbitError, PeriodicOrbit, sticking};
 use crate::simulate::Machine;
 use crate::tolerance;
 
-/// The branch in one direction from `value`, of an orbit that sticks at an `anchor`, rad, and repeats after some
-/// revolutions.
+/// Follows the branch in one direction from `value`, of an orbit that sticks at an `anchor`, rad, and repeats after some revolutions.
 pub(super) fn half(
     family: &Family,
     value: f64,
@@ -69,7 +68,7 @@ pub(super) fn half(
     Ok((points, end))
 }
 
-/// The cam angle at which the cam presses most against a follower that goes with it, rad, of so many.
+/// Cam angle, rad, of a number of samples, at which the cam presses most against a follower that moves with it.
 fn pressed_most(machine: &Machine) -> f64 {
     const PLACES: u32 = 256;
     let lifting = |angle: &f64| machine.lifting(&machine.cam().lift(*angle));

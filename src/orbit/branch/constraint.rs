@@ -1,13 +1,13 @@
-//! What holds along a curve in two numbers, beside the equations of the cycle: the event that the curve is of.
+//! The event along a curve in two numbers: a condition in addition to the equations of the cycle.
 //!
-//! | event | what holds |
+//! | event | condition |
 //! |---|---|
 //! | corner impact | an impact stays on its corner |
 //! | fold, flip | a multiplier is 1, or -1 |
 //! | graze | one of the impacts has no relative velocity: the flight to it touches, `g = g' = 0`, and goes on |
 //!
-//! The determinant of a matrix M of one period is `r^(2 n) e^(-b T/m)`, n impacts in a time T: not below 0, and below 1 but for
-//! an elastic follower without damping. So no fold is a flip, and no pair of multipliers passes the unit circle.
+//! The determinant of a matrix M of one period is `r^(2 n) e^(-b T/m)`, n impacts in a time T. It is not below 0, and it is below 1 except
+//! for an elastic follower without damping. So no fold is a flip, and no pair of multipliers passes the unit circle.
 
 use std::f64::consts::TAU;
 
@@ -23,7 +23,7 @@ pub struct Pinned {
 }
 
 impl Pinned {
-    /// The same cycle, the pinned impact named after the segment on the other side of the corner.
+    /// Renames the pinned impact after the segment on the other side of the corner.
     pub(super) fn other_side(&self, cycle: &Cycle, machine: &Machine) -> Cycle {
         let last = machine.cam().segments().len() - 1;
         let mut other = cycle.clone();
@@ -44,7 +44,7 @@ impl Pinned {
     }
 }
 
-/// What holds along a curve.
+/// Condition along a curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Held {
     /// An impact is on a corner.
@@ -56,7 +56,7 @@ pub(super) enum Held {
 }
 
 impl Held {
-    /// What is off, of the size of an angle; `velocity` is the size of the follower's velocities over omega, m/rad.
+    /// Residual of the condition, of the size of an angle; `velocity` is the size of the follower's velocities over omega, m/rad.
     pub(super) fn off(self, cycle: &Cycle, machine: &Machine, velocity: f64) -> f64 {
         match self {
             Self::Corner(Pinned { impact, at_end }) => {
@@ -70,7 +70,7 @@ impl Held {
         }
     }
 
-    /// The orbit without an impact that is none.
+    /// The orbit without the touch, which is no impact.
     pub(super) fn orbit(self, cycle: &Cycle) -> Cycle {
         let mut orbit = cycle.clone();
         if let Self::Touch(impact) = self {
@@ -79,7 +79,7 @@ impl Held {
         orbit
     }
 
-    /// The orbit with the law before a corner and with the law after it; of others the one orbit.
+    /// For a corner, the orbit with the law before it and that with the law after it. For other events the one orbit.
     pub(super) fn sides(self, cycle: &Cycle, machine: &Machine) -> Vec<Cycle> {
         match self {
             Self::Corner(pinned) => {
@@ -90,7 +90,7 @@ impl Held {
         }
     }
 
-    /// Where it is, as a cam angle, rad, in `[0, 2 pi]`; of a multiplier where the first impact is.
+    /// Cam angle of the event, rad, in `[0, 2 pi]`. For a multiplier it is that of the first impact.
     pub(super) fn cam_angle(self, cycle: &Cycle) -> f64 {
         match self {
             Self::Corner(Pinned { impact, .. }) | Self::Touch(impact) => cycle.impacts[impact].cam_angle,
@@ -98,7 +98,7 @@ impl Held {
         }
     }
 
-    /// The acceleration of the gap where a flight touches the cam, m/s^2: above 0, or it does not open again.
+    /// Acceleration of the gap where a flight touches the cam, m/s^2. Unless it is above 0, the gap does not open again.
     pub(super) fn opening(self, cycle: &Cycle, machine: &Machine) -> Option<f64> {
         let Self::Touch(impact) = self else { return None };
         let rates = cycle.rates(machine, impact);

@@ -1,5 +1,5 @@
-//! Orbits on other branches next to special points: of twice the period at a flip, and at a corner impact or a graze, where the
-//! second period may go on otherwise than the first; and of the branch that crosses where a symmetry is lost.
+//! Orbits on other branches next to special points. They have twice the period at a flip, and at a corner impact or a graze, where the
+//! second period may differ from the first. Where a symmetry is lost, they are on the branch that crosses.
 
 use nalgebra::DVector;
 
@@ -12,16 +12,16 @@ use crate::orbit::{Course, Cycle, Family, FamilyError, Impact, PeriodicOrbit};
 use crate::simulate::Machine;
 use crate::tolerance;
 
-/// How far from the special point the orbit is that is given, of the longest step.
+/// Distance of a returned orbit from the special point, in units of the longest step.
 const FIRST: f64 = 0.1;
 
-/// The orbits of twice the period next to the special points of branches, and the values of what is followed.
+/// Orbits of twice the period next to the special points of branches, with the values of the followed parameter.
 pub fn doubled(family: &Family, following: &Following, branches: &[Branch]) -> Vec<(f64, PeriodicOrbit)> {
     let points = branches.iter().flat_map(|branch| (0..branch.points.len()).map(move |index| (branch, index)));
     points.flat_map(|(branch, index)| at(family, following, branch, index)).collect()
 }
 
-/// The orbits on the branches that cross others next to their crossings, and the values of what is followed.
+/// Orbits on the branches that cross others, next to the crossings, with the values of the followed parameter.
 pub fn crossing(family: &Family, following: &Following, branches: &[Branch]) -> Vec<(f64, PeriodicOrbit)> {
     let pairs = branches.iter().flat_map(|branch| branch.points.windows(2));
     let met = pairs.filter_map(|pair| {
@@ -43,7 +43,7 @@ pub fn crossing(family: &Family, following: &Following, branches: &[Branch]) -> 
     met.collect()
 }
 
-/// Those next to one point.
+/// Orbits of twice the period next to one special point.
 fn at(family: &Family, following: &Following, branch: &Branch, index: usize) -> Vec<(f64, PeriodicOrbit)> {
     let point = &branch.points[index];
     let (Some(special), Course::Impacts(cycle)) = (point.special, &point.orbit.course) else { return Vec::new() };
@@ -57,8 +57,8 @@ fn at(family: &Family, following: &Following, branch: &Branch, index: usize) -> 
     exits.into_iter().filter_map(|exit| beyond(family, following, point.value, &cycle.twice(), exit)).collect()
 }
 
-/// The orbit next to `twice`, one gone round twice, of which one period leaves by `exit`; or by none, at a flip. `None` where
-/// there is none.
+/// The orbit next to `twice`, an orbit run twice, of which one period leaves by `exit`. At a flip there is no exit. `None` where there is
+/// no such orbit.
 fn beyond(
     family: &Family,
     following: &Following,
@@ -76,7 +76,7 @@ fn beyond(
     })
 }
 
-/// The orbit a step along a direction from a cycle at a value.
+/// Returns the orbit one step along a direction from a cycle at a value.
 fn stepped(
     family: &Family,
     following: &Following,
@@ -98,7 +98,7 @@ fn stepped(
     is_orbit.then(|| (value, PeriodicOrbit::of_cycle(&machine, cycle, residual)))
 }
 
-/// The ways over the corner that starts `segment`, one for each impact on it: where branches meet there may be several.
+/// Exits over the corner that starts `segment`, one for each impact on it: where branches meet there may be several.
 fn on_corner(cycle: &Cycle, machine: &Machine, segment: usize) -> impl Iterator<Item = Exit> {
     let segments = machine.cam().segments();
     let before = (segment + segments.len() - 1) % segments.len();
@@ -110,9 +110,9 @@ fn on_corner(cycle: &Cycle, machine: &Machine, segment: usize) -> impl Iterator<
     })
 }
 
-/// The unit direction from a flip in which the two halves of a period part.
+/// Unit direction from a flip in which the two halves of a period separate.
 ///
-/// The solutions that the equations see least there are the short orbits, whose halves move alike, and those of twice the
+/// The equations are nearly met there in two directions: towards the short orbits, whose halves move alike, and towards those of twice the
 /// period, whose halves move against each other.
 fn apart(problem: &Problem<'_>, at: &DVector<f64>) -> Result<DVector<f64>, NoPoint<FamilyError>> {
     let (_, jacobian) = problem.linear(at)?;
@@ -129,8 +129,8 @@ fn apart(problem: &Problem<'_>, at: &DVector<f64>) -> Result<DVector<f64>, NoPoi
     curve::unit(DVector::from_fn(at.len(), |index, _| entry(index)))
 }
 
-/// The unit direction from where branches cross across the branch that is known, which goes on `along`: of the two directions that the
-/// equations see least.
+/// Unit direction, where branches cross, that leads across the known branch, which goes on `along`. It lies in the plane of the two
+/// directions in which the equations change least.
 fn across(
     problem: &Problem<'_>,
     at: &DVector<f64>,

@@ -1,9 +1,8 @@
-//! The branches through given orbits and what branches off from them; those of a range of speeds, and the special points on
-//! them, of which a range has those of any wider one.
+//! Finds the branches through given orbits and what branches off from them. Also finds the branches of a range of speeds, and their special
+//! points: a range has all those that a wider range has in it.
 //!
-//! Orbits are looked for at speeds of a grid, which is the same for every range, as are its cells. The corner impacts of a cell
-//! are those that searches and branches come upon in a window around it, whatever range the cell is asked for in: a range is
-//! cut out of whole cells.
+//! Orbits are looked for at speeds of a grid, which is the same for every range, as are its cells. The corner impacts of a cell are those
+//! found by searches and branches in a window around it, whatever the range. A range is cut out of whole cells.
 
 use std::borrow::Borrow;
 use std::ops::Range;
@@ -19,29 +18,29 @@ use crate::progress::{Pieces, Unwatched, Watch};
 use crate::simulate::{Machine, SimulateError, angular_velocity};
 use crate::tolerance;
 
-/// How much faster each speed of the grid is than the one before it.
+/// Ratio of each speed of the grid to the one before it.
 pub const GRID_RATIO: f64 = 1.02;
-/// Speeds of the grid in a cell.
+/// Number of grid speeds in a cell.
 const CELL: i32 = 8;
-/// Speeds of the grid that a cell's window has beyond either end of the cell: a branch that no search meets in the cell may
+/// Number of grid speeds by which a cell's window extends beyond either end of the cell. A branch that no search meets in the cell may
 /// still be met there.
 const MARGIN: i32 = 2;
 /// The longest step along a branch.
 const STEP: f64 = 0.02;
-/// Points of a branch in either direction: beyond, it winds through ever more impacts.
+/// Most points of a branch in either direction; beyond, it winds through ever more impacts.
 const MOST_POINTS: usize = 1000;
 
 /// Branches, and whether all could be followed.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FoundBranches {
-    /// Those that were found, each once.
+    /// The branches found, each once.
     pub branches: Vec<Branch>,
-    /// The first search or branch that ended with an error, if any did.
+    /// Error of the first search or branch that failed, if any did.
     pub failed: Option<OrbitError>,
 }
 
 impl FoundBranches {
-    /// Follows the branch through each orbit, at its value of what is followed, that is on none yet; each is a piece of the work.
+    /// Follows the branch through each orbit, at its value of the parameter, that is on no known branch. Each is a piece of the work.
     pub fn follow(
         &mut self,
         family: &Family,
@@ -65,42 +64,42 @@ impl FoundBranches {
     }
 }
 
-/// The special points on the branches of a range of speeds, and how they were looked for.
+/// The special points on the branches of a range of speeds, and the extent of the search.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MetPoints {
-    /// By rising speed, each once.
+    /// Points by rising speed, each once.
     pub points: Vec<BranchPoint>,
     /// Speeds at which orbits were searched for, rpm.
     pub speeds: Vec<f64>,
-    /// Branches that were followed, each as often as there are windows that it passes.
+    /// Number of branches followed, each counted once for each window that it passes.
     pub branches: usize,
-    /// The first search or branch that ended with an error, if any did.
+    /// Error of the first search or branch that failed, if any did.
     pub failed: Option<OrbitError>,
 }
 
-/// Where the step `index` of the grid begins, rpm; its speed is half-way to the next one.
+/// Start of step `index` of the grid, rpm; the step's speed is half-way to the next one.
 fn grid(index: f64) -> f64 {
     elementary::powf(GRID_RATIO, index)
 }
 
-/// The step of the grid that a speed, rpm, is in.
+/// Index of the grid step that contains a speed, rpm.
 fn step_at(rpm: f64) -> i32 {
     (elementary::ln(rpm) / elementary::ln(GRID_RATIO)).floor() as i32
 }
 
-/// What a search at one speed came to.
+/// Result of a search at one speed.
 type Orbits = Result<Vec<PeriodicOrbit>, SimulateError>;
 
-/// What searches came to at speeds, rpm, of the grid.
+/// Results of searches at speeds, rpm, of the grid.
 struct Searched<'a> {
     model: &'a Model,
     speeds: Vec<f64>,
-    /// What was looked for, each over twice as many revolutions as the one before it, and what was found at each speed.
+    /// Searches, each over twice as many revolutions as the one before it, with the result at each speed.
     orbits: Vec<(Search, Vec<Orbits>)>,
 }
 
 impl<'a> Searched<'a> {
-    /// At the speeds in `steps`, for the orbits that are wanted and those that they may have branched off from: of half as many
+    /// Searches at the speeds in `steps` for the wanted orbits, and for those from which they may have branched off: of half as many
     /// revolutions, again and again.
     fn at(model: &'a Model, steps: Range<i32>, wanted: &Search, watch: &dyn Watch) -> Result<Self, FamilyError> {
         let machine = Machine::new(Cam::new(model)?, &model.follower, angular_velocity(1.0));
@@ -117,7 +116,7 @@ impl<'a> Searched<'a> {
         Ok(Self { model, speeds, orbits })
     }
 
-    /// How many orbits were found between two speeds, rpm.
+    /// Number of orbits found between two speeds, rpm.
     fn count(&self, range: [f64; 2]) -> usize {
         let all = self.orbits.iter().flat_map(|(_, orbits)| self.speeds.iter().zip(orbits));
         let inside = all.filter(|(rpm, _)| (range[0]..=range[1]).contains(*rpm));
@@ -155,17 +154,16 @@ impl<'a> Searched<'a> {
     }
 }
 
-/// The branches of `model` over `range`, rpm, of orbits of `wanted.revolutions` that have `wanted.impacts` where they were
-/// found.
+/// Finds the branches of `model` over `range`, rpm, of orbits of `wanted.revolutions` that have `wanted.impacts` where they were found.
 ///
-/// Found by searches at the speeds of the grid that are in the range: a branch that none of these meets is missing.
+/// Searches run at the speeds of the grid that are in the range: a branch that none of these meets is missing.
 pub fn find_branches(model: &Model, range: [f64; 2], wanted: &Search) -> Result<FoundBranches, FamilyError> {
     Ok(Searched::at(model, step_at(range[0])..step_at(range[1]) + 1, wanted, &Unwatched)?
         .branches(range, &Pieces::new(&Unwatched, "", 0)))
 }
 
-/// The special points of some kinds between two speeds, rpm, of orbits of `wanted.revolutions` that have `wanted.impacts` where
-/// they were found: those of any wider range that are in this one.
+/// Finds the special points of some kinds between two speeds, rpm, of orbits of `wanted.revolutions` that have `wanted.impacts` where they
+/// were found. Any wider range gives the same points in this one.
 pub fn special_points(
     model: &Model,
     range: [f64; 2],

@@ -1,23 +1,23 @@
-//! The graze of an orbit without impacts: what is known of the motions beyond it.
+//! The graze of an orbit without impacts, and the motions beyond it.
 //!
-//! The follower rests at its equilibrium, and the cam's top comes to touch it. Beyond, a follower that is y too low is struck
-//! shortly before the top. With `a = -omega^2 c''` it takes up a velocity, and n passages of the top later, each a time T after the one
-//! before, it is above the touch by
+//! The follower rests at its equilibrium, and the cam's top just touches it. Beyond the graze, a follower that is y too low is struck
+//! shortly before the top. With `a = -omega^2 c''` it takes up a velocity. After n passages of the top, each a time T after the one before,
+//! it is above the touch by
 //!
 //! ```text
 //! (1 + r) sqrt(2 a y) s(n T)        s the response of the follower to a unit impulse, as far as small motions go
 //! ```
 //!
 //! For small y the square root is much larger than y (Nordmark 1991). So the first passage with `s(n T) < 0` strikes the follower deeper
-//! than the one before, the impacts grow, and nothing attracts nearby: a jump. They grow to a depth of at least the size of
+//! than the one before. The impacts grow, and no motion nearby attracts: a jump. They grow to a depth of at least the size of
 //!
 //! ```text
 //! y = (1 + r)^2 2 a s(n T)^2        where the root gives back y
 //! ```
 //!
-//! A follower that oscillates has such an n, unless its oscillation is in resonance with the cam, `s(n T) = 0`. One that does not has
-//! `s > 0` always. Then impacts stay small. Close to the graze the slower of its two rates decides, by what it leaves of a deviation after
-//! one passage, `lambda = e^(-slow T)` (Chin, Ott, Nusse, Grebogi 1994; Fredriksson, Nordmark 1997):
+//! A follower that oscillates has such an n, unless its oscillation is in resonance with the cam, `s(n T) = 0`. A follower that does not
+//! oscillate has `s > 0` always, and impacts stay small. Close to the graze the slower of its two rates then decides the motion, by the
+//! part of a deviation that is left after one passage, `lambda = e^(-slow T)` (Chin, Ott, Nusse, Grebogi 1994; Fredriksson, Nordmark 1997):
 //!
 //! ```text
 //! lambda < 1/4          stable orbits of one impact in n passages, each beside the next as well; n grows without end
@@ -39,28 +39,28 @@ use crate::tolerance;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum GrazeClass {
-    /// Nothing nearby attracts beyond.
+    /// No motion nearby attracts beyond the graze.
     Jump,
-    /// Stable orbits of one impact in ever more passages, two of them side by side in part.
+    /// Stable orbits of one impact in ever more passages; neighbours coexist in part.
     PeriodAdding,
     /// Stable orbits of one impact in ever more passages, with chaos between them.
     PeriodAddingChaos,
     /// Chaos of small impacts.
     Chaos,
-    /// None of these for certain.
+    /// None of these is certain.
     Undecided,
 }
 
 named!(GrazeClass);
 
-/// Why a class is undecided.
+/// Reason why a class is undecided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Doubt {
     /// The cam's velocity jumps at its top.
     Sharp,
     /// The cam does not fall away from its top as a parabola does.
     Flat,
-    /// The cam is as high at several places, which are not alike or not as far from each other.
+    /// The cam is equally high at several places, which are not alike or not evenly spaced.
     Places,
     /// Nothing returns the follower to where it was.
     Unheld,
@@ -70,26 +70,26 @@ pub enum Doubt {
     Boundary,
 }
 
-/// What is known of the motions beyond the graze of an orbit without impacts.
+/// Class of the graze of an orbit without impacts, with the motions beyond it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FirstTouch {
-    /// What comes beyond.
+    /// Class of the motions beyond the graze.
     pub class: GrazeClass,
-    /// Of a jump: after how many passages of the cam's top the follower is struck deeper, and the depth from which on it need not be, m.
+    /// For a jump: passages of the cam's top after which the follower is struck deeper, and the depth from which on it need not be, m.
     pub back: Option<(u64, f64)>,
     /// Why the class is undecided.
     pub doubt: Option<Doubt>,
-    /// Whether the cam reaches the follower at larger values of what is followed; at smaller ones otherwise.
+    /// Whether the cam reaches the follower at larger values of the followed parameter; otherwise at smaller ones.
     pub larger: bool,
 }
 
-/// Between which eigenvalues stable orbits of one impact have chaos between them.
+/// Eigenvalues between which stable orbits of one impact have chaos between them.
 const CHAOS_BETWEEN: [f64; 2] = [1.0 / 4.0, 2.0 / 3.0];
-/// Resonances of a follower that is struck deeper after more passages are not told one by one.
+/// Resonances after more passages than this are not listed one by one.
 const LATEST: u64 = 4;
 
 impl FirstTouch {
-    /// The touch of a follower at rest by the `tops` of the cam.
+    /// Classifies the touch of a follower at rest by the `tops` of the cam.
     pub(super) fn of(machine: &Machine, tops: &[Least], larger: bool) -> Self {
         let told = |class| Self { class, back: None, doubt: None, larger };
         match classified(machine, tops) {
@@ -100,7 +100,7 @@ impl FirstTouch {
     }
 }
 
-/// The class; of a jump the passages and the depth too.
+/// Class of the graze; for a jump also the passages and the depth.
 fn classified(machine: &Machine, tops: &[Least]) -> Result<(GrazeClass, u64, f64), Doubt> {
     let (flight, omega) = (machine.flight(), machine.angular_velocity());
     let acceleration = omega * omega * bend(machine, tops)?;
@@ -126,7 +126,7 @@ fn classified(machine: &Machine, tops: &[Least]) -> Result<(GrazeClass, u64, f64
     Ok((class, 0, 0.0))
 }
 
-/// How strongly the cam falls away from its tops, `-c''` on the side that comes first, m/rad^2, where all are alike.
+/// Curvature at the cam's tops, `-c''` on the side that comes first, m/rad^2. An error where the tops are not alike.
 fn bend(machine: &Machine, tops: &[Least]) -> Result<f64, Doubt> {
     let flat = tolerance::FLAT_TOP.value * lift_size(machine);
     let mut bends = Vec::new();
@@ -151,7 +151,7 @@ fn bend(machine: &Machine, tops: &[Least]) -> Result<f64, Doubt> {
     if are_even && are_alike { Ok(first) } else { Err(Doubt::Places) }
 }
 
-/// The first n with `sin(n angle) < 0`, rad; `None` where it is 0 for an n before, or may be.
+/// First n with `sin(n angle) < 0`, rad; `None` where the sine is, or may be, 0 for an earlier n.
 fn struck_deeper(angle: f64) -> Option<u64> {
     let within = angle.rem_euclid(TAU);
     let halves = PI / within;
@@ -162,16 +162,17 @@ fn struck_deeper(angle: f64) -> Option<u64> {
     Some(halves.floor() as u64 + 1)
 }
 
-/// Why the class of a graze is undecided at a speed, on whose two sides it differs, or the passages after which the follower is struck deeper.
+/// Reason why the class of a graze is undecided at a speed. On its two sides the class differs, or the passages after which the follower is
+/// struck deeper.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum UndecidedGraze {
     /// The eigenvalue has this value.
     Eigenvalue(f64),
-    /// The follower is at its equilibrium again so many passages after an impact.
+    /// The follower is back at its equilibrium so many passages after an impact.
     Resonance(u64),
 }
 
-/// Speeds in a range, rpm, at which the class is undecided, of a cam with so many tops: at most `most` of them.
+/// Returns speeds in a range, rpm, at which the class is undecided, for a cam with so many tops: at most `most` of them.
 pub(super) fn borders(
     machine: &Machine,
     tops: usize,

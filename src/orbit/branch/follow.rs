@@ -1,4 +1,4 @@
-//! One direction of a branch: steps along the curve, cut where something changes.
+//! Follows a branch in one direction: steps along the curve, cut where something changes.
 
 use nalgebra::DVector;
 
@@ -11,26 +11,26 @@ use crate::orbit::curve::{self, CurvePoint, NoPoint};
 use crate::orbit::{Cycle, Departure, Family, FamilyError, OrbitError, PeriodicOrbit};
 use crate::tolerance;
 
-/// Impacts in a revolution beyond which a follower is said to chatter.
+/// Impacts per revolution beyond which a follower counts as chattering.
 const MOST_IMPACTS: usize = 24;
-/// The first step, and the one after each change of the cycle, of the longest.
+/// The first step, and the one after each change of the cycle, in units of the longest step.
 const FIRST: f64 = 0.02;
-/// How far the curve may turn in one step: the cosine.
+/// Cosine of the largest turn of the curve in one step.
 const STRAIGHT: f64 = 0.985;
 
-/// Where a walk starts.
+/// Start of a walk.
 #[derive(Clone, Copy)]
 pub(super) struct Start<'a> {
     pub(super) cycle: &'a Cycle,
-    /// Of the free numbers; the last is the one that the walk is about.
+    /// Values of the free numbers; the walk follows the last one.
     pub(super) values: &'a [f64],
-    /// Of the free numbers.
+    /// Spans of the free numbers.
     pub(super) spans: &'a [f64],
     pub(super) held: Option<Held>,
 }
 
 impl<'a> Stride<'a> {
-    /// The first, from where a walk starts, in no direction yet.
+    /// The first stride of a walk, without a direction yet.
     fn begun(family: &'a Family, start: &Start<'_>, following: &'a Following) -> Result<Self, OrbitError> {
         let Start { cycle, values, spans, held } = *start;
         let machine = family.machine(values)?.0;
@@ -42,7 +42,7 @@ impl<'a> Stride<'a> {
         Ok(Self { family, following, units, spans, held, pattern, from, step })
     }
 
-    /// The branch in one direction: the sign of the last free number's first change.
+    /// Follows the branch in one direction: the sign of the last free number's first change.
     fn half(mut self, direction: f64) -> Result<HalfBranch, OrbitError> {
         let Ok(tangent) = curve::first_tangent(&self.problem(), &self.from.unknowns) else {
             return Ok((Vec::new(), self.stuck(direction)));
@@ -52,7 +52,7 @@ impl<'a> Stride<'a> {
         Walk { stride: self, fresh: None, signs: Vec::new(), standing: 0, points: Vec::new() }.run()
     }
 
-    /// Why there is no way from the start: the model may allow a step to neither side, for two reasons.
+    /// Reason why no step leads away from the start. The model may refuse a step to either side, for two reasons.
     fn stuck(&self, direction: f64) -> End {
         let mut beside = self.from.unknowns.clone();
         beside[self.from.unknowns.len() - 1] += direction * self.step;
@@ -60,7 +60,7 @@ impl<'a> Stride<'a> {
     }
 }
 
-/// The branch in one direction from an orbit.
+/// Follows the branch in one direction from an orbit.
 pub(super) fn half(
     family: &Family,
     start: &Start<'_>,
@@ -70,7 +70,7 @@ pub(super) fn half(
     Stride::begun(family, start, following)?.half(direction)
 }
 
-/// The branch from the touch of an orbit without impacts on, with the impacts of the start's cycle, which are touches there.
+/// Follows the branch from the touch of an orbit without impacts. The impacts of the start's cycle are touches there.
 pub(super) fn from_touch(family: &Family, start: &Start<'_>, following: &Following) -> Result<HalfBranch, OrbitError> {
     let mut cycle = start.cycle.clone();
     for impact in 0..cycle.impacts.len() {
@@ -95,8 +95,8 @@ pub(super) fn from_touch(family: &Family, start: &Start<'_>, following: &Followi
     Walk { stride, fresh, signs: Vec::new(), standing: 0, points: Vec::new() }.run()
 }
 
-/// The curve of what is held, in both directions from what is there at the last number's first value: the point there, if there
-/// is one, and the halves.
+/// Follows the curve of the held condition in both directions, from the point at the last number's first value. Returns this point and both
+/// halves; `None` where there is no such point.
 pub(super) fn curve(
     family: &Family,
     start: &Start<'_>,
@@ -122,16 +122,16 @@ pub(super) fn curve(
 /// A walk along a branch, in one direction.
 struct Walk<'a> {
     stride: Stride<'a>,
-    /// What the cycle was changed for, until a step has been made with the new one.
+    /// Exit for which the cycle was changed, until a step has been made with the new cycle.
     fresh: Option<Exit>,
-    /// Of what may be passed, the signs on the side that a smooth corner was come to from.
+    /// Signs of the quantities that may pass 0, on the side from which a smooth corner was reached.
     signs: Vec<bool>,
-    /// Steps in a row at which the value has stayed where it was.
+    /// Number of steps in a row over which the value did not change.
     standing: usize,
     points: Vec<BranchPoint>,
 }
 
-/// So many make a continuum.
+/// Steps in a row without a change of the value that make a continuum.
 const CONTINUUM: usize = 5;
 
 impl Walk<'_> {
@@ -187,7 +187,7 @@ impl Walk<'_> {
         }
     }
 
-    /// Whether some impacts follow one another so closely that there is no telling them apart soon.
+    /// Whether some impacts follow one another so closely that they soon cannot be distinguished.
     fn chatters(&self) -> bool {
         let closest =
             |cycle: Cycle| (0..cycle.impacts.len()).map(|index| cycle.turn(index)).fold(f64::INFINITY, f64::min);
@@ -195,7 +195,7 @@ impl Walk<'_> {
         here.is_ok_and(|(cycle, ..)| closest(cycle) < tolerance::CHATTERING_TURN.value)
     }
 
-    /// Whether some impact is next to a touch.
+    /// Whether some impact is nearly a touch.
     fn grazes(&self) -> bool {
         let here = self.stride.problem().unpack(&self.stride.from.unknowns);
         here.is_ok_and(|(cycle, machine, _)| {
@@ -205,9 +205,9 @@ impl Walk<'_> {
         })
     }
 
-    /// The same curve in units of the velocities that it has come to; and whether these grow without bound.
+    /// Converts the curve to units of its present velocities. Returns whether these grow without bound.
     fn rescale(&mut self, home: &mut (Cycle, CurvePoint)) -> bool {
-        /// From which factor on.
+        /// Factor from which the units are changed.
         const FACTOR: f64 = 1.5;
         let Ok((cycle, machine, _)) = self.stride.problem().unpack(&self.stride.from.unknowns) else { return false };
         let units = BranchScales::of(&cycle, &machine);
@@ -220,12 +220,12 @@ impl Walk<'_> {
         units.lift < tolerance::UNBOUNDED.value * units.velocity
     }
 
-    /// That the model allows no further value, in the direction of the walk, and why.
+    /// End of the branch where the model allows no further value in the direction of the walk, with the reason.
     fn edge(&self, why: &FamilyError) -> End {
         End::edge(self.stride.value(&self.stride.from.tangent) > 0.0, why)
     }
 
-    /// The orbit at the last value that the model allows, where the branch runs into it.
+    /// Returns the orbit at the last value that the model allows, where the branch runs into it.
     fn at_bound(&self, why: &FamilyError) -> Option<(BranchPoint, End)> {
         let from = &self.stride.from;
         let (count, problem) = (from.unknowns.len(), self.stride.problem());
@@ -250,7 +250,7 @@ impl Walk<'_> {
         Some((point, self.edge(why)))
     }
 
-    /// One step, or the part of it up to where the cycle changes.
+    /// Makes one step, or the part of it up to where the cycle changes.
     fn advance(&mut self) -> Result<Option<End>, NoPoint<FamilyError>> {
         let problem = self.stride.problem();
         let next = curve::step(&problem, &self.stride.from.unknowns, &self.stride.from.tangent, self.stride.step)?;
@@ -393,7 +393,7 @@ impl Walk<'_> {
         }
     }
 
-    /// Goes over to the cycle beyond an exit.
+    /// Switches to the cycle beyond an exit.
     fn go_over(&mut self, exit: Exit) -> Result<Option<End>, NoPoint<FamilyError>> {
         let problem = self.stride.problem();
         let values = problem.values(&self.stride.from.unknowns);

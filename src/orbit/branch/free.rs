@@ -1,7 +1,7 @@
-//! Branches of orbits without impacts, and where the cam comes to touch the follower.
+//! Branches of orbits without impacts, and the graze where the cam reaches the follower.
 //!
-//! Away from the cam nothing forces the follower: the cam moves, and positions are in fixed coordinates. So it rests at its equilibrium,
-//! at any speed, and the cam touches it where its top is as high:
+//! Away from the cam nothing forces the follower: the cam moves, and positions are in fixed coordinates. So the follower rests at its
+//! equilibrium at any speed, and the cam touches it where the cam's top is as high:
 //!
 //! ```text
 //! gap = q_e - max c = 0        q_e = rest - g/omega0^2
@@ -21,15 +21,15 @@ use crate::orbit::{Cycle, Family, FamilyError, Impact, OrbitError, Parameter, Pe
 use crate::simulate::{Machine, angular_velocity};
 use crate::tolerance;
 
-/// Halvings that leave nothing of an interval of doubles.
+/// Halvings that narrow an interval of doubles down to neighbours.
 const BINARY_DIGITS: u32 = 60;
 
-/// The follower at rest above the cam, with one value of what is followed.
+/// The follower at rest above the cam, at one value of the followed parameter.
 struct Rest {
     machine: Machine,
     rpm: f64,
     orbit: PeriodicOrbit,
-    /// How far it is above the cam's top, m.
+    /// Height above the cam's top, m.
     gap: f64,
 }
 
@@ -60,7 +60,7 @@ impl Rest {
     }
 }
 
-/// The branch in one direction from `value`, where the follower rests in `state`, and on with impacts behind a graze.
+/// Follows the branch in one direction from `value`, where the follower rests in `state`, and on with impacts behind a graze.
 pub(super) fn half(
     family: &Family,
     value: f64,
@@ -100,7 +100,7 @@ pub(super) fn half(
     Ok((points, if is_nothing { End::Clear } else { end }))
 }
 
-/// The branch from the graze on with an impact at each top of the cam.
+/// Follows the branch from the graze on, with an impact at each top of the cam.
 fn with_impacts(
     family: &Family,
     touch: &Rest,
@@ -125,13 +125,13 @@ fn with_impacts(
     follow::from_touch(family, &follow::Start { cycle: &cycle, values: &[value], spans: &spans, held: None }, following)
 }
 
-/// The rest of a half of a branch whose orbit has lost its only impact in a graze: the follower at rest.
+/// Continues a half of a branch whose orbit has lost its only impact in a graze: the follower then rests.
 pub(super) fn onward(
     family: &Family,
     (mut points, end): HalfBranch,
     following: &Following,
 ) -> Result<HalfBranch, OrbitError> {
-    /// A small step, of the range, to see on which side the follower is clear of the cam.
+    /// Small step, relative to the range, that shows on which side the follower is clear of the cam.
     const TRIAL: f64 = 1e-6;
     let Some(last) = points.last_mut() else { return Ok((points, end)) };
     let Some(special @ Special { kind: SpecialKind::Graze { before, after: 0, .. }, .. }) = last.special else {
@@ -157,8 +157,8 @@ pub(super) fn onward(
     Ok((points, end))
 }
 
-/// The curves, in the plane of the speed and what is followed, of the grazes of orbits without impacts between two speeds, rpm. The
-/// follower's equilibrium and the cam's top are the same at each speed; the class is not.
+/// Returns the curves, in the plane of the speed and the followed parameter, of the grazes of orbits without impacts between two speeds,
+/// rpm. The follower's equilibrium and the cam's top are the same at each speed; the class is not.
 pub(crate) fn touches(
     model: &Model,
     speeds: [f64; 2],
@@ -189,7 +189,7 @@ pub(crate) fn touches(
     Ok(curves)
 }
 
-/// The curve of one of them.
+/// Returns the curve of one of these grazes.
 fn touching(
     family: &Family,
     value: f64,

@@ -11,10 +11,10 @@ use crate::tolerance;
 ///
 /// `None` where the gap has no minimum there but falls to one of the flight's ends.
 pub(super) fn least(cycle: &Cycle, machine: &Machine, index: usize, turned: f64) -> Option<(f64, f64)> {
-    /// The first stride of the walk to the minimum, of the way to the nearer end of the flight: a short hop in front of a
-    /// long flight is seen.
+    /// First stride of the walk to the minimum, relative to the way to the nearer end of the flight. It is short enough to see a short hop
+    /// in front of a long flight.
     const PART: f64 = 0.05;
-    /// What each stride is longer by than the one before.
+    /// Ratio of each stride to the one before.
     const LONGER: f64 = 1.25;
     let (start, _) = cycle.flight(machine, index);
     let from = cycle.impacts[index].cam_angle;

@@ -10,13 +10,13 @@
 //! | `find` | the branches through given orbits and what branches off; those of a range of speeds, and its corner impacts |
 //! | `doubled` | orbits of twice the period next to a special point, and those of a branch that crosses |
 //! | `follow` | one direction of a branch, step by step; `chatter` where the follower sticks |
-//! | `problem`, `constraint` | the equations, with numbers of the model free; what holds besides along a curve in two of them |
-//! | `step_event`, `least_gap`, `period_halving` | what a step passes, and where: corners, folds, flips; grazes; the end of a doubled period |
-//! | `free`, `first_touch` | orbits without impacts, and their graze: what is known of the motions beyond it |
-//! | `sticking_curve`, `sticking_event` | curves of what becomes of a follower on the cam: where it leaves it, where it rests no more |
+//! | `problem`, `constraint` | the equations, with numbers of the model free; the condition added along a curve in two of them |
+//! | `step_event`, `least_gap`, `period_halving` | events within a step: corners, folds, flips; grazes; the end of a doubled period |
+//! | `free`, `first_touch` | orbits without impacts, and their graze with the motions beyond it |
+//! | `sticking_curve`, `sticking_event` | curves of a follower on the cam: where it leaves the cam, where it no longer rests |
 //! | `perturbed` | the events of a machine that differs a little |
 //! | `switch` | the cycle beyond a corner or a graze, and which way leads there |
-//! | `special` | the points where something changes; which impact of an orbit is which of the next |
+//! | `special` | the points where something changes; which impacts of neighbouring orbits correspond |
 
 mod chatter;
 mod constraint;
@@ -48,21 +48,21 @@ pub(crate) use perturbed::Event;
 pub(crate) use special::Special;
 pub use special::{Bifurcation, SpecialKind};
 
-/// What is followed, and how far.
+/// The followed parameter, its range, and the limits of a walk.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Following {
-    /// What changes.
+    /// Parameter that changes.
     pub parameter: Parameter,
-    /// Its lowest and highest value.
+    /// Lowest and highest value of the parameter.
     pub range: [f64; 2],
-    /// The longest step, of the range or of a radian of an impact's angle.
+    /// Longest step, relative to the range or to a radian of an impact's angle.
     pub longest_step: f64,
     /// Points in one direction after which the branch is given up.
     pub most_points: usize,
 }
 
 impl Following {
-    /// The last value in one direction from `value`: the end of the range, or the last that the model allows.
+    /// Returns the last value in one direction from `value`: the end of the range, or the last that the model allows.
     fn bound(&self, family: &Family, value: f64, direction: f64) -> (f64, End) {
         let edge = self.range[usize::from(direction > 0.0)];
         if let Err(why) = family.machine(&[edge])
@@ -79,39 +79,39 @@ impl Following {
 pub struct BranchPoint {
     /// The speed, rpm.
     pub rpm: f64,
-    /// What the parameter is.
+    /// Value of the parameter.
     pub value: f64,
     /// The orbit.
     pub orbit: PeriodicOrbit,
-    /// On a curve in two numbers: the event that it is of.
+    /// Event of a curve in two numbers.
     pub held: Option<OnCurve>,
-    /// What changes here, if anything.
+    /// Change at this point, if any.
     pub special: Option<Special>,
 }
 
-/// The event that a curve is of, at one of its points.
+/// The event that a curve follows, at one of its points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OnCurve {
-    /// Where the impact on the corner is, or the touch; of others the first impact; rad.
+    /// Cam angle of the impact on the corner, or of the touch; for other events that of the first impact; rad.
     pub cam_angle: f64,
-    /// The matrix of one period; of a corner impact that with the law before the corner and that with the law after it.
+    /// Matrix of one period. For a corner impact: that with the law before the corner and that with the law after it.
     pub sides: Vec<Matrix2<f64>>,
-    /// Of a graze of an orbit without impacts: its class.
+    /// Class of the graze of an orbit without impacts.
     pub class: Option<GrazeClass>,
 }
 
-/// Why a branch goes no further in one direction.
+/// Reason why a branch goes no further in one direction.
 #[derive(Clone, Debug, PartialEq)]
 pub enum End {
     /// The end of the range.
     Range,
-    /// It came back to where it started.
+    /// The start of the branch again.
     Closed,
     /// The model allows no further value.
     Edge {
-        /// Whether it is the largest that is allowed; the smallest otherwise.
+        /// Whether the last value is the largest allowed; otherwise it is the smallest.
         largest: bool,
-        /// What is allowed.
+        /// Rule of the model.
         why: String,
     },
     /// Velocities that grow without bound.
@@ -120,25 +120,25 @@ pub enum End {
     Endless,
     /// An impact on the way to a rest at a corner, where the curve has a kink.
     Kink,
-    /// The follower goes another way to its rest, or to none.
+    /// The follower goes another way to its rest, or does not rest.
     OtherWay,
     /// A touch at which the gap does not open again.
     Degenerate,
-    /// As far as a few steps show, orbits of many amplitudes at one value: it changes no more than rounding.
+    /// Orbits of many amplitudes at one value, as far as a few steps show: it changes no more than rounding.
     Continuum,
-    /// As many points as were asked for.
+    /// The requested number of points.
     MostPoints,
     /// Impacts without number: the follower begins to chatter there, or ceases to.
     Chatter,
-    /// The end of a range of speeds, of an orbit without impacts: it is as far from the cam at each speed.
+    /// The end of a range of speeds, for an orbit without impacts: its distance from the cam is the same at each speed.
     Clear,
     /// No spring holds the follower above the cam any more.
     Falls,
-    /// An impact of the orbit at a corner, beyond which its curve is none.
+    /// An impact of the orbit at a corner, beyond which the curve does not exist.
     Corner,
     /// A graze beyond which no orbit nearby continues the branch.
     Graze,
-    /// An orbit that repeats sooner, which it branches off from: by a flip or a graze.
+    /// An orbit that repeats sooner, from which the branch comes by a flip or a graze.
     Shorter,
     /// An impact at a corner where the cam's velocity jumps: the map has a gap there.
     Gap,
@@ -147,12 +147,12 @@ pub enum End {
 }
 
 impl End {
-    /// That the model allows no larger value, or no smaller one, and why.
+    /// The end where the model allows no larger value, or no smaller one, with the reason.
     fn edge(largest: bool, why: &FamilyError) -> Self {
         Self::Edge { largest, why: why.rule() }
     }
 
-    /// In words, for a message.
+    /// Describes the end in words, for a message.
     pub fn words(&self) -> String {
         match self {
             Self::Range => "the end of the range".into(),
@@ -181,10 +181,10 @@ impl End {
     }
 }
 
-/// One impact of the orbits of a branch, as far as it is the same impact and its orbits are of one stability.
+/// One impact of the orbits of a branch, as long as it is the same impact and the orbits have the same stability.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ImpactLine {
-    /// That of the orbits.
+    /// Stability of the orbits.
     pub stability: Stability,
     /// The parameter, and the cam angle of the impact, rad.
     pub points: Vec<[f64; 2]>,
@@ -209,7 +209,7 @@ impl Branch {
         Self::at(&family, following.parameter.value(model, rpm).unwrap_or(f64::NAN), orbit, following)
     }
 
-    /// The branch through `orbit`, of the machine that has `value` of what is followed, the one free number of `family`.
+    /// The branch through `orbit`, of the machine at `value` of the followed parameter, the one free number of `family`.
     pub(crate) fn at(
         family: &Family,
         value: f64,
@@ -232,8 +232,8 @@ impl Branch {
         Ok(Self::joined([half(-1.0)?, half(1.0)?], middle))
     }
 
-    /// The curve, in the plane of the speed and what is followed, of the event at `point`, a special point of a branch in the
-    /// speed; `None` where it is no such event. Speeds are compared over `speeds`, rpm.
+    /// The curve, in the plane of the speed and the followed parameter, of the event at `point`, a special point of a branch in the speed.
+    /// `None` where it is no such event. Speeds are measured against the range `speeds`, rpm.
     pub fn of_event(
         model: &Model,
         point: &BranchPoint,
@@ -264,7 +264,7 @@ impl Branch {
         }))
     }
 
-    /// Both directions from a point in the middle.
+    /// Joins both directions from a point in the middle.
     fn joined([(mut points, first), (onward, last)]: [HalfBranch; 2], middle: BranchPoint) -> Self {
         points.reverse();
         points.push(middle);
@@ -274,8 +274,8 @@ impl Branch {
         Self { points, ends: [first, last] }
     }
 
-    /// The impacts along the branch, of orbits that do not stick: each impact is followed from orbit to orbit, whatever its
-    /// number is from angle 0 on.
+    /// Lines of the impacts along the branch, for orbits that do not stick. Each impact is followed from orbit to orbit, whatever its
+    /// number from angle 0 on.
     ///
     /// A line ends where the number of impacts or the stability changes, or where the impact passes angle 0.
     pub fn lines(&self) -> Vec<ImpactLine> {

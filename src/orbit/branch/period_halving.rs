@@ -1,7 +1,7 @@
-//! Where a branch of orbits of twice the period ends: at the flip that they come from.
+//! Locates the end of a branch of orbits of twice the period: the flip from which they come.
 //!
-//! There the two halves of a period become one, and the equations of the long orbit are singular. Those of the short one
-//! are not, so the flip is located on it.
+//! There the two halves of a period become one, and the equations of the long orbit are singular. Those of the short orbit are not, so the
+//! flip is located on the short orbit.
 
 use crate::bracket::secants;
 use crate::orbit::{Cycle, Impact};
@@ -11,15 +11,15 @@ use crate::tolerance;
 /// The flip of an orbit of half the period.
 pub(super) struct Flipped {
     pub(super) value: f64,
-    /// The short orbit, gone round twice.
+    /// The short orbit, run twice.
     pub(super) cycle: Cycle,
-    /// Two values of the parameter between which it is.
+    /// Bracket of the parameter.
     pub(super) bracket: [f64; 2],
-    /// What is left of 1 + trace + determinant.
+    /// Residual of 1 + trace + determinant.
     pub(super) residual: f64,
 }
 
-/// How far the second half of a cycle is from its first, rad; `None` where the two have nothing to do with each other.
+/// Angle from the first half of a cycle to its second, rad, at the first impact; `None` where the halves do not correspond.
 pub(super) fn apart(cycle: &Cycle) -> Option<f64> {
     let other = cycle.second_half(0)?;
     Some(cycle.impacts[other].cam_angle - cycle.impacts[0].cam_angle)
@@ -36,10 +36,10 @@ fn mean(cycle: &Cycle) -> Cycle {
     Cycle { revolutions: cycle.revolutions / 2, impacts }
 }
 
-/// The flip between two cycles, at two values of the parameter, whose halves have changed places; `None` where what they
-/// pass is none.
+/// Locates the flip between two cycles, at two values of the parameter, whose halves have changed places. `None` where there is no flip
+/// between them.
 pub(super) fn flip(machine_at: impl Fn(f64) -> Option<Machine>, ends: [(f64, &Cycle); 2]) -> Option<Flipped> {
-    /// The guess is a step away: secants need six or so.
+    /// Most steps. The guess is a step away, and secants need six or so.
     const STEPS: usize = 20;
     let [(first, one), (second, two)] = ends;
     let [before, after] = [apart(one)?, apart(two)?];

@@ -1,4 +1,4 @@
-//! Where an event is in a machine that differs a little: its equations solved there, with the speed free.
+//! Locates an event in a machine that differs a little: its equations are solved there, with the speed free.
 
 use std::f64::consts::TAU;
 
@@ -12,7 +12,7 @@ use crate::orbit::{Course, Cycle, Family, Parameter};
 use crate::simulate::{Machine, angular_velocity};
 use crate::tolerance;
 
-/// An event of a machine, to be looked for in others.
+/// An event of a machine, to be located in others.
 pub(crate) struct Event<'a> {
     machine: &'a Machine,
     rpm: f64,
@@ -21,26 +21,26 @@ pub(crate) struct Event<'a> {
 }
 
 impl<'a> Event<'a> {
-    /// Of a special point of a branch, with its machine; none where it is no event with equations of its own.
+    /// The event at a special point of a branch, with its machine. `None` where the point has no equations of its own.
     pub fn of_point(machine: &'a Machine, point: &BranchPoint) -> Option<Self> {
         let Course::Impacts(cycle) = &point.orbit.course else { return None };
         let (cycle, held) = switch::held(point.special?.kind, cycle, machine)?;
         Some(Self { machine, rpm: point.rpm, cycle, held })
     }
 
-    /// Of an impact on a corner, at an end of its segment: the last, or the first.
+    /// The event of an impact on a corner, at the end of its segment or at the start.
     pub fn of_corner(machine: &'a Machine, rpm: f64, cycle: &Cycle, impact: usize, at_end: bool) -> Self {
         Self { machine, rpm, cycle: cycle.clone(), held: Held::Corner(Pinned { impact, at_end }) }
     }
 
-    /// The speed, rpm, at which it is in another machine; none where Newton's method finds none nearby.
+    /// Speed, rpm, of the event in another machine. `None` where Newton's method finds none nearby.
     pub fn moved(&self, model: &Model, cam: &Cam) -> Option<f64> {
         self.solved(model, cam).map(|(_, rpm)| rpm)
     }
 
-    /// The same with the cycle, and from guesses of both.
+    /// Cycle and speed, rpm, of the event in another machine, with its own as guesses.
     pub fn solved(&self, model: &Model, cam: &Cam) -> Option<(Cycle, f64)> {
-        /// Times that an impact may turn out to be on another segment.
+        /// Number of times that an impact may turn out to be on another segment.
         const SEGMENTS: usize = 6;
         let there = Machine::new(cam.clone(), &model.follower, angular_velocity(self.rpm));
         let family = Family::of(model, &there, self.rpm, vec![Parameter::Speed]);
@@ -61,7 +61,7 @@ impl<'a> Event<'a> {
     }
 }
 
-/// The cycle with the segments that its impacts are on in another machine's cam, and what is held of it there.
+/// Renames the impacts by the segments of another machine's cam, and adapts the condition to them.
 fn renamed(cycle: &Cycle, held: Held, here: &Machine, there: &Machine) -> Option<(Cycle, Held)> {
     let from = here.cam().segments();
     let mut renamed = cycle.clone();
@@ -102,9 +102,9 @@ fn renamed(cycle: &Cycle, held: Held, here: &Machine, there: &Machine) -> Option
     })
 }
 
-/// The cycle and the speed at which everything holds, on these segments.
+/// Solves for the cycle and the speed at which all equations hold, on these segments.
 fn solved(family: &Family, cycle: &Cycle, held: Held, rpm: f64) -> Option<(Cycle, f64)> {
-    /// Steps of Newton's method; where it needs more, the event is elsewhere or gone.
+    /// Most Newton steps. If more are needed, the event is elsewhere or gone.
     const STEPS: usize = 20;
     let machine = family.machine(&[rpm]).ok()?.0;
     let problem = Problem::new(family, cycle, BranchScales::of(cycle, &machine), &[rpm], Some(held));

@@ -8,7 +8,7 @@ use crate::orbit::cycle::lift_size;
 use crate::orbit::{Cycle, Family, FamilyError};
 use crate::simulate::Machine;
 
-/// What lengths are measured by.
+/// Units of lengths and of velocities.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BranchScales {
     /// The size of the cam's lift, m.
@@ -24,7 +24,7 @@ impl BranchScales {
         Self { lift, velocity: lift.max(fastest / machine.angular_velocity()) }
     }
 
-    /// A point of a curve of cycles of so many impacts in these units, in those of `other`.
+    /// Converts a point of a curve of cycles of so many impacts from these units to those of `other`.
     pub fn convert(&self, point: &mut CurvePoint, impacts: usize, other: Self) {
         let factor = self.velocity / other.velocity;
         for index in (1..2 * impacts).step_by(2) {
@@ -38,16 +38,16 @@ impl BranchScales {
 /// Unknowns: angle (rad) and velocity over omega (by its unit) of each impact, then the free numbers (by `spans`).
 pub struct Problem<'a> {
     family: &'a Family,
-    /// Revolutions and segments; its angles and velocities are replaced.
+    /// Revolutions and segments of the cycle; its angles and velocities are replaced.
     pattern: Cycle,
-    /// Of the cam's lift, m, and of velocities over omega, m/rad.
+    /// Units of the cam's lift, m, and of velocities over omega, m/rad.
     units: BranchScales,
     spans: Vec<f64>,
     held: Option<Held>,
 }
 
 impl<'a> Problem<'a> {
-    /// The cycle of the pattern's revolutions and segments.
+    /// Equations of a cycle with the pattern's revolutions and segments.
     pub fn new(family: &'a Family, pattern: &Cycle, units: BranchScales, spans: &[f64], held: Option<Held>) -> Self {
         Self { family, pattern: pattern.clone(), units, spans: spans.to_vec(), held }
     }
@@ -69,7 +69,7 @@ impl<'a> Problem<'a> {
         unknowns.iter().skip(count).zip(&self.spans).map(|(value, span)| value * span).collect()
     }
 
-    /// The cycle and the machine that unknowns stand for, and its speed, rpm.
+    /// The cycle and the machine that unknowns represent, and its speed, rpm.
     pub fn unpack(&self, unknowns: &DVector<f64>) -> Result<(Cycle, Machine, f64), FamilyError> {
         let (machine, rpm) = self.family.machine_of_cycles(&self.values(unknowns))?;
         let cycle = self.cycle(unknowns, &machine);
@@ -85,7 +85,7 @@ impl<'a> Problem<'a> {
         cycle
     }
 
-    /// Those of the cycle, of its size, and of what is held, if anything is.
+    /// Scales the residual of the cycle by the lift, and appends that of the held condition, if any.
     fn with_held(&self, of_cycle: DVector<f64>, cycle: &Cycle, machine: &Machine) -> DVector<f64> {
         let of_cycle = of_cycle / self.units.lift;
         match self.held {
@@ -94,7 +94,7 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// What the equations are off by.
+    /// Residual of the equations.
     pub(super) fn residual(&self, unknowns: &DVector<f64>) -> Result<DVector<f64>, FamilyError> {
         let (cycle, machine, _) = self.unpack(unknowns)?;
         Ok(self.with_held(cycle.residual(&machine), &cycle, &machine))
@@ -105,7 +105,8 @@ impl Equations for Problem<'_> {
     type Error = FamilyError;
 
     fn linear(&self, unknowns: &DVector<f64>) -> Result<(DVector<f64>, DMatrix<f64>), FamilyError> {
-        /// Of a radian and of the span of a free number: it steers Newton's method and the tangent, and needs six digits.
+        /// Difference for derivatives, in radians or spans of a free number. It steers Newton's method and the tangent, and needs six
+        /// digits.
         const DIFFERENCE: f64 = 1e-7;
         let count = 2 * self.pattern.impacts.len();
         let (cycle, machine, _) = self.unpack(unknowns)?;

@@ -7,14 +7,14 @@ use serde::Serialize;
 use super::first_touch::{FirstTouch, UndecidedGraze};
 use crate::orbit::{Course, Impact, Judgement, PeriodicOrbit, Stability};
 
-/// What changes.
+/// Kind of change along a branch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SpecialKind {
     /// A multiplier passes 1: the branch turns round in the parameter.
     Fold,
-    /// A multiplier passes 1 and the branch goes on: another branch crosses it, of orbits with less symmetry perhaps.
+    /// A multiplier passes 1 and the branch goes on: another branch crosses it, perhaps of orbits with less symmetry.
     Branching,
-    /// A multiplier passes -1: an orbit of twice the period branches off; or, on a branch of those, its end there.
+    /// A multiplier passes -1: an orbit of twice the period branches off. On a branch of such orbits it is their end.
     Flip,
     /// An impact passes a corner of the cam.
     Corner {
@@ -22,7 +22,7 @@ pub enum SpecialKind {
         impact: usize,
         /// Index of the segment that starts at the corner.
         segment: usize,
-        /// The lowest derivative of the lift that jumps there.
+        /// Lowest order of a derivative of the lift that jumps there.
         jump_order: usize,
     },
     /// A flight touches the cam, or an impact becomes a touch: the number of impacts changes from one to the other.
@@ -31,15 +31,15 @@ pub enum SpecialKind {
         before: usize,
         /// Impacts after.
         after: usize,
-        /// Where the touch is, as the angle that the cam has turned since angle 0 of revolution 0, rad.
+        /// Angle that the cam has turned at the touch since angle 0 of revolution 0, rad.
         turned: f64,
-        /// Of an orbit without impacts: what is known of the motions beyond.
+        /// For an orbit without impacts: class of the graze.
         first: Option<FirstTouch>,
     },
     /// Along a curve of corner impacts or grazes: a multiplier of the map on one side of the corner, or of the orbit without
     /// the touch, passes 1 or -1: a fold or a flip meets the curve.
     Type {
-        /// Whether that side is the one after the corner; none of a graze.
+        /// Whether that side is the one after the corner; `None` for a graze.
         after_corner: Option<bool>,
         /// 1 or -1.
         multiplier: f64,
@@ -48,11 +48,11 @@ pub enum SpecialKind {
     Cusp,
     /// Along a curve of grazes of orbits without impacts: the class of the graze is undecided there, and may change.
     Class(UndecidedGraze),
-    /// Along a curve of grazes: follower and cam have one acceleration at the touch.
+    /// Along a curve of grazes: follower and cam have the same acceleration at the touch.
     DegenerateGraze,
-    /// Along a curve of detachment: where the follower leaves the cam first changes from one place to another.
+    /// Along a curve of detachment: the place where the follower first leaves the cam changes to another.
     Place,
-    /// A curve turns round in the number that is followed.
+    /// A curve turns round in the followed parameter.
     Turn,
     /// The follower begins to chatter, or ceases to.
     Chatter,
@@ -86,12 +86,12 @@ impl Bifurcation {
 }
 
 impl SpecialKind {
-    /// Whether the matrix of the orbit is one on both sides of a corner, since what jumps there is beyond the acceleration.
+    /// Whether the matrix of the orbit is the same on both sides of a corner, since only derivatives beyond the acceleration jump there.
     pub(crate) fn is_smooth_corner(&self) -> bool {
         matches!(self, Self::Corner { jump_order: 3.., .. })
     }
 
-    /// What its curve is one of, if it has one.
+    /// Kind of event that its curve follows, if it has a curve.
     pub fn bifurcation(&self) -> Option<Bifurcation> {
         match self {
             Self::Corner { .. } => Some(Bifurcation::Corner),
@@ -104,7 +104,7 @@ impl SpecialKind {
         }
     }
 
-    /// Its name in tables.
+    /// Name in tables.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Fold => "fold",
@@ -124,8 +124,8 @@ impl SpecialKind {
     }
 }
 
-/// The orbit at a point where something changes: neutral where a multiplier is 1 or -1 by the equations of the point, on whichever side
-/// of the circle rounding has put it. The other multiplier has the size of det M, which is 1 at most.
+/// Returns the orbit at a special point with its verdict: neutral where the equations of the point make a multiplier 1 or -1, whichever
+/// side of the circle rounding has put it on. The other multiplier has the size of det M, which is 1 at most.
 pub(super) fn judged(orbit: PeriodicOrbit, special: Option<Special>) -> PeriodicOrbit {
     let on_circle = special
         .is_some_and(|special| matches!(special.kind, SpecialKind::Fold | SpecialKind::Flip | SpecialKind::Branching));
@@ -133,21 +133,20 @@ pub(super) fn judged(orbit: PeriodicOrbit, special: Option<Special>) -> Periodic
     PeriodicOrbit { judgement: Judgement { stability, ..orbit.judgement }, ..orbit }
 }
 
-/// Where it changes, and how well that is known.
+/// A special point: the kind of change, and how well it is located.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Special {
     pub kind: SpecialKind,
-    /// Two values of the parameter between which it does.
+    /// Bracket of the parameter.
     pub bracket: [f64; 2],
-    /// What is left of the quantity that passes 0 there, in its own unit: rad, m/s, m, or a multiplier's.
+    /// Residual of the quantity that passes 0 there, in its own unit: rad, m/s, m, or a multiplier's.
     pub residual: f64,
 }
 
-/// How far two neighbours on a branch are apart, rad, and by how many places the impacts of the other are numbered further on
-/// from angle 0; `None` where they have different numbers of revolutions or impacts, or stick.
+/// Distance of two neighbours on a branch, rad, and the shift from the numbers of one's impacts, from angle 0 on, to those of the other.
+/// `None` where they have different numbers of revolutions or impacts, or stick.
 ///
-/// The order in which impacts follow one another stays the same along a branch: the numbers are as many places further on as
-/// moves the impacts least.
+/// The order in which impacts follow one another stays the same along a branch: the shift is the one that moves the impacts least.
 pub(super) fn apart(one: &PeriodicOrbit, other: &PeriodicOrbit) -> Option<(f64, usize)> {
     let (Course::Impacts(from), Course::Impacts(to)) = (&one.course, &other.course) else { return None };
     let count = from.impacts.len();
@@ -169,8 +168,8 @@ pub(super) fn apart(one: &PeriodicOrbit, other: &PeriodicOrbit) -> Option<(f64, 
     all.min_by(|one, two| one.0.total_cmp(&two.0))
 }
 
-/// Which impact of one orbit is which of its neighbour's on a branch, by their numbers from angle 0 on; none where they cannot
-/// be told.
+/// Pairs each impact of one orbit with that of its neighbour on a branch, by their numbers from angle 0 on. Empty where they cannot be
+/// matched.
 pub(super) fn same_impacts(one: &PeriodicOrbit, other: &PeriodicOrbit) -> Vec<(usize, usize)> {
     let count = one.impacts().count();
     let further = apart(one, other).map(|(_, further)| further);

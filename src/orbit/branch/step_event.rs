@@ -1,4 +1,4 @@
-//! Events within one step along a branch, such as a corner, a fold or a flip: noticed, measured and located.
+//! Events within one step along a branch, such as a corner, a fold or a flip: detected, measured and located.
 
 use nalgebra::DVector;
 
@@ -12,7 +12,7 @@ use crate::orbit::{Cycle, Departure, Family, FamilyError, PeriodicOrbit};
 use crate::simulate::{Machine, SimulateError};
 use crate::tolerance;
 
-/// A cut of the step at hand.
+/// Event that cuts the present step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Cut {
     /// The parameter reaches a bound.
@@ -21,7 +21,7 @@ pub(super) enum Cut {
     Exit(Exit),
     /// A multiplier passes 1.
     Fold,
-    /// A multiplier passes 1, and the branch goes on: another crosses it.
+    /// A multiplier passes 1, and the branch goes on: another branch crosses it.
     Branching,
     /// A multiplier passes -1.
     Flip,
@@ -29,23 +29,23 @@ pub(super) enum Cut {
     Halved,
     /// Along a curve: with the law on one side of the corner, or without the touch, a multiplier passes 1 or -1.
     Type { side: usize, multiplier: f64 },
-    /// Along a curve of folds: it goes back in both numbers.
+    /// Along a curve of folds: the curve turns back in both numbers.
     Cusp,
     /// Along a curve of grazes: the gap does not open again.
     Degenerate,
 }
 
 pub(super) struct Located {
-    /// The step to it.
+    /// Length of the step to the cut.
     pub(super) step: f64,
     pub(super) cut: Cut,
     pub(super) point: CurvePoint,
-    /// Values of the parameter on either side.
+    /// Bracket of the parameter.
     pub(super) bracket: [f64; 2],
     pub(super) residual: f64,
 }
 
-/// One step of a branch: where it starts, of which cycle, and how far it goes.
+/// One step of a branch: its start, its cycle and its length.
 pub(super) struct Stride<'a> {
     pub(super) family: &'a Family,
     pub(super) following: &'a Following,
@@ -63,7 +63,7 @@ impl Stride<'_> {
         Problem::new(self.family, &self.pattern, self.units, &self.spans, self.held)
     }
 
-    /// Where the cam as it is leaves the cycle, beside what is held.
+    /// Returns where the motion on the actual cam leaves the cycle, apart from the held condition.
     pub(super) fn departure(&self, cycle: &Cycle, machine: &Machine) -> Result<Option<Departure>, SimulateError> {
         match self.held {
             Some(Held::Touch(impact)) => cycle.departure_but_for(machine, Some(impact)),
@@ -71,19 +71,19 @@ impl Stride<'_> {
         }
     }
 
-    /// The parameter, of the unknowns.
+    /// Value of the parameter in the unknowns.
     pub(super) fn value(&self, unknowns: &DVector<f64>) -> f64 {
         unknowns[unknowns.len() - 1] * self.spans[self.spans.len() - 1]
     }
 
-    /// Whether the value stays the same all the way to `next`, as it does along a continuum of orbits: where one is folded it turns back at one
-    /// place, and changes on both sides.
+    /// Whether the value stays the same all the way to `next`, as along a continuum of orbits. At a fold it turns back at one place, and
+    /// changes on both sides.
     pub(super) fn stands(&self, next: &CurvePoint) -> bool {
         let slope = |point: &CurvePoint| point.tangent[point.tangent.len() - 1].abs();
         self.held.is_none() && [&self.from, next].into_iter().all(|point| slope(point) <= tolerance::STANDING.value)
     }
 
-    /// The flip that a step to `next` passes, if the orbit is one of twice the period.
+    /// Locates the flip that a step to `next` passes, if the orbit is one of twice the period.
     pub(super) fn halved(
         &self,
         problem: &Problem<'_>,
@@ -112,7 +112,7 @@ impl Stride<'_> {
         Ok(Some(Located { step: part * self.step, cut: Cut::Halved, point, bracket, residual }))
     }
 
-    /// What may be passed without a change of the cycle.
+    /// Events that may be passed without a change of the cycle.
     pub(super) fn passed(&self) -> Vec<Cut> {
         let of_side = |side| [1.0, -1.0].map(|multiplier| Cut::Type { side, multiplier });
         match self.held {
@@ -124,7 +124,7 @@ impl Stride<'_> {
         }
     }
 
-    /// What the equations show to have been passed at `unknowns`.
+    /// Cuts that the equations show to have been passed at `unknowns`.
     pub(super) fn cuts(
         &self,
         problem: &Problem<'_>,
@@ -159,7 +159,7 @@ impl Stride<'_> {
         Ok(cuts)
     }
 
-    /// A quantity that is positive before a cut and passes 0 at it; of a fold and a flip the sign before is any.
+    /// Quantity that is positive before a cut and passes 0 at it. For a fold or a flip it may have either sign before.
     pub(super) fn measure(
         &self,
         problem: &Problem<'_>,
@@ -199,7 +199,7 @@ impl Stride<'_> {
         })
     }
 
-    /// Where in `[0, step]` a cut is: by secants that keep the bracket.
+    /// Locates a cut in `[0, step]` by secants that keep the bracket.
     pub(super) fn locate(&self, problem: &Problem<'_>, cut: Cut, step: f64) -> Result<Located, NoPoint<FamilyError>> {
         let at = |step: f64| -> Result<Seen<CurvePoint>, NoPoint<FamilyError>> {
             let with = curve::step(problem, &self.from.unknowns, &self.from.tangent, step)?;
@@ -275,7 +275,7 @@ impl Stride<'_> {
         Ok(Some(Special { kind, bracket: located.bracket, residual: located.residual }))
     }
 
-    /// The order of the corner that a impact leaves its segment by, if it is one.
+    /// Order of the corner by which an impact leaves its segment; `None` where it is no corner.
     pub(super) fn order(&self, exit: Exit, cycle: &Cycle, machine: &Machine) -> Option<usize> {
         let Exit::Corner { impact, past_end } = exit else { return None };
         let segment = cycle.impacts[impact].segment;

@@ -1,4 +1,4 @@
-//! Curves, in two numbers, of where a follower first leaves the cam and where it no longer comes to rest on it.
+//! Curves, in two numbers, on which a follower first leaves the cam, or no longer comes to rest on it.
 
 use std::f64::consts::{PI, TAU};
 
@@ -16,16 +16,16 @@ use crate::orbit::{Course, Family, FamilyError, Judgement, OrbitError, PeriodicO
 use crate::simulate::{Event, Machine};
 use crate::tolerance;
 
-/// How far from a kink a curve is looked for, of the longest step.
+/// Radius around a kink at which the curve is looked for, in units of the longest step.
 const AROUND: f64 = 0.05;
 
-/// A small step, of the spans, to see which way a curve goes on.
+/// Small step, relative to the spans, that shows which way a curve goes on.
 const TRIAL: f64 = 1e-6;
 
-/// Halvings that leave nothing of an interval of doubles.
+/// Halvings that narrow an interval of doubles down to neighbours.
 const BINARY_DIGITS: u32 = 60;
 
-/// The curve of the event at `special`, in both directions from the machine that has these `values`; and its point there.
+/// Follows the curve of the event at `special` in both directions from the machine with these `values`. Also returns its point there.
 pub(super) fn curve(
     family: &Family,
     (values, spans): ([f64; 2], [f64; 2]),
@@ -58,7 +58,7 @@ struct Walk<'a> {
     following: &'a Following,
     revolutions: u64,
     from: CurvePoint,
-    /// Between which kinks the impacts there are that are told one by one.
+    /// For each impact that is tracked one by one, the number of kinks before it.
     regions: Vec<usize>,
     points: Vec<BranchPoint>,
 }
@@ -143,8 +143,8 @@ impl Walk<'_> {
         Ok(None)
     }
 
-    /// Goes on from a kink, where an impact on the way to the rest is at a corner: on a small circle around it the equation changes its
-    /// sign where the curve came from and where it goes on, in whatever direction. Whether it does.
+    /// Goes on from a kink, where an impact on the way to the rest is at a corner. On a small circle around it the equation changes its
+    /// sign where the curve came from and where it goes on, in whatever direction. Returns whether the curve goes on.
     fn turn(&mut self) -> bool {
         let Some(((kind, residual), on)) = self.at_corner().zip(self.beyond_kink()) else { return false };
         let Ok(point) = self.rest.branch_point(&on.unknowns, &on.tangent, self.revolutions, None) else { return false };
@@ -159,13 +159,14 @@ impl Walk<'_> {
         true
     }
 
-    /// The point where the curve goes on, on the first circle of three that tells it from where it came.
+    /// Point where the curve goes on, on the first of three circles that distinguishes it from where it came.
     fn beyond_kink(&self) -> Option<CurvePoint> {
         [0.1, 0.01, 1.0].into_iter().find_map(|part| self.on_circle(part * AROUND * self.following.longest_step))
     }
 
     fn on_circle(&self, radius: f64) -> Option<CurvePoint> {
-        /// The least angle from where it came from, rad, and what each next is of the one before: both ways may be close together.
+        /// Least angle from where the curve came from, rad, and ratio of each next angle to the one before: both ways may be close
+        /// together.
         const LEAST: f64 = 0.002;
         const RATIO: f64 = 1.5;
         const CLOSER: f64 = 0.2;
@@ -204,7 +205,7 @@ impl Walk<'_> {
         curve::closed(&self.rest, kink, &along, radius, kink + &along * radius).ok()
     }
 
-    /// The corner that an impact on the way is at, and how near, rad.
+    /// The corner nearest to an impact on the way, and the distance, rad.
     fn at_corner(&self) -> Option<(SpecialKind, f64)> {
         let (machine, _) = self.rest.machine(&self.from.unknowns).ok()?;
         let reached = self.rest.contact.reached(&machine)?;
@@ -216,7 +217,7 @@ impl Walk<'_> {
         (off < tolerance::KINK.value).then_some((kind, off))
     }
 
-    /// What the curve comes to where no step leads on.
+    /// End of the curve where no step leads on.
     fn stopped(&self, error: &NoPoint<Nowhere>) -> End {
         let reached = self.rest.reached(&self.from.unknowns);
         match () {
@@ -227,7 +228,7 @@ impl Walk<'_> {
         }
     }
 
-    /// The point at a value of the second number.
+    /// Adds the point at a value of the second number.
     fn end_at(&mut self, bound: f64) -> Result<(), NoPoint<Nowhere>> {
         let slope = self.from.tangent[0] / self.from.tangent[1];
         let mut guess = self.from.unknowns.clone();
@@ -242,7 +243,7 @@ impl Walk<'_> {
         Ok(())
     }
 
-    /// On to the last value that the model allows, where the curve runs into it.
+    /// Continues to the last value that the model allows, where the curve runs into it.
     fn on_to_limit(&mut self, step: f64, why: &FamilyError) -> Option<End> {
         let (value, slope) = (self.from.unknowns[1] * self.rest.spans[1], self.from.tangent[1] * self.rest.spans[1]);
         let is_refused =
@@ -258,13 +259,13 @@ fn kinks(machine: &Machine) -> impl Iterator<Item = Corner> {
     machine.cam().corners().iter().copied().filter(|corner| corner.jump_order <= 2)
 }
 
-/// The impacts that are told one by one; those after them are at no corner but the last.
+/// The impacts that are tracked one by one; those after them are at no corner but the last.
 fn told(reached: &Reached) -> &[Event] {
     let told = if let Contact::Resting { impact, .. } = reached.contact { impact } else { 0 };
     &reached.impacts[..told.min(reached.impacts.len())]
 }
 
-/// For each of those impacts how many kinks are before it, counted around the cam.
+/// For each tracked impact, the number of kinks before it, counted around the cam.
 fn regions(machine: &Machine, reached: &Reached) -> Vec<usize> {
     let angles: Vec<f64> = kinks(machine).map(|corner| corner.angle).collect();
     let region = |event: &Event| angles.iter().filter(|angle| **angle <= event.cam_angle).count() % angles.len().max(1);
@@ -277,17 +278,17 @@ impl Rest<'_> {
         self.contact.reached(&machine).map(|reached| regions(&machine, &reached)).ok_or(Nowhere::OtherWay)
     }
 
-    /// The point of the curve across `along` from one near it.
+    /// Solves for the point of the curve across `along`, from one near it.
     fn settled(&self, near: &DVector<f64>, along: &DVector<f64>) -> Result<CurvePoint, NoPoint<Nowhere>> {
-        /// By how much impacts tell it differently, of the spans, at most.
+        /// Largest difference, in spans, between the points that impacts give.
         const MOVED: f64 = 1e-4;
         curve::closed(self, &(near - along * MOVED), along, MOVED, near.clone())
     }
 
-    /// The point across `along`, near one, where later and later impacts have the curve, until the last of them does or that moves it no more;
-    /// and what it comes to there. An error where the next impact has it elsewhere.
+    /// Refines the point across `along`, near one, by later and later impacts, until the last one is used or the point no longer moves.
+    /// Also returns the evaluation there. An error where the next impact gives another point.
     fn refined(&self, near: &DVector<f64>, along: &DVector<f64>) -> Result<(DVector<f64>, Reached), NoPoint<Nowhere>> {
-        /// From one impact to a later one, each time.
+        /// Most steps from one impact to a later one.
         const STEPS: usize = 50;
         let mut unknowns = near.clone();
         let mut reached = self.reached(&unknowns)?;

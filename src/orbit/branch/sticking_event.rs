@@ -1,19 +1,19 @@
-//! What becomes of a follower on the cam: where it first leaves the cam, and where it no longer comes to rest on it. Each is one
-//! equation in two numbers of the model.
+//! Events of a follower on the cam: where it first leaves the cam, and where it no longer comes to rest on it. Each is one equation in two
+//! numbers of the model.
 //!
-//! Detachment: the acceleration of the gap of a follower that goes with the cam is 0 where it is greatest, at a place that is
-//! held until another is first.
+//! Detachment: the acceleration of the gap of a follower that moves with the cam is 0 where it is greatest. The place is kept until another
+//! is first.
 //!
-//! Onset of resting: the infinitely many impacts after a release end just where the cam lets go. Where it lets go at a corner,
-//! the law before it is continued, and they end on that. Where it lets go smoothly, the gap's
-//! acceleration is -J tau at a time tau before, and impacts shrink towards it alike: from tau to (1 - d) tau each, at
+//! Onset of resting: the infinitely many impacts after a release end just where the cam releases the follower. Where this is a corner, the
+//! law before it is continued, and the impacts end on that. Where the release is smooth, the gap's acceleration is -J tau at a time tau
+//! before, and impacts shrink towards it self-similarly: from tau to (1 - d) tau each, at
 //!
 //! ```text
 //! u = rho J tau^2,   rho = d/2 - d^2/6 = r (d/2 - d^2/3)/(1 - d)^2
 //! ```
 //!
-//! A faster follower passes, a slower one rests. What that leaves out of an impact is of the size tau^2, and deviations from rho grow
-//! from one impact to the next: the later the one that is asked, the better it tells, and the nearer it must be begun at.
+//! A faster follower passes, a slower one rests. The error of this law at an impact is of the size tau^2, and deviations from rho grow from
+//! one impact to the next. So a later impact locates the event better, but needs a nearer start.
 
 use std::convert::Infallible;
 use std::f64::consts::TAU;
@@ -30,33 +30,33 @@ use crate::orbit::{Course, Family, FamilyError, PeriodicOrbit};
 use crate::simulate::{Event, EventKind, Goal, Machine};
 use crate::tolerance;
 
-/// Where the cam lets go.
+/// Place where the cam releases the follower.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Place {
     pub(super) segment: usize,
-    /// Rad; of a corner where the segment starts.
+    /// Cam angle, rad; at a corner the start of the segment.
     pub(super) cam_angle: f64,
     pub(super) is_corner: bool,
 }
 
-/// Impacts before a rest beyond which they are not counted.
+/// Most impacts before a rest that are counted.
 pub(super) const MANY_IMPACTS: usize = 20_000;
 
-/// What a curve is of.
+/// Event that a curve follows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Contact {
     /// The follower leaves the cam.
     Detachment(Place),
-    /// It flies from one place and comes to rest at another, or the same, after so many rad; of the impacts on the way the one
-    /// of this number tells where they end.
+    /// The follower flies from one place and comes to rest at another, or the same, after so many rad. The impact of this number on the way
+    /// shows where the impacts end.
     Resting { from: Place, to: Place, turned: f64, impact: usize },
 }
 
-/// What it comes to with two numbers.
+/// Evaluation of the event at two numbers.
 pub(super) struct Reached {
-    /// What should be 0: of the cam's lift a radian squared; rad.
+    /// Residual: for a detachment in units of the cam's lift per radian squared, for a rest in rad.
     pub(super) off: f64,
-    /// The same event, at the places where it is.
+    /// The event, at its places here.
     pub(super) contact: Contact,
     pub(super) impacts: Vec<Event>,
 }
@@ -67,9 +67,9 @@ pub(super) struct Rest<'a> {
     pub(super) contact: Contact,
 }
 
-/// The acceleration of the gap over omega^2, m/rad^2, where it is greatest of all places that are wanted, and where that is.
+/// Greatest acceleration of the gap over omega^2, m/rad^2, of all wanted places, and its place.
 fn greatest(machine: &Machine, is_wanted: impl Fn(Place) -> bool) -> Option<(f64, Place)> {
-    /// Places of a segment between which there is one extreme at most, of designed cams.
+    /// Places of a segment; between two of them designed cams have one extreme at most.
     const SAMPLES: usize = 64;
     let (cam, segments) = (machine.cam(), machine.cam().segments());
     let mut jumps = vec![false; segments.len()];
@@ -113,9 +113,10 @@ fn greatest(machine: &Machine, is_wanted: impl Fn(Place) -> bool) -> Option<(f64
     best
 }
 
-/// Where the cam would let go by the law of a segment, rad, near `cam_angle`, and the lift there; `None` where it does not.
+/// Place where the cam would release the follower by the law of a segment, rad, near `cam_angle`, and the lift there. `None` where it does
+/// not.
 fn lets_go(machine: &Machine, segment: &Segment, mut cam_angle: f64) -> Option<(f64, Lift)> {
-    /// Newton's method doubles the digits of a place that is known to a step along the curve.
+    /// Most Newton steps. They double the digits of a place that is known to a step along the curve.
     const STEPS: usize = 20;
     let mut lift = segment.law.lift(cam_angle);
     for _ in 0..STEPS {
@@ -126,21 +127,21 @@ fn lets_go(machine: &Machine, segment: &Segment, mut cam_angle: f64) -> Option<(
 }
 
 impl Place {
-    /// Whether it is the same place of the cam as another, a step along the curve apart: a smooth one may run into a corner.
+    /// Whether this is the same place of the cam as another, a step along the curve apart. A smooth place may run into a corner.
     fn is_near(self, other: Self) -> bool {
         apart(self.cam_angle, other.cam_angle) < tolerance::NEIGHBOURING.value
     }
 
-    /// Where the cam lets go at `event`.
+    /// The place of the release `event`.
     pub(super) fn of(event: &Event, machine: &Machine) -> Self {
         let start = machine.cam().segments()[event.segment].start;
         let is_corner = (event.cam_angle - start).abs() <= tolerance::CORNER_ANGLE.value;
         Self { segment: event.segment, cam_angle: event.cam_angle, is_corner }
     }
 
-    /// Where it is on another machine, and the lift there; `None` where the cam does not let go near there.
+    /// The place on another machine, and the lift there. `None` where that cam does not release the follower nearby.
     pub(super) fn on(self, machine: &Machine) -> Option<(Self, Lift)> {
-        /// Segments that it may go over to.
+        /// Number of segments that the place may move to.
         const SEGMENTS: usize = 3;
         let cam = machine.cam();
         if self.is_corner {
@@ -163,8 +164,8 @@ impl Place {
         None
     }
 
-    /// By how far infinitely many impacts from `last` on, with so much `left` to here, rad, end beyond; `None` where they do not
-    /// come here by the law before.
+    /// Angle by which infinitely many impacts from `last` on, with `left` to go to here, rad, end beyond this place. `None` where they do
+    /// not arrive here by the law before.
     fn passed(self, machine: &Machine, lift: &Lift, last: &Event, left: f64) -> Option<f64> {
         if self.is_corner {
             return self.rest_beyond(machine, last, left).map(|turn| turn - left);
@@ -177,9 +178,9 @@ impl Place {
         off.is_finite().then_some(off)
     }
 
-    /// How far from `last` on infinitely many impacts end by the law before the corner, which is continued past it, rad.
+    /// Angle from `last` at which infinitely many impacts end, rad, by the law before the corner, continued past it.
     fn rest_beyond(self, machine: &Machine, last: &Event, left: f64) -> Option<f64> {
-        /// By how much the law is continued, rad, where the segment behind is as long.
+        /// Length by which the law is continued, rad, where the segment behind is as long.
         const REACH: f64 = 0.05;
         let cam = machine.cam();
         let corner = cam.corners().iter().find(|corner| corner.segment == self.segment)?;
@@ -197,8 +198,9 @@ impl Place {
         rest
     }
 
-    /// Right behind a seam, as a row of a table, all impacts but the last follow the law of a segment before: how much further on the cam
-    /// would let go by that, rad, and the lift there. `None` where that is not little beside what an impact has `left`.
+    /// Right behind a seam, as between rows of a table, all impacts but the last follow the law of an earlier segment. Returns how much
+    /// later the cam would release the follower by that law, rad, and the lift there. `None` where this is not small beside what an impact
+    /// has `left`.
     fn by_law_before(self, machine: &Machine, segment: usize, left: f64) -> Option<(f64, Lift)> {
         const LITTLE: f64 = 0.1;
         let here = self.cam_angle + if segment > self.segment { TAU } else { 0.0 };
@@ -212,7 +214,7 @@ impl Place {
     }
 }
 
-/// rho of the impacts that shrink alike towards a smooth release.
+/// rho of the impacts that shrink self-similarly towards a smooth release.
 pub(super) fn alike(restitution: f64) -> f64 {
     let is_beyond = |d: f64| Ok::<_, Infallible>((0.5 - d / 6.0) * (1.0 - d).powi(2) < restitution * (0.5 - d / 3.0));
     let Ok([d, _]) = halve([0.0, 1.0], Width::Absolute(tolerance::ROOT_WIDTH.value), is_beyond);
@@ -220,13 +222,13 @@ pub(super) fn alike(restitution: f64) -> f64 {
 }
 
 impl Contact {
-    /// Where a follower that goes with the cam leaves it first.
+    /// The place where a follower that moves with the cam first leaves it.
     pub(super) fn first(machine: &Machine) -> Option<Self> {
         greatest(machine, |_| true).map(|(_, place)| Self::Detachment(place))
     }
 
-    /// By how much more a follower is thrown off the cam at another place, of the cam's lift a radian squared: 0 or more, and
-    /// 0 of a rest.
+    /// Excess by which a follower is thrown off the cam at another place, in units of the cam's lift per radian squared: 0 or more, and 0
+    /// for a rest.
     pub(super) fn behind(self, machine: &Machine) -> f64 {
         let Self::Detachment(here) = self else { return 0.0 };
         let of = |found: Option<(f64, Place)>| found.map_or(f64::NEG_INFINITY, |(lifting, _)| lifting);
@@ -234,13 +236,13 @@ impl Contact {
         (first - here) / lift_size(machine)
     }
 
-    /// Whether a follower that leaves the cam leaves it nowhere before here, by more than rounding: it leaves a cam that is its own mirror
-    /// image at two places at once all along a curve.
+    /// Whether a follower that leaves the cam leaves it first here, up to rounding. A cam that is its own mirror image is left at two
+    /// places at once all along a curve.
     pub(super) fn is_first(self, machine: &Machine) -> bool {
         self.behind(machine) <= tolerance::CYCLE_CLOSED.value
     }
 
-    /// What it comes to on a machine; `None` where the follower goes another way.
+    /// Evaluates the event on a machine; `None` where the follower goes another way.
     pub(super) fn reached(self, machine: &Machine) -> Option<Reached> {
         match self {
             Self::Detachment(place) => {
@@ -265,20 +267,20 @@ impl Contact {
         }
     }
 
-    /// Whether no later impact would tell it better.
+    /// Whether no later impact would locate the event better.
     pub(super) fn is_exact(self, reached: &Reached) -> bool {
         let Self::Resting { from, to, turned, impact } = self else { return true };
         let mut later = reached.impacts.iter().skip(impact).skip(1);
         to.is_corner || !later.any(|event| turned - event.turned_since(from.cam_angle) > tolerance::CHATTER_LEFT.value)
     }
 
-    /// The same, told by the first impact of those that are next to their end, and by the last that is still on its way there. The
-    /// first stays what it is over long steps along the curve. The last knows better where they end: what the equation leaves out shrinks
-    /// from one to the next. Before a corner it leaves out nothing, and both are the first.
+    /// The event as two impacts locate it: the first of those near their end, and the last that is still on its way there. The first stays
+    /// the same over long steps along the curve. The last locates the end better, since the error of the equation shrinks from one impact
+    /// to the next. Before a corner there is no error, and both are the first.
     pub(super) fn told(self, machine: &Machine, reached: &Reached) -> [Self; 2] {
-        /// How near their end they are told nearly by what is known of it, rad.
+        /// Distance from their end, rad, within which impacts nearly follow the known law.
         const ALIKE: f64 = 0.05;
-        /// What an impact may be off by, of what is left to the place, for Newton's method to go on from there.
+        /// Largest error of an impact, relative to what is left to the place, from which Newton's method goes on.
         const FOLLOWED: f64 = 0.1;
         let Self::Resting { from, to, turned, .. } = reached.contact else { return [reached.contact; 2] };
         let Some((_, lift)) = to.on(machine) else { return [reached.contact; 2] };
@@ -297,7 +299,7 @@ impl Contact {
     }
 }
 
-/// The impacts of a follower that the cam lets go of at `cam_angle`, for `turned`, rad, or until it rests.
+/// Returns the impacts of a follower that the cam releases at `cam_angle`, for `turned`, rad, or until it rests.
 pub(super) fn flown(machine: &Machine, cam_angle: f64, turned: f64) -> Option<Vec<Event>> {
     let mut motion = machine.start_on_cam(cam_angle, 0.0).ok()?.with_each_impact();
     let mut impacts = Vec::new();
@@ -313,7 +315,7 @@ pub(super) fn flown(machine: &Machine, cam_angle: f64, turned: f64) -> Option<Ve
     (impacts.len() < MANY_IMPACTS).then_some(impacts)
 }
 
-/// Why the equation cannot be evaluated.
+/// Reason why the equation cannot be evaluated.
 #[derive(Clone, Debug)]
 pub(super) enum Nowhere {
     Refused(FamilyError),
@@ -335,10 +337,10 @@ impl Equations for Rest<'_> {
     type Error = Nowhere;
 
     fn linear(&self, unknowns: &DVector<f64>) -> Result<(DVector<f64>, DMatrix<f64>), Nowhere> {
-        /// Of the span of a number: it steers Newton's method and the tangent.
+        /// Difference for derivatives, in spans of a number. It steers Newton's method and the tangent.
         const DIFFERENCE: f64 = 1e-7;
-        /// Before a smooth release a late impact moves by hundreds of times as much, and by no more than it has left. At a corner the wider
-        /// difference carries a curve on over the small kinks between impacts.
+        /// Difference before a smooth release, where a late impact moves by hundreds of times as much, and by no more than it has left. At
+        /// a corner the wider difference carries a curve on over the small kinks between impacts.
         const SMALL: f64 = 1e-9;
         let is_smooth = matches!(self.contact, Contact::Resting { to, .. } if !to.is_corner);
         let difference = if is_smooth { SMALL } else { DIFFERENCE };
@@ -364,7 +366,7 @@ impl Equations for Rest<'_> {
     }
 }
 
-/// What happens at a special point of a branch of orbits that rest.
+/// The event at a special point of a branch of orbits that rest.
 pub(super) fn contact(kind: SpecialKind, orbit: &PeriodicOrbit, machine: &Machine) -> Option<Contact> {
     let Course::Sticking(anchor) = orbit.course else { return None };
     if kind == SpecialKind::Detachment {

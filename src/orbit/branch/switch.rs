@@ -1,4 +1,4 @@
-//! How a branch goes on beyond a corner or a graze: the cycle there, and the direction that leads away from it.
+//! Continuation of a branch beyond a corner or a graze: the cycle there, and the direction that leads away from it.
 
 use std::cmp::Ordering;
 use std::f64::consts::TAU;
@@ -12,18 +12,18 @@ use crate::orbit::curve::{NoPoint, first_tangent};
 use crate::orbit::{Cycle, FamilyError, Impact};
 use crate::simulate::Machine;
 
-/// What an orbit leaves its cycle by.
+/// Exit of an orbit from its cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Exit {
-    /// A impact goes past the end of its segment, or the start.
+    /// An impact goes past the end of its segment, or the start.
     Corner { impact: usize, past_end: bool },
-    /// A impact is left without relative velocity.
+    /// An impact loses its relative velocity.
     Tangent { impact: usize },
-    /// The flight from a impact touches the cam at an angle turned, rad.
+    /// The flight from an impact touches the cam at an angle turned, rad.
     Touch { impact: usize, turned: f64 },
 }
 
-/// What the exit is called, on a cam whose corner there has this order.
+/// Kind of special point that the exit is, with the order of the corner there.
 pub(super) fn kind(exit: Exit, cycle: &Cycle, machine: &Machine, order: usize) -> SpecialKind {
     let count = cycle.impacts.len();
     let turned_at = |impact: usize| cycle.impacts[impact].turned();
@@ -51,7 +51,7 @@ pub(super) fn touch(cycle: &Cycle, turned: f64) -> Option<Exit> {
     Some(Exit::Touch { impact, turned })
 }
 
-/// What holds at a special point, and the cycle that it holds of.
+/// Condition at a special point, and the cycle to which it applies.
 pub(super) fn held(kind: SpecialKind, cycle: &Cycle, machine: &Machine) -> Option<(Cycle, Held)> {
     match kind {
         SpecialKind::Corner { impact, segment, .. } => {
@@ -68,7 +68,7 @@ pub(super) fn held(kind: SpecialKind, cycle: &Cycle, machine: &Machine) -> Optio
     }
 }
 
-/// What is held in the cycle beyond `exit`; `None` where it is of the impact that the exit takes away.
+/// Condition in the cycle beyond `exit`; `None` where it applies to the impact that the exit removes.
 pub(super) fn held_beyond(held: Held, exit: Exit) -> Option<Held> {
     let moved = |index: usize| match exit {
         Exit::Tangent { impact } if impact < index => Some(index - 1),
@@ -109,7 +109,7 @@ pub(super) fn beyond(exit: Exit, cycle: &Cycle, machine: &Machine) -> Option<Cyc
     (!beyond.impacts.is_empty()).then_some(beyond)
 }
 
-/// Where the impact that `exit` is about stands in the cycle beyond, if it is in it.
+/// Index, in the cycle beyond, of the impact that `exit` concerns, if that cycle has it.
 fn moved_impact(exit: Exit) -> Option<usize> {
     match exit {
         Exit::Corner { impact, .. } => Some(impact),
@@ -118,8 +118,7 @@ fn moved_impact(exit: Exit) -> Option<usize> {
     }
 }
 
-/// The unit direction in which the solutions of `problem`, the cycle beyond `exit`, lead away from it; `from` is the cycle
-/// before.
+/// Unit direction in which the solutions of `problem`, the cycle beyond `exit`, lead away from it. `from` is the cycle before.
 pub(super) fn direction(
     exit: Exit,
     from: &Cycle,
@@ -145,20 +144,20 @@ pub(super) fn direction(
     })
 }
 
-/// The unit direction in which the solutions lead from a touch of an orbit without impacts, with an impact at each place.
+/// Unit direction in which the solutions lead away from a touch of an orbit without impacts, with an impact at each place.
 pub(super) fn from_touch(problem: &Problem<'_>, unknowns: &DVector<f64>) -> Result<DVector<f64>, NoPoint<FamilyError>> {
     growing(problem, unknowns, |cycle, machine| {
         (0..cycle.impacts.len()).map(|impact| cycle.approach(machine, impact)).fold(f64::INFINITY, f64::min)
     })
 }
 
-/// The unit direction of the solutions in which a quantity grows.
+/// Unit direction of the solutions in which a quantity grows.
 fn growing(
     problem: &Problem<'_>,
     unknowns: &DVector<f64>,
     quantity: impl Fn(&Cycle, &Machine) -> f64,
 ) -> Result<DVector<f64>, NoPoint<FamilyError>> {
-    /// A small step, to see in which direction the orbit leaves.
+    /// Small step that shows in which direction the orbit leaves.
     const TRIAL: f64 = 1e-6;
     let tangent = first_tangent(problem, unknowns)?;
     let measure = |step: f64| -> Result<f64, NoPoint<FamilyError>> {

@@ -1,8 +1,8 @@
-//! Whether a flight is clear of the cam from one impact to the next: proved, or refuted.
+//! Proves or refutes that a flight is clear of the cam from one impact to the next.
 //!
-//! The gap G(phi) = q - c is 0 at both ends. It is positive next to the first where it rises all over a stretch from there,
-//! next to the other where it falls all over a stretch up to there, and between them where its Taylor sum about the middle m of
-//! a stretch is, with G'' anywhere on it:
+//! The gap G(phi) = q - c is 0 at both ends. Next to the first end it is positive where it rises all over a stretch from there, next to the
+//! other where it falls all over a stretch up to there. Between them it is positive where its Taylor sum about the middle m of a stretch
+//! is, with G'' anywhere on it:
 //!
 //! ```text
 //! G(m + x) = G(m) + x G'(m) + x^2/2 G''(...)
@@ -16,14 +16,14 @@ use crate::flight::Flight;
 use crate::interval::Interval;
 use crate::tolerance;
 
-/// Where the cam is struck.
+/// Impact on the cam at which a flight begins or ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Struck {
     /// Index of the segment whose law the flight that begins or ends here sees.
     pub segment: usize,
     /// Cam angle, rad.
     pub angle: Interval,
-    /// Turns of the cam since the angle 0 before the flight began.
+    /// Turns of the cam since angle 0 before the flight began.
     pub turns: u64,
 }
 
@@ -32,9 +32,9 @@ pub(crate) struct Struck {
 pub(super) struct Hop {
     pub from: Struck,
     pub to: Struck,
-    /// m/s, after the impact that it begins with.
+    /// Velocity after the impact that begins the flight, m/s.
     pub velocity: Interval,
-    /// Of the cam, rad/s.
+    /// Angular velocity of the cam, rad/s.
     pub omega: Interval,
 }
 
@@ -46,7 +46,7 @@ struct Gap {
 }
 
 impl Hop {
-    /// Over the angles of a segment, `turns` of the cam on.
+    /// Encloses the gap over angles of a segment, `turns` of the cam later.
     fn gap(&self, cam: &Cam, flight: &Flight, segment: usize, turns: u64, angles: Interval) -> Gap {
         let law = |segment: usize| &cam.segments()[segment].law;
         let (start, lift) = (law(self.from.segment).lift_over(self.from.angle), law(segment).lift_over(angles));
@@ -64,9 +64,9 @@ impl Hop {
         }
     }
 
-    /// Whether it is clear of the cam; nothing where rounding does not tell.
+    /// Whether the flight is clear of the cam. `None` where this cannot be decided.
     pub(super) fn is_clear(&self, cam: &Cam, flight: &Flight) -> Option<bool> {
-        /// A flight next to a graze takes some hundreds.
+        /// Most boxes. A flight next to a graze takes some hundreds.
         const MOST: usize = 100_000;
         let narrowest = tolerance::NARROWEST_BOX.value * TAU;
         let mut left: VecDeque<_> = self.stretches(cam).into();
@@ -100,7 +100,7 @@ impl Hop {
         is_decided.then_some(true)
     }
 
-    /// What it flies over, segment by segment.
+    /// Splits the flight by the segments that it passes over.
     fn stretches(&self, cam: &Cam) -> Vec<Stretch> {
         let segments = cam.segments();
         let (mut segment, mut turns, mut all) = (self.from.segment, 0, Vec::new());

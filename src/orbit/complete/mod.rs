@@ -1,13 +1,13 @@
-//! All orbits of a machine with one impact in so many revolutions, or with two in one: by enclosures that leave no case out.
+//! Finds all orbits of a machine with one impact in so many revolutions, or with two in one, by enclosures that leave no case out.
 //!
 //! | module | what it holds |
 //! |---|---|
-//! | `one_impact` | one equation in the impact's angle and the time of the flight, its roots, and what each of them is |
-//! | `two_impacts` | the same of two equations in the angles of both |
+//! | `one_impact` | one equation in the impact's angle and the time of the flight, its roots, and the status of each |
+//! | `two_impacts` | two equations in the angles of both impacts, likewise |
 //! | `clearance` | whether a flight is clear of the cam on its way |
 //!
-//! Angles where nothing can be decided, next to a fold, a graze or a corner, are told. What is proved is said of the machine whose
-//! numbers are the doubles that its model became.
+//! Angles where nothing can be decided, next to a fold, a graze or a corner, are reported. The proofs apply to the machine whose numbers
+//! are the doubles of its model.
 
 mod clearance;
 mod one_impact;
@@ -20,30 +20,30 @@ pub(crate) use one_impact::OneImpact;
 pub(super) use one_impact::{near_one_impact, of_one_impact};
 pub(super) use two_impacts::of_two_impacts;
 
-/// What a solution of the equations is.
+/// Status of a solution of the equations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Standing {
     /// An orbit of the cam as it is.
     Orbit,
-    /// None: the follower would come out of the cam, or meet it on the way.
+    /// No orbit: the follower would come out of the cam, or meet it on the way.
     NoOrbit,
-    /// Rounding does not tell.
+    /// Undecided because of rounding.
     Undecided,
 }
 
-/// Angles of which not all is known: an orbit may have its impacts there.
+/// Undecided angles: an orbit may have its impacts there.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Undecided {
-    /// For each impact from where to where, rad.
+    /// Range of the angle of each impact, rad.
     pub cam_angles: Vec<[f64; 2]>,
 }
 
 document!(Undecided as it { impacts: it.cam_angles.len(), cam_angles_rad: it.cam_angles });
 
-/// Where the equations hold, or may hold.
+/// Place where the equations hold, or may hold.
 #[derive(Clone, Debug)]
 pub(super) struct Solved {
-    /// Close to it.
+    /// Guess close to the solution.
     pub guess: Cycle,
     /// The angle of each impact, rad.
     pub angles: Vec<Interval>,
@@ -52,7 +52,7 @@ pub(super) struct Solved {
     pub standing: Standing,
 }
 
-/// Boxes that have no point in common, each the hull of those that touch: in order along the first side.
+/// Merges boxes that touch into their hull, until no two have a point in common. The result is sorted along the first side.
 pub(crate) fn joined<B: AsRef<[Interval]> + AsMut<[Interval]>>(mut boxes: Vec<B>) -> Vec<B> {
     let low = |place: &B| place.as_ref().first().map_or(f64::NAN, |side| side.low());
     let in_order = |boxes: &mut Vec<B>| boxes.sort_by(|one, two| low(one).total_cmp(&low(two)));

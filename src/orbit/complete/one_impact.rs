@@ -1,13 +1,13 @@
-//! Orbits with one impact in n revolutions: one equation, with both its unknowns.
+//! Orbits with one impact in n revolutions: one equation with two unknowns.
 //!
-//! A flight of `t = n T` from the cam at angle theta back to it, with the responses s(t), p(t) and the force f at c(theta),
-//! leaves with `v+ = -f p/s` and comes back with `v- = v+ s' + f s`; the restitution law leaves
+//! A flight of `t = n T` from the cam at angle theta back to it, with the responses s(t), p(t) and the force f at c(theta), leaves with `v+
+//! = -f p/s` and returns with `v- = v+ s' + f s`. The restitution law then gives
 //!
 //! ```text
 //! E(theta, t) = -f a(t) - (1 + r) c' s = 0        a = p (1 + r s') - r s^2        c' = (2 pi n/t) dc/dtheta
 //! ```
 //!
-//! At a speed the angle is unknown, at a corner the time.
+//! At a given speed the angle is unknown; at a corner the time is.
 
 use super::clearance::Hop;
 use super::{Solved, Standing, Struck, joined};
@@ -34,7 +34,7 @@ pub(crate) struct Equation {
     pub value: Interval,
     pub by_angle: Interval,
     pub by_time: Interval,
-    /// The sizes of its terms.
+    /// Sum of the sizes of its terms.
     pub size: f64,
 }
 
@@ -44,7 +44,7 @@ impl OneImpact<'_> {
         Interval::TURN * self.revolutions as f64
     }
 
-    /// BoxValues the lifts of a range of angles and a range of times, with the responses over these.
+    /// Evaluates the equation for the lifts of a range of angles and a range of times, with the responses over these.
     pub(crate) fn equation(&self, lift: &Lift<Interval>, time: Interval, response: &Response<Interval>) -> Equation {
         let (r, flight) = (self.restitution, self.flight);
         let (p, s, s1) = (response.step, response.impulse, response.impulse_rate);
@@ -65,7 +65,7 @@ impl OneImpact<'_> {
         }
     }
 
-    /// v- and v+, m/s; none where s may be 0.
+    /// Velocities v- and v+, m/s; `None` where s may be 0.
     pub(crate) fn velocities(&self, position: Interval, time: Interval) -> Option<[Interval; 2]> {
         let (response, force) = (self.flight.response_over(time), self.flight.force(position));
         let after = -(force * response.step / response.impulse);
@@ -73,8 +73,8 @@ impl OneImpact<'_> {
         (!response.impulse.holds_zero()).then_some([before, after])
     }
 
-    /// What a flight is that solves the equation: from one side of the cam at an angle to the other, which are the same but at a
-    /// corner, with a cam that throws as `lift` says.
+    /// Decides whether a flight that solves the equation is an orbit. Its ends are the two sides of the cam at an angle, which differ only
+    /// at a corner. `lift` is the lift by which the impact throws the follower.
     pub(crate) fn standing(&self, [from, to]: [Struck; 2], lift: &Lift<Interval>, time: Interval) -> Standing {
         let Some([before, after]) = self.velocities(lift.value, time) else { return Standing::Undecided };
         let omega = self.turn() / time;
@@ -94,10 +94,10 @@ impl OneImpact<'_> {
     }
 }
 
-/// Boxes after which a segment is left undecided: where flights of every angle come back, no number would do.
+/// Boxes after which a segment is left undecided. Where flights of every angle return, no number is enough.
 const MOST_BOXES: usize = 1 << 14;
 
-/// What solves the equation at the speed of a machine, or may: where, and whether it is certain to be there, and alone.
+/// Solution, or possible solution, at the speed of a machine: its place, and whether it is certainly the only root there.
 struct Solution {
     guess: Cycle,
     segment: usize,
@@ -106,7 +106,7 @@ struct Solution {
 }
 
 impl<'a> OneImpact<'a> {
-    /// Of a machine, with the time of the flight.
+    /// The equation of a machine, with the time of the flight.
     fn of(machine: &'a Machine, revolutions: u64) -> (Self, Interval) {
         let (cam, flight, restitution) = (machine.cam(), machine.flight(), machine.restitution());
         let equation = Self { cam, flight, restitution, revolutions };
@@ -147,13 +147,13 @@ impl<'a> OneImpact<'a> {
     }
 }
 
-/// Guesses that no orbit of one impact is without.
+/// Returns guesses; every orbit of one impact has one near it.
 pub(crate) fn near_one_impact(machine: &Machine, revolutions: u64) -> impl Iterator<Item = Cycle> {
     let (equation, time) = OneImpact::of(machine, revolutions);
     equation.solutions(time).into_iter().map(|solution| solution.guess)
 }
 
-/// Every solution at the speed of a machine, with what may be one.
+/// Returns every solution at the speed of a machine, and places that may be one.
 pub(crate) fn of_one_impact(machine: &Machine, revolutions: u64) -> Vec<Solved> {
     let (equation, time) = OneImpact::of(machine, revolutions);
     let standing = |&Solution { segment: index, angle, is_root, .. }: &Solution| {

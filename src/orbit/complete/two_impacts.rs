@@ -1,15 +1,15 @@
 //! Orbits with two impacts in one revolution: two equations for the angles of both.
 //!
-//! Flight 1, not the longer one, goes from the cam at `x` to `y = x + h`, in the time `t1 = h/omega`; flight 2 from there to
-//! `x + 2 pi`, in `t2 = T - t1`. Each leaves as it must to arrive, and arrives as the responses say:
+//! Flight 1, not the longer one, goes from the cam at `x` to `y = x + h`, in the time `t1 = h/omega`; flight 2 from there to `x + 2 pi`, in
+//! `t2 = T - t1`. Each leaves with the velocity that it needs to arrive, and arrives as the responses say:
 //!
 //! ```text
 //! u1 s1/t1 = A        A = omega (c(y) - c(x))/h - f(x) p1/t1        v(y) = u1 s1' + f(x) s1
 //! u2 s2    = B        B = c(x) - c(y) - f(y) p2                     v(x) = u2 s2' + f(y) s2
 //! ```
 //!
-//! The restitution law at x and at y, times `(s1/t1) s2`, are the equations; divided by the short hop as they are, they say
-//! something even where the two impacts come together:
+//! The equations are the restitution law at x and at y, times `(s1/t1) s2`. Divided by the short hop in this way, they stay meaningful even
+//! where the two impacts meet:
 //!
 //! ```text
 //! A s2        - (1 + r) c'(x) (s1/t1) s2 + r (s1/t1) (B s2' + f(y) s2^2) = 0
@@ -29,18 +29,18 @@ use crate::orbit::cycle::{Cycle, Impact};
 use crate::progress::Watch;
 use crate::simulate::Machine;
 
-/// Boxes after which all that is left is undecided: some seconds.
+/// Boxes after which everything else is left undecided: some seconds.
 const MOST_BOXES: usize = 1 << 18;
 
 /// Two segments of the cam, one struck after the other.
 struct Pair<'a> {
     machine: &'a Machine,
-    /// Indices, and how often the cam passes angle 0 from the first to the second: 0 or 1.
+    /// Indices of the segments, and how often the cam passes angle 0 from the first to the second: 0 or 1.
     segments: [usize; 2],
     turns: u64,
 }
 
-/// What the equations are made of, over a box of angles.
+/// Quantities of the equations, over a box of angles.
 struct Flights {
     lifts: [Lift<Interval>; 2],
     forces: [Interval; 2],
@@ -57,7 +57,7 @@ impl Pair<'_> {
         *y + Interval::TURN * self.turns as f64 - *x
     }
 
-    /// The derivatives of the lift from `x` to `y`: slopes all over, and the curvature where it is one law's.
+    /// Derivatives of the lift from `x` to `y`: the slope all over, and the curvature if one law holds all over.
     fn between(&self, [x, y]: &[Interval; 2]) -> [Interval; 2] {
         let segments = self.machine.cam().segments();
         let [first, last] = self.segments;
@@ -123,7 +123,7 @@ impl Pair<'_> {
         [0, 1].map(|which| Dual::of(lifts[which].value, lifts[which].slope, by[which]))
     }
 
-    /// The equations. Of the roots those are wanted that no law of impacts or flights is broken at, with y at most half a turn on.
+    /// The equations. A root is wanted if it breaks no law of impacts or flights, and y is at most half a turn after x.
     fn over(&self, place: &[Interval; 2]) -> BoxValues<2> {
         let flights = self.flights(place);
         let is_wanted = !flights.velocities(self.machine).is_broken
@@ -148,7 +148,7 @@ impl Pair<'_> {
         BoxValues { values: [at_x.value, at_y.value], derivatives: [at_x.by, at_y.by], is_wanted }
     }
 
-    /// What a solution is.
+    /// Decides whether a solution is an orbit.
     fn standing(&self, place: &[Interval; 2]) -> Standing {
         let segments = self.segments.map(|segment| &self.machine.cam().segments()[segment]);
         let is_inside =
@@ -190,16 +190,17 @@ impl Pair<'_> {
     }
 }
 
-/// m/s, before and after each impact.
+/// Velocities before and after each impact, m/s.
 struct Velocities {
     before: [Interval; 2],
     after: [Interval; 2],
-    /// Whether an impact would come out of the cam, or leave into it, or otherwise than it throws.
+    /// Whether an impact comes out of the cam, leaves into it, or leaves otherwise than the restitution law says.
     is_broken: bool,
 }
 
 impl Flights {
-    /// As the flights say, or where one comes back however it leaves, as the other and the law of impact say.
+    /// Velocities from the responses of the flights. Where a flight returns whatever velocity it leaves with, they follow from the other
+    /// flight and the law of impact.
     fn velocities(&self, machine: &Machine) -> Velocities {
         let omega = Interval::from(machine.angular_velocity());
         let r = machine.restitution();
@@ -227,7 +228,7 @@ impl Flights {
     }
 }
 
-/// Every solution at the speed of a machine, with what may be one.
+/// Returns every solution at the speed of a machine, and places that may be one.
 pub(crate) fn of_two_impacts(machine: &Machine, watch: &dyn Watch) -> Vec<Solved> {
     let segments = machine.cam().segments();
     let count = segments.len();

@@ -1,4 +1,4 @@
-//! Slow cams: detachment, infinitely many impacts, sticking, and what becomes of them up to 330 rpm.
+//! Slow cams: detachment, infinitely many impacts and sticking, and how they change up to 330 rpm.
 
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
@@ -116,7 +116,7 @@ pub(in crate::paper) fn impact_diagram_of_slow_cams(context: &Context<'_>) -> De
 const FOLLOWED: usize = 8;
 const STEP: f64 = 0.25;
 
-/// What the angle where impacts accumulate does where an impact's line crosses a corner.
+/// Behaviour of the angle where impacts accumulate, where an impact's line crosses a corner.
 #[derive(Clone, Copy, PartialEq)]
 enum Turn {
     Peak,
@@ -126,9 +126,9 @@ enum Turn {
 
 /// Every crossing of a corner by the line of one of the first impacts, and whether the accumulation has a peak there.
 pub(in crate::paper) fn resonant_peaks(context: &Context<'_>) -> Decision {
-    /// How far from the crossing the accumulation is compared, rpm.
+    /// Distance from the crossing at which the accumulation is compared, rpm.
     const BESIDE: f64 = 1e-3;
-    /// Right above detachment hops are too low to be told apart; above, the accumulation is past P.
+    /// Right above detachment hops are too low to be distinguished; above the range, the accumulation is past P.
     const RANGE: [f64; 2] = [115.5, 198.5];
     const NAMES: [&str; 6] = ["R", "P", "Q", "Q'", "P'", "R'"];
     let p = corners(context)[1];
@@ -196,7 +196,7 @@ pub(in crate::paper) fn resonant_peaks(context: &Context<'_>) -> Decision {
 /// revolution of three impacts. Found by a scan of 240 to 330 rpm in steps of 1e-4 rpm and finer.
 const ADDING_ONE: [f64; 7] = [299.5, 304.68, 305.52, 305.6775, 305.7079, 305.71384, 305.715005];
 
-/// The same for 4, 6, 8, ..., 14 revolutions: each has two more, of two and four impacts.
+/// Speeds in such windows for 4, 6, 8, ..., 14 revolutions: each has two more revolutions, of two and four impacts.
 const ADDING_TWO: [f64; 6] = [313.2617, 315.2107, 316.2112, 316.85478, 317.35962, 317.79971];
 
 pub(in crate::paper) fn period_adding(context: &Context<'_>) -> Decision {

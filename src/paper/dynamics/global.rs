@@ -1,4 +1,4 @@
-//! The chaotic motion that exists beside the one of one impact a revolution: what parts their basins, where it is lost, and
+//! The chaotic motion that coexists with the one of one impact a revolution: the border of their basins, the speed where it is lost, and
 //! how the motion goes over to it when its orbit is gone.
 
 use super::transition::{from_x_star, is_period_one, map};
@@ -17,7 +17,7 @@ use crate::study::basins::boundary::{approach, border};
 use crate::study::basins::{Curve, Extent, Reversed, Saddle};
 use crate::tolerance;
 
-/// How far below the corner impact the revolutions are counted until the motion has left, rpm, and how far it is then, m.
+/// Distances below the corner impact at which revolutions are counted until the motion has left, rpm; and its distance then, m.
 const BELOW: [f64; 4] = [1e-2, 1e-4, 1e-6, 1e-8];
 const LEFT: f64 = 1e-3;
 
@@ -60,7 +60,7 @@ fn shown(count: Option<u64>) -> String {
     count.map_or_else(|| "none".into(), |count| count.to_string())
 }
 
-/// Speeds above the corner impact at which a start on the cam is held against x*.
+/// Speeds above the corner impact at which a start on the cam is compared with x*.
 const COEXISTING: [f64; 2] = [674.0, 682.0];
 
 pub(in crate::paper) fn coexisting(context: &Context<'_>) -> Decision {
@@ -113,7 +113,7 @@ fn parting(
     Ok(saddle.and_then(curve))
 }
 
-/// On how many lines of one velocity each the border was found, and how far it is at most from the stable manifold, m.
+/// Number of lines of one velocity on which each border was found, and its largest distance from the stable manifold, m.
 fn borders(context: &Context<'_>, rpm: f64) -> Result<(usize, f64), SimulateError> {
     /// Velocities between the saddle's and the first cusp's, m/s.
     const VELOCITIES: [f64; 6] = [-18.0, -14.0, -10.0, -6.0, -2.0, 2.0];

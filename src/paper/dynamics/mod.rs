@@ -1,8 +1,8 @@
-//! Statements about runs: what the follower does at a speed, decided by the simulator.
+//! Statements about runs: the motion of the follower at a speed, decided by the simulator.
 //!
 //! `chattering` is about slow cams, where the follower comes to rest on the cam once a revolution; `transition` about
-//! fast ones, around the corner impact; `global` about what coexists there and how the motion goes over. What is known must not
-//! depend on the computer: of a chaotic run it says only what any run shows.
+//! fast ones, around the corner impact; `global` about what coexists there and how the motion goes over. Evidence must not
+//! depend on the computer: for a chaotic run it contains only what any run shows.
 
 mod chattering;
 mod global;
@@ -33,7 +33,7 @@ fn corners(context: &Context<'_>) -> [f64; 6] {
     std::array::from_fn(|index| corners.get(index).map_or(f64::NAN, |corner| corner.angle))
 }
 
-/// The motion of one impact a revolution, in one state, that `motion` comes to within `transient` revolutions, or so many after a
+/// The motion of one impact a revolution, in one state, to which `motion` converges within `transient` revolutions, or so many after a
 /// rest.
 fn one_impact(machine: &Machine, motion: Motion, transient: u64) -> Result<Option<PeriodicOrbit>, SimulateError> {
     let budget = Budget { transient, record: 1, longest: 1, patience: 0 };
@@ -43,7 +43,7 @@ fn one_impact(machine: &Machine, motion: Motion, transient: u64) -> Result<Optio
     })
 }
 
-/// What follows the release at P of a follower that came up the flank on the cam: the speed alone decides it.
+/// Motion after the release at P of a follower that came up the flank on the cam. The speed alone decides it.
 struct Round {
     /// The impacts up to the first stick: the angle turned since P, rad, and the relative velocity after it, m/s.
     impacts: Vec<[f64; 2]>,
@@ -56,12 +56,12 @@ struct Round {
 }
 
 impl Round {
-    /// Revolutions after which a release at P is no longer waited for.
+    /// Revolutions after which a release at P is no longer expected.
     const LONGEST: u64 = 50;
 
-    /// From `corner`, P, on.
+    /// Simulates from `corner`, P, on.
     fn new(machine: &Machine, corner: f64) -> Result<Self, SimulateError> {
-        /// Where it starts, rad before P: on the flank the cam presses against the follower at any speed.
+        /// Start, rad before P: on the flank the cam presses against the follower at any speed.
         const BEFORE: f64 = 0.05;
         let mut motion = machine.start_on_cam(corner - BEFORE, 0.0)?;
         let goal = motion.after(Self::LONGEST);
@@ -87,7 +87,7 @@ impl Round {
         Ok(round)
     }
 
-    /// How many impacts can be felt.
+    /// Number of impacts that can be felt.
     fn felt(&self) -> usize {
         self.impacts.iter().filter(|[_, velocity]| *velocity > tolerance::FELT_IMPACT.value).count()
     }

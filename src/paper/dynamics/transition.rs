@@ -1,4 +1,4 @@
-//! Fast cams, 660 to 750 rpm: the motion of one impact a revolution, how it is lost on either side, what is beside it.
+//! Fast cams, 660 to 750 rpm: the motion of one impact a revolution, its loss at either end, and the motions that coexist with it.
 
 use std::error::Error;
 use std::ops::ControlFlow;
@@ -16,7 +16,7 @@ use crate::simulate::{Record, growth};
 use crate::study::certify::{BITS, OrbitKind, ProvedCounts, proved_counts};
 use crate::tolerance;
 
-/// The speeds between 660 and 750 rpm at which runs are held against the paper's diagrams.
+/// The speeds between 660 and 750 rpm at which runs are compared with the paper's diagrams.
 const ABOVE: [f64; 6] = [673.3, 680.0, 700.0, 720.0, 735.0, 739.0];
 
 /// x*, on a machine of another speed.
@@ -100,7 +100,7 @@ fn one_stable_orbit(proved: &ProvedCounts, corner: f64, flip: f64) -> bool {
             .all(|(one, other)| is_near(*one, *other))
 }
 
-/// One impact line from 673.23 up, many impacts below; and what the diagram's upper end does.
+/// One impact line from 673.23 up, many impacts below; and the behaviour at the diagram's upper end.
 pub(in crate::paper) fn impact_diagram(context: &Context<'_>) -> Decision {
     let of_one_impact = |speeds: &[f64]| -> Result<Vec<bool>, SimulateError> {
         speeds.iter().map(|rpm| is_period_one(context, *rpm, 3000)).collect()
@@ -175,8 +175,8 @@ pub(in crate::paper) fn transitions_at_corners(context: &Context<'_>) -> Decisio
     decide(at_corners && chaotic, Verdict::Refuted, evidence)
 }
 
-/// A motion that comes to rest on the cam has no past: from then on it repeats, chaotic or not. Whether motions right past the
-/// corner impact ever do, no number of revolutions tells.
+/// A motion that comes to rest on the cam has no past: from then on it repeats, chaotic or not. No number of revolutions shows whether
+/// motions right past the corner impact ever do.
 pub(in crate::paper) fn chaos_for_good(context: &Context<'_>) -> Decision {
     /// Right past the corner impact, and how many revolutions from x* and from rest on the cam are looked through for a rest.
     const PAST: [f64; 6] = [670.0, 671.0, 672.0, 673.0, 673.2, 673.2344];

@@ -7,33 +7,33 @@ use crate::progress::Unwatched;
 use crate::simulate::{Machine, Motion, SimulateError};
 use crate::study::survey::{Attractor, Ensemble, Failed, Sample, Starts, Wandering, attractors_of};
 
-/// What a machine does in the long run, at one value of what varies.
+/// The long-run behaviour of a machine at one value of the varied number.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AttractorsAtValue {
-    /// For how long runs are followed.
+    /// Budget of each run.
     pub budget: Budget,
-    /// The motions that were found; starts below `sampled` are the sample's.
+    /// The motions that were found. Start indices below `sampled` belong to the sample.
     pub attractors: Vec<Attractor>,
-    /// How many starts of the sample were run.
+    /// Number of starts of the sample that were run.
     pub sampled: usize,
-    /// How many of these leave the cam for good.
+    /// Number of these starts whose runs leave the cam for good.
     pub off_for_good: usize,
-    /// How many were from rest on the cam, one for each place where that lets go of the follower; they follow the sample's.
+    /// Number of starts from rest on the cam, one for each stretch on which the follower can rest. Their indices follow the sample's.
     pub rests: usize,
-    /// The runs that were waited for longest.
+    /// Totals of the runs that wandered longest.
     pub wandering: Wandering,
-    /// The starts whose runs could not go on, and why.
+    /// Starts whose runs could not go on, with the reason.
     pub failed: Vec<Failed>,
 }
 
 impl AttractorsAtValue {
-    /// From the starts of a sample, within a budget.
+    /// Finds the attractors from the starts of a sample, within a budget.
     pub fn new(machine: &Machine, sample: &Sample, budget: Budget) -> Result<Self, SimulateError> {
         Self::seeded(machine, (sample, budget), false)
     }
 
-    /// From the starts that are given, or from a sample of [`Starts`], from rest on the cam at each of its releases, and with the
-    /// stable orbits that a search finds.
+    /// Finds the attractors from given starts alone. For a sample of [`Starts`] it also runs from rest on each stretch of the cam where the
+    /// follower can rest, and from the stable orbits that a search finds.
     pub(super) fn seeded(
         machine: &Machine,
         (sample, budget): (&Sample, Budget),
@@ -69,29 +69,29 @@ impl AttractorsAtValue {
         Ok(Self::of(budget, found, count, rests.len()))
     }
 
-    /// What so many starts of a sample, and others, come to.
+    /// Builds the result from an ensemble whose first starts are `sampled` starts of a sample, followed by `rests` starts from rest.
     fn of(budget: Budget, found: Ensemble, sampled: usize, rests: usize) -> Self {
         let Ensemble { attractors, off_for_good, wandering, failed } = found;
         let off_for_good = off_for_good.into_iter().filter(|start| *start < sampled).count();
         Self { budget, attractors, sampled, off_for_good, rests, wandering, failed }
     }
 
-    /// Whether a run has come to an attractor, from the sample, from rest on the cam or from a neighbouring value, and not only one
-    /// that began on it.
+    /// Whether a run from the sample, from rest on the cam or from a neighbouring value settles on an attractor. Runs that begin on the
+    /// attractor do not count.
     pub fn is_reached(&self, attractor: &Attractor) -> bool {
         attractor.starts.is_empty() || attractor.starts.iter().any(|start| *start < self.sampled + self.rests)
     }
 
-    /// How many of the sample's starts end on an attractor.
+    /// Number of the sample's starts that end on an attractor.
     pub fn count(&self, attractor: &Attractor) -> usize {
         attractor.starts.iter().filter(|start| **start < self.sampled).count()
     }
 
-    /// Takes note of what the motion of another value has come to at this one; false where that is known.
+    /// Records an attractor that the motion of another value reaches at this one. Returns false if it is already known.
     pub(super) fn take(&mut self, attractor: Attractor) -> bool {
         match self.attractors.iter().position(|known| known.ending.is_same(&attractor.ending)) {
             Some(known) => {
-                // A run has come to what was only begun on.
+                // A run has reached what only a run that began on it had before.
                 if !self.is_reached(&self.attractors[known]) {
                     self.attractors[known].starts.clear();
                 }
@@ -104,11 +104,11 @@ impl AttractorsAtValue {
         }
     }
 
-    /// What the motion of another value comes to on this machine, if that is an attractor.
+    /// Returns the attractor that the motion of another value settles on at this machine, if it settles on one.
     pub fn come_to(&self, machine: &Machine, motion: &Motion) -> Result<Option<Attractor>, SimulateError> {
-        /// Revolutions after which a motion that still wanders is one that does.
+        /// Revolutions after which a motion that still wanders counts as wandering for good.
         const WAITED: u64 = 20_000;
-        // At another value the cam may have come to where the follower is.
+        // At another value the cam may be where the follower was.
         let Ok(motion) = machine.resume(motion) else { return Ok(None) };
         let budget = Budget { transient: WAITED, patience: 0, ..self.budget };
         let mut runs = LongRuns::new(machine, budget)?;
@@ -120,7 +120,7 @@ impl AttractorsAtValue {
         let found = attractors_of(&runs, 1, |_| Ok(Some(motion)), &Unwatched).map_err(|(_, error)| error)?;
         let Some(attractor) = found.attractors.into_iter().next() else { return Ok(None) };
         let ending = &attractor.ending;
-        // What wanders where others have left is on its way, too.
+        // Wandering does not last where other runs have left it.
         let is_on_its_way =
             matches!(ending, LongRun::Undecided(_)) || (self.wandering.left > 0 && ending.period().is_none());
         Ok((!is_on_its_way).then_some(Attractor { starts: Vec::new(), ..attractor }))

@@ -1,4 +1,4 @@
-//! Where the follower first leaves the cam, by runs alone: a second route to what the force between them says.
+//! The speed at which the follower first leaves the cam, by runs alone: a second route besides the contact force.
 
 use std::ops::ControlFlow;
 
@@ -8,10 +8,10 @@ use crate::simulate::{Event, Machine, SimulateError, angular_velocity};
 use crate::study::{StudyError, machine};
 use crate::tolerance;
 
-/// Where the follower first leaves the cam between two speeds, rpm; `None` where it leaves at the lower already, or at
-/// neither.
+/// Returns the speed, rpm, at which the follower first leaves the cam between two speeds. `None` if it leaves at the lower one already,
+/// or at neither.
 pub fn detachment(model: &Model, [low, high]: [f64; 2]) -> Result<Option<f64>, StudyError> {
-    /// Speeds that are looked at before the first change is narrowed down.
+    /// Number of speeds tried before the first change is bracketed.
     const SPEEDS: u32 = 200;
     let machine = machine(model, low)?;
     if !stays(&machine, low)? {

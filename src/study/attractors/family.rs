@@ -1,4 +1,4 @@
-//! Attractors over a range of values: what was found at one value matched with what was found at the next.
+//! Attractors over a range of values: the attractors at each value are matched with those at the next.
 
 use std::collections::BTreeMap;
 
@@ -16,18 +16,19 @@ use crate::orbit::{Course, PeriodicOrbit};
 use crate::simulate::{Machine, Motion, SimulateError, angular_velocity};
 use crate::study::survey::{Attractor, Over, RunError, Sample};
 
-/// What holds a motion together from one value to the next.
+/// Property by which a motion at one value is matched with a motion at the next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Class {
     /// The follower stays on the cam.
     Stays,
-    /// Its revolutions and impacts.
+    /// An orbit of so many revolutions and impacts.
     Orbit(u64, u64),
-    /// It rests in every revolution, after as many impacts as it takes.
+    /// The follower rests and repeats in every revolution, after any number of impacts.
     Rests,
-    /// It rests sooner or later, or bounces on: whether it is seen to repeat, and after how long, changes with every value.
+    /// The follower rests without repeating in every revolution, or is chaotic. Whether a period is seen, and which, changes with every
+    /// value.
     Irregular,
-    /// What could not be told.
+    /// Undecided within the budget.
     Undecided,
 }
 
@@ -47,29 +48,29 @@ impl Class {
 #[derive(Clone, Debug)]
 pub struct AttractorFamily {
     class: Class,
-    /// Which of the attractors it is at values of the grid, by their indices.
+    /// For each value of the grid at which the attractor exists, its index among the attractors there.
     pub at: BTreeMap<usize, usize>,
-    /// What it begins and ends with, by rising value; nothing at the ends of the grid.
+    /// Lower and upper transition; none at the ends of the grid.
     pub ends: [Option<Transition>; 2],
-    /// Its lowest and highest value.
+    /// Lowest and highest value.
     pub range: [f64; 2],
     stable: Option<StableRange>,
 }
 
-/// A value that was looked at.
+/// A value of the grid.
 #[derive(Clone, Debug)]
 pub struct GridValue {
-    /// The value; of the speed, rpm.
+    /// The value; for the speed, rpm.
     pub value: f64,
-    /// What was found there, or why nothing was.
+    /// The attractors there, or why there are none.
     pub found: Result<AttractorsAtValue, RunError>,
 }
 
-/// The values that were looked at, from the lowest up.
+/// The values of the grid, from the lowest up.
 pub type ValueGrid = [GridValue];
 
-/// Matches what was found over a grid of values, which are a `step` apart next to a value; what begins or ends beyond a range does so
-/// somewhere between two values of the grid.
+/// Matches the attractors over a grid of values into families. `step` gives the step of the grid near a value. Ends found by runs outside
+/// `range` are bracketed only by neighbouring values of the grid.
 pub fn families(
     over: &Over<'_>,
     (grid, range): (&ValueGrid, [f64; 2]),
@@ -88,7 +89,7 @@ pub fn families(
     families
 }
 
-/// Families by what one value and the next have in common.
+/// Links attractors at neighbouring values into families.
 fn linked(over: &Over<'_>, grid: &ValueGrid) -> Vec<AttractorFamily> {
     let mut families: Vec<AttractorFamily> = Vec::new();
     for (index, GridValue { value, found }) in grid.iter().enumerate() {
@@ -104,7 +105,7 @@ fn linked(over: &Over<'_>, grid: &ValueGrid) -> Vec<AttractorFamily> {
                 let is_free = family.class == class && !family.at.contains_key(&index);
                 is_free && before(family).is_some_and(|before| is_next(&machine, before, &attractor.ending))
             };
-            // Of several irregular motions those of one kind belong together.
+            // Among several irregular motions, those of one kind belong together.
             let is_alike =
                 |family: &AttractorFamily| before(family).is_some_and(|it| it.kind() == attractor.ending.kind());
             let open: Vec<usize> = (0..families.len()).filter(|family| goes_on(&families[*family])).collect();
@@ -127,7 +128,7 @@ fn linked(over: &Over<'_>, grid: &ValueGrid) -> Vec<AttractorFamily> {
     families
 }
 
-/// Whether Newton's method leads from an orbit of one value to that of the next; of other motions there is one of a class.
+/// Whether Newton's method leads from an orbit of one value to the orbit of the next. True for motions that are not orbits.
 fn is_next(machine: &Machine, before: &LongRun, now: &LongRun) -> bool {
     match (before, now) {
         (LongRun::Orbit(before), LongRun::Orbit(now)) => {
@@ -137,7 +138,7 @@ fn is_next(machine: &Machine, before: &LongRun, now: &LongRun) -> bool {
     }
 }
 
-/// The orbit of this machine near that of a machine at a neighbouring value.
+/// Returns the orbit of this machine near an orbit of a machine at a neighbouring value.
 fn continued(machine: &Machine, orbit: &PeriodicOrbit) -> Option<PeriodicOrbit> {
     match &orbit.course {
         Course::Impacts(cycle) => close(machine, cycle),
@@ -146,10 +147,10 @@ fn continued(machine: &Machine, orbit: &PeriodicOrbit) -> Option<PeriodicOrbit> 
     }
 }
 
-/// Adds the orbits that runs come to right beyond where another has ended, and those beyond their ends in turn: between two
-/// values of the grid there is room for several.
+/// Adds the stable orbits just beyond the end of another family, and repeats this from their own ends. Several orbits may follow each
+/// other between two values of the grid.
 fn beyond(over: &Over<'_>, families: &mut Vec<AttractorFamily>, step: &(dyn Fn(&AttractorFamily) -> f64 + Sync)) {
-    /// How often that is done.
+    /// Number of repetitions.
     const DEPTH: usize = 3;
     let holds = |families: &[AttractorFamily], (value, orbit): &(f64, PeriodicOrbit)| {
         families.iter().any(|family| family.holds(over, *value, orbit))
@@ -174,7 +175,7 @@ fn beyond(over: &Over<'_>, families: &mut Vec<AttractorFamily>, step: &(dyn Fn(&
         };
         let found: Vec<_> = families[fresh..].par_iter().map(next).collect();
         fresh = families.len();
-        // What is beyond the end of one may be beyond that of another.
+        // One orbit may lie beyond the ends of several families.
         for (seen, family) in found.into_iter().flatten() {
             if !holds(&families[fresh..], &seen) {
                 families.push(family);
@@ -186,13 +187,13 @@ fn beyond(over: &Over<'_>, families: &mut Vec<AttractorFamily>, step: &(dyn Fn(&
     }
 }
 
-/// Families that are on one stable range of one branch, as one: they have its orbits in common. Newton's method leads from one to the same
-/// orbit on the other where that is on the same segments of the cam; over rows of a table it may be next to others alone.
+/// Joins families on the same stable range of a branch: they have orbits in common. Newton's method leads from one to the same orbit on
+/// the other if its impacts are on the same segments of the cam. Over rows of a table it may succeed only for some orbits.
 fn joined(over: &Over<'_>, families: Vec<AttractorFamily>) -> Vec<AttractorFamily> {
     let mut joined: Vec<AttractorFamily> = Vec::new();
     for family in families {
         let middle = || family.stable.iter().flat_map(StableRange::middle);
-        // Two motions at one value are two.
+        // Two motions at one value are different families.
         let apart = |known: &AttractorFamily| known.at.keys().all(|index| !family.at.contains_key(index));
         let same = |known: &&mut AttractorFamily| {
             apart(known) && middle().any(|(value, orbit)| known.holds(over, value, orbit))
@@ -211,20 +212,20 @@ impl AttractorFamily {
         Some(&here.attractors.get(*self.at.get(&index)?)?.ending)
     }
 
-    /// Whether an orbit at a value is on its stable range.
+    /// Whether an orbit at a value is on the family's stable range.
     fn holds(&self, over: &Over<'_>, value: f64, orbit: &PeriodicOrbit) -> bool {
         let near = self.stable.as_ref().and_then(|stable| stable.near(value));
         let known = near.and_then(|near| continued(&over.machine(value).ok()?, near));
         known.is_some_and(|known| known.is_same(orbit))
     }
 
-    /// Its orbits with an impact at a corner where the acceleration jumps, within a range of values.
+    /// Orbits of the family, within a range of values, with an impact at a corner where the acceleration jumps.
     pub fn corner_impacts(&self, [low, high]: [f64; 2]) -> impl Iterator<Item = &BranchPoint> {
         let all = self.stable.iter().flat_map(StableRange::corner_impacts);
         all.filter(move |point| low <= point.value && point.value <= high)
     }
 
-    /// Follows the branch of an orbit to where it ceases to be stable.
+    /// Follows the branch of an orbit to both ends of its stable range.
     fn follow(&mut self, over: &Over<'_>, grid: &ValueGrid, step: f64) {
         let middle = self.at.keys().nth(self.at.len() / 2).copied();
         if let Some(index) = middle
@@ -240,8 +241,8 @@ impl AttractorFamily {
         self.stable = Some(stable);
     }
 
-    /// Makes its range that of the values at which runs have come to it, where the branch that it is on ends before: a run that has not left
-    /// what is lost beyond is on it still.
+    /// Extends the family's range to the values at which runs settle on it, if its branch ends before. Beyond the branch's end, a run may
+    /// still linger on the lost motion.
     fn reach(&mut self, over: &Over<'_>, grid: &ValueGrid) {
         let [Some(first), Some(last)] =
             [self.at.keys().next(), self.at.keys().last()].map(|index| index.map(|index| grid[*index].value))
@@ -256,7 +257,7 @@ impl AttractorFamily {
         }
     }
 
-    /// Narrows down where a motion that is no orbit begins and ends in a range, between two values of the grid.
+    /// Narrows down the ends, within a range, of a motion that is not an orbit. Each end lies between two values of the grid.
     fn narrow(&mut self, over: &Over<'_>, (grid, range): (&ValueGrid, [f64; 2]), runs: StartsAndBudget<'_>) {
         if self.stable.is_some() {
             return;
@@ -279,7 +280,7 @@ impl AttractorFamily {
         }
     }
 
-    /// Between the value of an index, at which it is there, and the next.
+    /// Narrows down an end between the value of an index, at which the motion exists, and the next.
     fn ended(
         &self,
         (over, runs): (&Over<'_>, StartsAndBudget<'_>),
@@ -289,7 +290,7 @@ impl AttractorFamily {
     ) -> Transition {
         /// Halvings of a step of the grid.
         const HALVINGS: u32 = 8;
-        /// The same, of what could not be told: a longer budget would move its ends, and each look takes as long as that budget.
+        /// Halvings for an undecided motion. A longer budget would move its ends, and each try takes as long as the budget.
         const OF_UNDECIDED: u32 = 4;
         let halvings = if self.class == Class::Undecided { OF_UNDECIDED } else { HALVINGS };
         let found = self.wanted(grid, index, runs).map(|(wanted, attractor)| {
@@ -299,14 +300,14 @@ impl AttractorFamily {
         by_runs(over, found.and_then(Result::<_, RunError>::ok).unwrap_or(ends))
     }
 
-    /// The speed, rpm, at which an end that is known by runs is on another machine, whose cam differs by little, of a family over speeds;
-    /// none where it is not found near by.
+    /// Speed, rpm, on another machine whose cam differs slightly, of an end that is known by runs, for a family over speeds. None if it
+    /// is not found nearby.
     pub fn moved(&self, other: &Machine, grid: &ValueGrid, runs: StartsAndBudget<'_>, side: usize) -> Option<f64> {
-        /// The first step, in brackets of the end: as narrow a bracket takes long, and steps are doubled.
+        /// First step, in widths of the end's bracket. A bracket as narrow as that takes long, and steps are doubled.
         const FIRST: f64 = 16.0;
-        /// How often.
+        /// Number of doublings.
         const DOUBLED: usize = 7;
-        /// Halvings of the step that it is in.
+        /// Halvings of the step that contains the end.
         const HALVINGS: u32 = 3;
         let change = self.ends[side].as_ref().filter(|_| self.class != Class::Undecided)?;
         let index = if side == 0 { self.at.keys().next() } else { self.at.keys().last() };
@@ -329,7 +330,7 @@ impl AttractorFamily {
         None
     }
 
-    /// What it is at a value of the grid, to be looked for elsewhere.
+    /// Describes the family's motion at a value of the grid, for a search at other values.
     fn wanted<'a>(
         &self,
         grid: &'a ValueGrid,
@@ -348,7 +349,7 @@ impl AttractorFamily {
         Some((wanted, attractor))
     }
 
-    /// Turns of the cam and impacts of one period, where that is the same all along.
+    /// Turns of the cam and impacts of one period, if they are the same at all values.
     pub fn period(&self) -> Option<(u64, u64)> {
         match self.class {
             Class::Orbit(revolutions, impacts) => Some((revolutions, impacts)),
@@ -357,7 +358,7 @@ impl AttractorFamily {
         }
     }
 
-    /// Its kind: that of most of its values.
+    /// Kind of the motion at most of its values.
     pub fn kind(&self, grid: &ValueGrid) -> Kind {
         let mut counts: BTreeMap<Kind, usize> = BTreeMap::new();
         for index in self.at.keys() {
@@ -365,11 +366,11 @@ impl AttractorFamily {
                 *counts.entry(ending.kind()).or_default() += 1;
             }
         }
-        // Between two values of the grid only orbits are known.
+        // A family between two values of the grid is known only if it is an orbit.
         counts.into_iter().max_by_key(|(_, count)| *count).map_or(Kind::Periodic, |(kind, _)| kind)
     }
 
-    /// Gives an end that is known by runs the value at which the follower leaves the cam, and its rounding, if that is in the bracket.
+    /// Replaces an end known by runs by the value at which the follower leaves the cam, with its error, if that value is in the bracket.
     pub(super) fn detaches(&mut self, over: &Over<'_>, value: f64, error: f64) {
         for (end, own) in self.ends.iter_mut().zip(&mut self.range) {
             if let Some(change) = end
@@ -390,7 +391,7 @@ impl AttractorFamily {
         ends.map(|end| end.bracket)
     }
 
-    /// Leaves what is inside of a range of values; false where nothing is.
+    /// Cuts the family to a range of values. Returns false if nothing is left.
     pub(super) fn cut(&mut self, [low, high]: [f64; 2]) -> bool {
         let is_inside = |value: f64| low < value && value < high;
         for (end, own) in self.ends.iter_mut().zip(&mut self.range) {
@@ -402,26 +403,26 @@ impl AttractorFamily {
     }
 }
 
-/// A motion that runs are asked for at other values.
+/// A motion to be found by runs at other values.
 struct Wanted {
     class: Class,
     kind: Kind,
-    /// Whether there are several of the class, of which another kind is another motion: one that is long may be chaotic at one value and
-    /// be seen to rest at the next.
+    /// Whether the class has several attractors, so that a motion of another kind is another motion. Otherwise the kind may change: a
+    /// long motion may be chaotic at one value and be seen to rest at the next.
     both: bool,
-    /// Where runs begin at each value that is tried.
+    /// Starts of the runs at each value.
     sample: Sample,
     budget: Budget,
 }
 
-/// Where the runs of a survey begin, and for how long they are followed.
+/// Starts of a survey's runs, and the budget of each.
 pub type StartsAndBudget<'a> = (&'a Sample, Budget);
 
-/// How many of a sample.
+/// Number of starts of a sample.
 const STARTS: usize = 12;
 
 impl Wanted {
-    /// Whether one of a few starts ends on it, or the `motion` of another value goes on as one; that is put in its place then.
+    /// Whether one of a few starts settles on the motion, or the `motion` of another value continues as one. If so, replaces `motion`.
     fn is_there(&self, machine: &Machine, motion: &mut Option<Motion>) -> Result<bool, SimulateError> {
         let here = AttractorsAtValue::new(machine, &self.sample, self.budget)?;
         let of_class = |it: &Attractor| Class::of(&it.ending) == self.class;
@@ -439,7 +440,7 @@ impl Wanted {
     }
 }
 
-/// Whether runs have come to a motion of the same class as `ending`.
+/// Whether runs have reached a motion of the same class as `ending`.
 pub(super) fn has_reached(here: &AttractorsAtValue, ending: &LongRun) -> bool {
     here.attractors.iter().any(|it| Class::of(&it.ending) == Class::of(ending) && here.is_reached(it))
 }

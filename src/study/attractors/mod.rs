@@ -1,16 +1,16 @@
-//! The attractors of a machine over a range of speeds, or of values of another number: sought at each value of a grid, matched from value to
-//! value, each with where it begins and ends.
+//! Attractors of a machine over a range of speeds, or of values of another number. They are found at each value of a grid and matched
+//! from value to value, with where each begins and ends.
 //!
-//! At each value runs are made from a sample of starts, from rest on the cam, and from the stable orbits that are known without
-//! a run; then from what the two neighbouring values have and this one has not. The grid is the same for every range: a part
-//! of a range has the attractors of that part.
+//! At each value, runs start from a sample of starts, from rest on the cam, and from the stable orbits known without a run. Then they
+//! start from the attractors that the two neighbouring values have and this one lacks. The grid does not depend on the range: a part of a
+//! range has the attractors of that part.
 //!
 //! | module | what it holds |
 //! |---|---|
 //! | `at_value` | the attractors of one machine |
-//! | `stable_range` | how far a periodic orbit is stable, by the branch that it is on |
+//! | `stable_range` | the range over which a periodic orbit is stable, by the branch that it is on |
 //! | `transition` | where an attractor begins or ends, and why |
-//! | `family` | what was found at one value matched with what was found at the next |
+//! | `family` | the attractors at each value matched with those at the next |
 //! | `step` | the grid of values |
 
 mod at_value;
@@ -39,12 +39,12 @@ pub use family::{AttractorFamily, GridValue, StartsAndBudget, ValueGrid, familie
 pub use step::Step;
 pub use transition::{Cause, Transition};
 
-/// Something that runs alone tell, between two values in either order.
+/// Builds a transition known by runs alone, between two values in either order.
 fn by_runs(over: &Over<'_>, [one, two]: [f64; 2]) -> Transition {
     Transition::by_runs(&over.parameter, over.rpm, [one.min(two), one.max(two)])
 }
 
-/// The value between two at which the follower first leaves the cam or ceases to, by the force between them, and how far it may be off.
+/// Returns the value between two at which the follower begins or ceases to leave the cam, by the contact force, and its uncertainty.
 fn leaves(over: &Over<'_>, bracket: [f64; 2]) -> Option<[f64; 2]> {
     let parts = |value: f64| -> Result<bool, FamilyError> {
         let (model, cam) = over.model(value)?;
@@ -60,33 +60,33 @@ fn leaves(over: &Over<'_>, bracket: [f64; 2]) -> Option<[f64; 2]> {
     Some([0.5 * (low + high), 0.5 * (high - low).abs()])
 }
 
-/// How closely a range is looked at.
+/// Fineness of a survey over a range.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Resolution {
-    /// From one value to the next.
+    /// Step from one value to the next.
     pub step: Step,
-    /// The starts that are run at each.
+    /// Starts to be run at each value.
     pub sample: Sample,
-    /// For how long.
+    /// Budget of each run.
     pub budget: Budget,
-    /// Whether runs begin on the stable orbits of two impacts in one revolution, too: a search at each value that takes up to
-    /// seconds, and finds all of them but next to a fold, a graze or a corner.
+    /// Whether runs also begin on the stable orbits of two impacts in one revolution. The search at each value takes up to seconds. It
+    /// finds all of them except near a fold, a graze or a corner.
     pub two_impacts: bool,
 }
 
 impl Resolution {
-    /// So many starts of a sample at each value, with the budget of a survey.
+    /// Builds a resolution of `starts` starts of a sample at each value, with the budget of a survey.
     pub fn new(step: Step, starts: usize) -> Self {
         Self { step, sample: Sample::Spread(starts), budget: Budget::SURVEY, two_impacts: false }
     }
 }
 
-/// Two or more attractors at the same values.
+/// A range of values with two or more attractors.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FamilyCoexistence {
     /// Lowest and highest value.
     pub range: [f64; 2],
-    /// The families, by their indices.
+    /// Indices of the families.
     pub families: Vec<usize>,
 }
 
@@ -95,36 +95,36 @@ pub struct FamilyCoexistence {
 pub struct Attractors {
     /// The range.
     pub range: [f64; 2],
-    /// What was found at each value of the grid, from the lowest up, or why nothing was.
+    /// For each value of the grid, from the lowest up, the attractors there, or why there are none.
     pub grid: Vec<GridValue>,
     /// The attractors, by rising value.
     pub families: Vec<AttractorFamily>,
-    /// Where there are several.
+    /// Ranges with several attractors.
     pub coexistence: Vec<FamilyCoexistence>,
-    /// Where the follower first leaves the cam above the lowest speed, by the force between them; none where the speed does not vary.
+    /// Speed above the lowest at which the follower first leaves the cam, by the contact force; none if the speed does not vary.
     pub separation: Option<Separation>,
 }
 
-/// Why a range of values cannot be looked through.
+/// Reason why a range of values cannot be surveyed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[expect(missing_docs, reason = "the message says what each number is")]
 pub enum AttractorsError {
     /// The model is impossible.
     #[error("{0}")]
     Model(#[from] ModelError),
-    /// What varies is no number of the model, or none that it could have.
+    /// The varied number is not a number of the model, or cannot have the value.
     #[error(transparent)]
     Family(#[from] FamilyError),
-    /// Nothing can be gone over.
+    /// The number cannot be varied.
     #[error(transparent)]
     Over(#[from] OverError),
-    /// Ends that are no range.
+    /// The ends of a speed range are not a range.
     #[error("{low}:{high} rpm: a range goes from a speed above 0 to a higher one")]
     NoRange { low: f64, high: f64 },
-    /// Ends that are none of another number.
+    /// The ends of another number's range are not a range.
     #[error("{name} = {low}:{high}: a range goes from a value to a higher one{}", if *of_logarithms { ", and a logarithmic one begins above 0" } else { "" })]
     NoRangeOf { name: String, low: f64, high: f64, of_logarithms: bool },
-    /// A grid that no double resolves, or of more values than can be run.
+    /// The grid is too fine for doubles, or has too many values to be run.
     #[error("{low}:{high}: values that are {step:e} apart are too many, or too near to be told apart")]
     TooFine { low: f64, high: f64, step: f64 },
     /// No value could be run.
@@ -132,12 +132,12 @@ pub enum AttractorsError {
     Run { place: String, error: Box<RunError> },
 }
 
-/// How far beyond a range attractors are looked for, in steps.
+/// Margin beyond a range in which attractors are looked for, in steps.
 const MARGIN: f64 = 8.0;
-/// The most values of one grid.
+/// Largest number of values in one grid.
 const MOST_VALUES: f64 = 200_000.0;
 
-/// The attractors of a model over a range of one of its numbers; `watch` is told value by value.
+/// Finds the attractors of a model over a range of one of its numbers. `watch` is notified at each value.
 pub fn attractors(
     over: &Over<'_>,
     range: [f64; 2],
@@ -147,7 +147,7 @@ pub fn attractors(
     let values = values(over, range, resolution)?;
     let (done, total) = (AtomicU64::new(0), values.len() as u64);
     let at = |value: &f64| {
-        // Work that is to end does not begin at each of the values that are left.
+        // Cancelled work does not begin any of the remaining values.
         cancel::check_now();
         watch.at("what runs end on", done.fetch_add(1, Ordering::Relaxed), total);
         let found = over.machine(*value).map_err(RunError::from).and_then(|machine| {
@@ -165,7 +165,7 @@ pub fn attractors(
         return Err(AttractorsError::Run { place: over.parameter.words(*value), error: Box::new(error.clone()) });
     }
     watch.at("what neighbouring values end on", 0, 0);
-    // Starts that are given are all that is asked about.
+    // For given starts, the runs from those starts are the whole answer.
     if let Sample::Spread(_) = resolution.sample {
         exchange(over, &mut grid);
     }
@@ -194,7 +194,7 @@ pub fn attractors(
     Ok(Attractors { range, grid, families, coexistence, separation })
 }
 
-/// The values at which attractors are looked for.
+/// Returns the values at which attractors are looked for.
 fn values(over: &Over<'_>, [low, high]: [f64; 2], resolution: &Resolution) -> Result<Vec<f64>, AttractorsError> {
     let (step, is_range) = (resolution.step, high > low && (high - low).is_finite());
     let of_logarithms = step.spacing == Spacing::Logarithmic;
@@ -211,11 +211,11 @@ fn values(over: &Over<'_>, [low, high]: [f64; 2], resolution: &Resolution) -> Re
     if !(step.width() > size * tolerance::ULP.value && (to - from) / step.width() <= MOST_VALUES) {
         return Err(AttractorsError::TooFine { low, high, step: step.width() });
     }
-    // What lives between two values of the grid is found from attractors next to it, which may lie outside of the range.
+    // Attractors that exist only between two values of the grid are found from those next to it, which may lie outside the range.
     let around = MARGIN * step.width();
     let mut values: Vec<f64> = step.over([from - around, to + around]).collect();
     if over.is_speed() {
-        // Nothing turns at speed 0, and below it the cam turns the other way.
+        // The cam does not turn at speed 0; below 0 it turns the other way.
         values.retain(|rpm| *rpm > 0.0);
         if values.first().is_some_and(|first| low < *first) {
             values.insert(0, low);
@@ -224,7 +224,7 @@ fn values(over: &Over<'_>, [low, high]: [f64; 2], resolution: &Resolution) -> Re
     Ok(values)
 }
 
-/// Runs on, at each value, what its neighbours have and it has not, until that finds nothing new.
+/// Runs, at each value, the motions that its neighbours have and it lacks, until no new attractor is found.
 fn exchange(over: &Over<'_>, grid: &mut [GridValue]) {
     let mut fresh: Vec<usize> = (0..grid.len()).collect();
     while !fresh.is_empty() {
@@ -256,13 +256,13 @@ fn exchange(over: &Over<'_>, grid: &mut [GridValue]) {
     }
 }
 
-/// Where families overlap, by more than where they begin and end is open by.
+/// Returns the ranges in which families overlap by more than the uncertainty of their ends.
 fn coexistence(families: &[AttractorFamily], range: [f64; 2]) -> Vec<FamilyCoexistence> {
     let ends = families.iter().flat_map(|family| family.range.into_iter().zip(&family.ends));
     let open = |end: &Option<Transition>| end.as_ref().map_or(0.0, |end| end.bracket[1] - end.bracket[0]);
     let mut ends: Vec<(f64, f64)> = ends.map(|(value, end)| (value, open(end))).collect();
     ends.sort_by(|one, other| one.0.total_cmp(&other.0));
-    // Of a speed, rpm; of a number with a range below 1 as much of that.
+    // Resolution of a speed, rpm; for a number with a range below 1, that fraction of the range.
     let rounding = tolerance::SPEED_FOUND.value * (range[1] - range[0]).min(1.0);
     let mut found: Vec<FamilyCoexistence> = Vec::new();
     for pair in ends.windows(2) {

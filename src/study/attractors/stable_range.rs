@@ -1,4 +1,4 @@
-//! The range of values over which a periodic orbit is stable, with what ends it on either side: by the branch that it is on.
+//! The range of values over which a periodic orbit is stable, with the event that ends it on either side, found along the orbit's branch.
 
 use super::by_runs;
 use super::transition::{Cause, Transition};
@@ -9,29 +9,29 @@ use crate::orbit::symmetry;
 use crate::orbit::{OrbitError, PeriodicOrbit, Stability};
 use crate::study::survey::{Over, RunError};
 
-/// A part of a branch on which the orbits are stable and have the same numbers of revolutions and impacts.
+/// A part of a branch with stable orbits of equal numbers of revolutions and impacts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StableRange {
     /// The orbits, by rising value.
     points: Vec<BranchPoint>,
-    /// What lies at the lower and at the upper end; nothing where the branch was followed no further.
+    /// Transitions at the lower and the upper end; none where the branch was followed no further.
     pub ends: [Option<Transition>; 2],
 }
 
-/// How far branches are followed beyond where their orbits are known, of the value, and in steps of the grid.
+/// Distance that branches are followed beyond the known orbits: a fraction of the value, and a number of grid steps.
 const BEYOND: (f64, f64) = (0.02, 3.0);
 
-/// How branches are followed over a range.
+/// Returns the settings for following branches over a range.
 fn following(over: &Over<'_>, range: [f64; 2]) -> Following {
-    /// The longest step, of the range or of a radian of an impact's angle.
+    /// Longest step, as a part of the range or of a radian of an impact's angle.
     const STEP: f64 = 0.05;
-    /// Points in either direction.
+    /// Most points in either direction.
     const MOST: usize = 400;
     Following { parameter: over.parameter.clone(), range, longest_step: STEP, most_points: MOST }
 }
 
 impl StableRange {
-    /// Through a stable orbit at a value, followed over `range`.
+    /// Finds the stable range through a stable orbit at a value; the branch is followed over `range`.
     fn through(over: &Over<'_>, value: f64, orbit: &PeriodicOrbit, range: [f64; 2]) -> Result<Self, OrbitError> {
         let branch = Branch::at(&over.family, value, orbit, &following(over, range))?;
         let is_here = |point: &BranchPoint| point.value == value && point.orbit == *orbit;
@@ -40,7 +40,7 @@ impl StableRange {
         let [mut backward, mut forward] = [Vec::new(), Vec::new()];
         let middle = &after[..after.len().min(1)];
         let first = walk(over, middle, before.iter().rev(), &branch.ends[0], &mut backward);
-        // What comes back to its start was followed backward alone, all the way round.
+        // A closed branch was followed backward alone, all the way round.
         let onward = if branch.ends[0] == End::Closed { before } else { after.get(1..).unwrap_or_default() };
         let last = walk(over, middle, onward.iter(), &branch.ends[1], &mut forward);
         let mut ends = [first, last];
@@ -56,8 +56,8 @@ impl StableRange {
         Ok(Self { points, ends })
     }
 
-    /// Through a stable orbit at a value, that is known from `low` to `high` at values `step` apart; followed to where it ends on
-    /// both sides, if that is not far.
+    /// Finds the stable range through a stable orbit at a value. The orbit is known from `low` to `high` at values `step` apart. Its
+    /// branch is followed to both ends, if they are not far.
     pub fn all(
         over: &Over<'_>,
         value: f64,
@@ -65,12 +65,12 @@ impl StableRange {
         [low, high]: [f64; 2],
         step: f64,
     ) -> Result<Self, OrbitError> {
-        /// How many times that is made longer by a factor of four, where nothing ends the orbit.
+        /// Number of times that the distance is extended by a factor of four, if the orbit does not end.
         const LONGER: i32 = 3;
         let mut longer = 0;
         loop {
             let beyond = (BEYOND.0 * high.abs() + BEYOND.1 * step) * 4.0_f64.powi(longer);
-            // What is above 0 stays there.
+            // A range above 0 stays above 0.
             let lowest = if low > 0.0 { (low - beyond).max(0.5 * low) } else { low - beyond };
             let range = Self::through(over, value, orbit, [lowest, high + beyond])?;
             if longer == LONGER || range.ends.iter().all(Option::is_some) {
@@ -80,33 +80,33 @@ impl StableRange {
         }
     }
 
-    /// The stable orbits next to this one's ends, each at a value: those of twice the period that branch off, and those that runs come to
-    /// right beyond.
+    /// Returns stable orbits next to the ends of this range, each with its value: those of twice the period that branch off, and those on
+    /// which runs settle just beyond.
     pub fn beyond(&self, over: &Over<'_>, step: f64) -> Vec<(f64, PeriodicOrbit)> {
         let mut found = self.doubled(over, step);
         found.extend(self.run_to(over, step));
         found
     }
 
-    /// The stable orbits of twice the period that branch off at the ends: runs pass over one that lives between few values.
+    /// Returns the stable orbits of twice the period that branch off at the ends. Runs miss one that exists only between few values.
     fn doubled(&self, over: &Over<'_>, step: f64) -> Vec<(f64, PeriodicOrbit)> {
         let points = self.ends.iter().flatten().filter_map(|change| change.point.as_deref());
         let at = |point: &BranchPoint| {
             let alone = Branch { points: vec![point.clone()], ends: [End::Range, End::Range] };
-            // For one step its width alone counts; at a value of 0, that of the grid's steps.
+            // For one step only the width counts; at a value of 0, the width of the grid's steps.
             let far = BEYOND.0 * point.value.abs().max(step);
             branch::doubled(&over.family, &following(over, [-far, far]), &[alone])
         };
         points.flat_map(at).filter(|(_, orbit)| !is_unstable(orbit)).collect()
     }
 
-    /// Those that runs from the ends come to right beyond.
+    /// Returns the orbits on which runs from the ends settle just beyond.
     fn run_to(&self, over: &Over<'_>, step: f64) -> Vec<(f64, PeriodicOrbit)> {
-        /// How far beyond, in steps.
+        /// Distances beyond the end, in steps.
         const FAR: [f64; 3] = [1e-1, 1e-2, 1e-3];
-        /// Revolutions in which a run has come to an orbit.
+        /// Revolutions within which a run must settle on an orbit.
         const WAITED: u64 = 10_000;
-        /// The longest period looked for: beyond, one follows the other in ever shorter ranges.
+        /// Longest period looked for. Longer periods follow each other in ever shorter ranges.
         const LONGEST: u64 = 8;
         let ends = [(-1.0, self.points.first()), (1.0, self.points.last())].into_iter().zip(&self.ends);
         let ended = ends.filter(|(_, change)| change.as_ref().is_some_and(Transition::is_located));
@@ -116,7 +116,7 @@ impl StableRange {
             let machine = over.machine(value)?;
             let settling = LongRuns::new(&machine, Budget { longest: LONGEST, ..Budget::SURVEY })?;
             let impact = point.orbit.impacts().next();
-            // From the cam, wherever that is at this value.
+            // The start is on the cam, wherever that is at this value.
             let Some(impact) = impact else { return Ok(None) };
             let mut motion = machine.start_on_cam(impact.cam_angle, impact.velocity_after - impact.cam_velocity)?;
             Ok(match settling.run(&mut motion, WAITED)? {
@@ -125,11 +125,11 @@ impl StableRange {
             })
         };
         let starts = starts.flat_map(|(onward, point)| FAR.map(|far| (onward, point, far)));
-        // What cannot be run has no orbit to add.
+        // A run that fails has no orbit to add.
         starts.filter_map(|start| settled(start).ok().flatten()).collect()
     }
 
-    /// The orbit of the range that is nearest to a value; none where that is beyond its ends.
+    /// Returns the orbit of the range that is nearest to a value; none if the value is beyond its ends.
     pub fn near(&self, value: f64) -> Option<&PeriodicOrbit> {
         let apart = |point: &&BranchPoint| (point.value - value).abs();
         let inside = self.points.first().is_some_and(|first| first.value <= value)
@@ -138,13 +138,13 @@ impl StableRange {
         nearest.filter(|_| inside).map(|point| &point.orbit)
     }
 
-    /// Orbits of its middle half, which no other range begins or ends with, each at its value.
+    /// Orbits of the middle half of the range, each with its value. No other range begins or ends with one of these.
     pub fn middle(&self) -> impl Iterator<Item = (f64, &PeriodicOrbit)> {
         let middle = self.points.iter().skip(self.points.len() / 4).take(self.points.len().div_ceil(2));
         middle.map(|point| (point.value, &point.orbit))
     }
 
-    /// Its orbits with an impact at a corner where the acceleration jumps.
+    /// Orbits with an impact at a corner where the acceleration jumps.
     pub fn corner_impacts(&self) -> impl Iterator<Item = &BranchPoint> {
         let is_corner = |point: &&BranchPoint| {
             point.special.is_some_and(|special| matches!(special.kind, SpecialKind::Corner { jump_order: 2, .. }))
@@ -152,19 +152,19 @@ impl StableRange {
         self.points.iter().filter(is_corner)
     }
 
-    /// The lowest and the highest value.
+    /// Lowest and highest value.
     pub fn ends(&self) -> [f64; 2] {
         [self.points.first(), self.points.last()].map(|point| point.map_or(f64::NAN, |point| point.value))
     }
 }
 
-/// Whether an orbit is certainly unstable: next to a flip or a fold, stable ones are neutral within their error.
+/// Whether an orbit is certainly unstable. Next to a flip or a fold, stable orbits are neutral within their error.
 fn is_unstable(orbit: &PeriodicOrbit) -> bool {
     orbit.judgement.stability == Stability::Unstable
 }
 
-/// An end at which the branch turns back, or touches one that crosses it, by its own equations where a symmetry is lost there; the last of
-/// the points is where it ends.
+/// Locates a symmetry breaking at an end where the branch turns back or touches a crossing branch, by its own equations. The last point
+/// is then that end.
 fn located(over: &Over<'_>, end: &mut Option<Transition>, points: &mut Vec<BranchPoint>) {
     let Some(change) = end.as_mut().filter(|change| matches!(change.cause, Cause::Fold | Cause::Runs)) else { return };
     let Some(cycle) = points.last().and_then(|point| point.orbit.cycle()) else { return };
@@ -172,13 +172,13 @@ fn located(over: &Over<'_>, end: &mut Option<Transition>, points: &mut Vec<Branc
         let place = over.place(value);
         let point = BranchPoint { rpm: place.rpm, value, orbit, held: None, special: None };
         *change = Transition::at(place, Cause::SymmetryBreaking);
-        // What was taken for the end.
+        // This point was taken for the end.
         points.retain(|it| it.special.is_none());
         points.push(point);
     }
 }
 
-/// Takes the points for as long as orbits are of one kind and the value goes one way, and returns why that is over.
+/// Collects the points while orbits stay of one kind and the value moves one way. Returns the transition that ends this.
 fn walk<'a>(
     over: &Over<'_>,
     middle: &[BranchPoint],
@@ -194,7 +194,7 @@ fn walk<'a>(
     };
     let kind = middle.first().map(|point| numbers(&point.orbit))?;
     let mut last = middle.first()?.value;
-    // Where the value turns back without a change of stability, the orbits of the other side are others: those of a symmetry that is lost.
+    // Where the value turns back without a change of stability, the orbits beyond are those of a lost symmetry.
     let (begun, mut onward) = (last, 0.0);
     let mut pending: Option<&BranchPoint> = None;
     // A smooth corner changes nothing that a stable orbit depends on.
@@ -203,7 +203,7 @@ fn walk<'a>(
         if point.special.is_some() {
             let is_corner =
                 matches!(point.special, Some(special) if matches!(special.kind, SpecialKind::Corner { .. }));
-            // Two special points in a row, or one that ends the motion whatever is beyond.
+            // Two special points in a row, or one that ends the motion in any case.
             if let Some(before) = pending.or((!is_corner).then_some(point)) {
                 taken.push(before.clone());
                 return Some(of_point(before));

@@ -6,29 +6,29 @@ use crate::elementary;
 use crate::study::survey::Spacing;
 use crate::tolerance;
 
-/// A grid that no range has a say in: whole multiples of a step, or powers of ten with such multiples as exponents.
+/// A grid that does not depend on the range: multiples of a step, or powers of ten whose exponents are such multiples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Step {
-    /// 1, 2, 3 or 5, so that the step is no shorter than half of what was asked for.
+    /// 1, 2, 3 or 5, so that the step is at least half as long as requested.
     digit: u64,
-    /// Of ten.
+    /// Power of ten.
     power: i32,
-    /// Whether values or their decimal logarithms are multiples of it.
+    /// Whether the values or their decimal logarithms are multiples of the step.
     pub spacing: Spacing,
 }
 
 impl Step {
-    /// The longest step that puts `count` values, or more, into `range`.
+    /// Returns the longest step that puts `count` or more values into `range`.
     pub fn for_values(range: [f64; 2], count: u32, spacing: Spacing) -> Self {
         let [low, high] = range.map(|end| spacing.place(end));
         Self::at_most((high - low) / f64::from(count.max(1)), spacing)
     }
 
-    /// The longest step that is no longer than so much: of a logarithmic grid in decades.
+    /// Returns the longest step that is no longer than `longest`; in decades for a logarithmic grid.
     pub fn at_most(longest: f64, spacing: Spacing) -> Self {
         let power = elementary::log10(longest).floor();
         let digits = longest / elementary::powf(10.0_f64, power);
-        // A step of exactly one of them is not to be lost to rounding.
+        // Rounding must not lose a step of exactly one of the digits.
         let digit = [5, 3, 2]
             .into_iter()
             .find(|digit| digits * (1.0 + 8.0 * tolerance::ULP.value) >= *digit as f64)
@@ -36,12 +36,12 @@ impl Step {
         Self { digit, power: power as i32, spacing }
     }
 
-    /// The step: rpm, the unit of what varies, or decades.
+    /// Length of the step: rpm, the unit of the varied number, or decades.
     pub fn width(self) -> f64 {
         self.times(1)
     }
 
-    /// From one value of the grid to the next, next to a value.
+    /// Distance from one value of the grid to the next, near a value.
     pub(super) fn near(self, value: f64) -> f64 {
         match self.spacing {
             Spacing::Linear => self.width(),
@@ -49,13 +49,13 @@ impl Step {
         }
     }
 
-    /// A multiple of it: the double nearest to the decimal number.
+    /// Returns a multiple of the step: the double nearest to the decimal number.
     fn times(self, count: i64) -> f64 {
         let count = (count * self.digit as i64) as f64;
         if self.power < 0 { count / 10.0_f64.powi(-self.power) } else { count * 10.0_f64.powi(self.power) }
     }
 
-    /// The values from the last that is not above `low` to the first that is not below `high`, both as places of the spacing.
+    /// Returns the values from the last one not above `low` to the first one not below `high`, both as places of the spacing.
     pub(super) fn over(self, [low, high]: [f64; 2]) -> impl Iterator<Item = f64> {
         let mut first = (low / self.width()).floor() as i64 - 1;
         while self.times(first + 1) <= low {

@@ -1,4 +1,4 @@
-//! Where an attractor begins or ends, and why.
+//! The value at which an attractor begins or ends, and the cause.
 
 use serde::Serialize;
 
@@ -6,22 +6,23 @@ use crate::orbit::branch::{BranchPoint, SpecialKind};
 use crate::orbit::{Course, Parameter};
 use crate::study::survey::Place;
 
-/// Where an attractor begins or ends.
+/// The value at which an attractor begins or ends, with its cause.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Transition {
-    /// Where.
+    /// Place of the transition.
     pub at: Place,
-    /// Between which values; of the speed, rpm.
+    /// Bracket of values; for the speed, rpm.
     pub bracket: [f64; 2],
-    /// Why.
+    /// Cause of the transition.
     pub cause: Cause,
-    /// The point of a branch that it is at, if it is.
+    /// Special point of a branch at which it lies, if any.
     pub point: Option<Box<BranchPoint>>,
-    /// How far a measured cam may have moved it, rpm; none where the cam is not measured, that is not known, or what varies is not the speed.
+    /// Shift that the noise of a measured cam may cause, rpm. None if the cam is not measured, the shift is unknown, or the speed does
+    /// not vary.
     pub error: Option<f64>,
 }
 
-// Located is where the equations of the event were solved, and not a bracket of runs.
+// `located` is true if the equations of the event were solved, and false for a bracket of runs.
 document!(Transition as it {
     cause: it.cause.name(),
     speed_rpm: it.at.rpm,
@@ -34,36 +35,36 @@ document!(Transition as it {
     jump_order if_any: it.cause.corner().map(|(_, order)| order),
 });
 
-/// Why an attractor begins or ends.
+/// Cause for which an attractor begins or ends.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Cause {
     /// A multiplier of the orbit passes 1.
     Fold,
-    /// Two orbits branch off from one that does the same over each of equal lobes.
+    /// Two orbits branch off from one that repeats over each of equal lobes.
     SymmetryBreaking,
     /// A multiplier of the orbit passes -1.
     Flip,
-    /// A flight touches the cam: an impact more or less.
+    /// A flight grazes the cam: an impact is added or lost.
     Graze {
         /// Impacts before and after, in the direction in which the orbit was followed.
         impacts: [usize; 2],
     },
     /// An impact at a corner of the cam.
     CornerImpact {
-        /// Where the corner is, rad.
+        /// Corner angle, rad.
         cam_angle: f64,
         /// The lowest derivative of the lift that jumps there.
         jump_order: usize,
     },
     /// The follower leaves the cam for the first time.
     Detachment,
-    /// Runs end on it on one side, and on the other no more.
+    /// Runs settle on the attractor on one side only.
     Runs,
 }
 
 impl Cause {
-    /// Its name in documents.
+    /// Name in documents.
     pub fn name(self) -> &'static str {
         match self {
             Self::Fold => "fold",
@@ -85,12 +86,12 @@ impl Cause {
 }
 
 impl Transition {
-    /// At a special point of a branch in `parameter`.
+    /// Builds the transition at a special point of a branch in `parameter`.
     pub fn of_point(parameter: &Parameter, point: &BranchPoint) -> Self {
         let at = parameter.place(point.value, point.rpm);
         let Some(special) = point.special else { return Self::at(at, Cause::Runs) };
         let cause = match (special.kind, &point.orbit.course) {
-            // Where another branch crosses, a multiplier passes 1 as well.
+            // A multiplier also passes 1 where another branch crosses.
             (SpecialKind::Fold | SpecialKind::Branching, _) => Cause::Fold,
             (SpecialKind::Flip, _) => Cause::Flip,
             (SpecialKind::Graze { before, after, .. }, _) => Cause::Graze { impacts: [before, after] },
@@ -100,7 +101,7 @@ impl Transition {
             }
             (SpecialKind::Detachment, _) => Cause::Detachment,
             (SpecialKind::Corner { .. } | SpecialKind::Chatter, _) => Cause::Runs,
-            // Of curves in two numbers.
+            // Special points of curves in two numbers.
             (
                 SpecialKind::Type { .. }
                 | SpecialKind::Cusp
@@ -114,12 +115,12 @@ impl Transition {
         Self { at, bracket: special.bracket, cause, point: Some(Box::new(point.clone())), error: None }
     }
 
-    /// Right at a place, by an event's own equations or as far as runs tell.
+    /// Builds a transition at one place, known by an event's own equations or to the resolution of runs.
     pub fn at(at: Place, cause: Cause) -> Self {
         Self { at, bracket: [at.across(); 2], cause, point: None, error: None }
     }
 
-    /// Somewhere between two values of `parameter`, on machines that turn at `rpm` where it is not the speed.
+    /// Builds a transition between two values of `parameter`, known by runs. The machines turn at `rpm` if the speed does not vary.
     pub fn by_runs(parameter: &Parameter, rpm: f64, bracket: [f64; 2]) -> Self {
         let at = parameter.place(0.5 * (bracket[0] + bracket[1]), rpm);
         Self { at, bracket, cause: Cause::Runs, point: None, error: None }

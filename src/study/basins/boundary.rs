@@ -1,4 +1,4 @@
-//! The border between two basins, from runs alone; and how near a saddle's unstable manifold comes to its stable manifold.
+//! The border between two basins, from runs alone, and the distance between a saddle's unstable and stable manifolds.
 
 use super::{Curve, Saddle};
 use crate::bracket::{Width, halve};
@@ -12,10 +12,10 @@ use crate::simulate::SimulateError;
 use crate::study::survey::attractors_of;
 use crate::tolerance;
 
-/// Where, between two starts on the section, runs change what they end on: the middle of a bracket that is halved down to
-/// the width of a rounding; `None` where both ends end alike.
+/// Finds a point between two starts on the section at which the ending of runs changes: the middle of a bracket, halved down to the width
+/// of a rounding. `None` if both starts end alike.
 ///
-/// Of several such places one is found.
+/// If there are several such points, finds one of them.
 pub fn border(map: &StroboscopicMap, [from, to]: [State; 2], budget: Budget) -> Result<Option<State>, SimulateError> {
     let at = |share: f64| State {
         position: from.position + share * (to.position - from.position),
@@ -31,7 +31,7 @@ pub fn border(map: &StroboscopicMap, [from, to]: [State; 2], budget: Budget) -> 
     if first.is_same(&last) {
         return Ok(None);
     }
-    // A chaotic run may come to rest by chance: an orbit, where one end has it, tells the two sides apart.
+    // A chaotic run may come to rest by chance. If one end settles on an orbit, that orbit distinguishes the two sides.
     let is_orbit = matches!(last, LongRun::Orbit(_));
     let ends_low = |ending: &LongRun| if is_orbit { !ending.is_same(&last) } else { ending.is_same(&first) };
     let width = Width::Absolute(tolerance::BORDER_BRACKET.value);
@@ -39,20 +39,20 @@ pub fn border(map: &StroboscopicMap, [from, to]: [State; 2], budget: Budget) -> 
     Ok(Some(at(0.5 * (low + high))))
 }
 
-/// How near the unstable manifold of a saddle comes back to its stable one.
+/// Closest approach of a saddle's unstable manifold to its stable manifold.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ManifoldApproach {
-    /// The least distance, m.
+    /// Smallest distance, m.
     pub distance: f64,
-    /// Where on the unstable manifold that is.
+    /// Point of the unstable manifold at that distance.
     pub nearest: State,
 }
 
-/// Where the half of a saddle's unstable manifold that begins along its direction, times `sign`, comes nearest to `curve`,
-/// a piece of the stable one: `samples` starts from a point to its image, run until they are `away`, m, and `revolutions`
-/// further.
+/// Finds where one half of a saddle's unstable manifold comes nearest to `curve`, a piece of the stable manifold. The half begins along
+/// the saddle's direction, times `sign`. `samples` starts between a point and its image are run until they are `away`, m, and
+/// `revolutions` further.
 ///
-/// A chaotic motion on that side of the curve fills the same set as the manifold; where it touches the curve it is lost.
+/// A chaotic motion on that side of the curve fills the same set as the manifold. It is lost when the set touches the curve.
 pub fn approach(
     map: &StroboscopicMap,
     saddle: &Saddle,
@@ -61,7 +61,7 @@ pub fn approach(
     away: f64,
     [samples, revolutions]: [u32; 2],
 ) -> Result<ManifoldApproach, SimulateError> {
-    /// Where a start is, of `away`: the manifold is straight there to the square of it.
+    /// Distance of the start from the saddle, as a part of `away`. There the manifold is straight to the square of this number.
     const FIRST: f64 = 1e-5;
     let (multiplier, along) = saddle.unstable;
     let leaving = (-elementary::ln(FIRST) / elementary::ln(multiplier)).ceil() as u32;
@@ -75,7 +75,7 @@ pub fn approach(
         };
         for revolution in 1..=leaving + revolutions {
             state = map.apply(state)?.state;
-            // Most are too far from all of the curve to be looked at closely.
+            // Most states are too far from the whole curve for a closer look.
             if revolution > leaving && bounds.distance(state) < found.distance {
                 let distance = curve.distance_below(found.distance, state);
                 if distance < found.distance {

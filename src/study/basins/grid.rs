@@ -1,4 +1,4 @@
-//! Starts on a section, those of a grid or given ones, and the motion that each ends on.
+//! Starts on a section, from a grid or given, and the motion that each ends on.
 
 use serde::Serialize;
 
@@ -22,15 +22,15 @@ pub struct Grid {
     /// Velocities, m/s.
     #[serde(rename = "velocity_m_s")]
     pub velocities: [f64; 2],
-    /// How many along the positions and along the velocities, 1 or more.
+    /// Number of cells along the positions and along the velocities, 1 or more.
     pub cells: [usize; 2],
 }
 
 impl Grid {
-    /// The most cells of a grid.
+    /// Largest number of cells in a grid.
     pub const MOST: usize = 4_000_000;
 
-    /// The start of a cell, counted row by row, from the lowest velocity up and from the lowest position on.
+    /// Start of a cell. Cells are counted row by row, from the lowest velocity and the lowest position on.
     pub fn start(&self, cell: usize) -> State {
         let [columns, rows] = self.cells;
         let middle = |[low, high]: [f64; 2], index: usize, count: usize| {
@@ -47,9 +47,9 @@ impl Grid {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum SectionStarts {
-    /// Those of a grid.
+    /// The starts of a grid.
     Grid(Grid),
-    /// These.
+    /// Given starts.
     Given(States),
 }
 
@@ -65,7 +65,7 @@ pub struct States {
 }
 
 impl SectionStarts {
-    /// How many.
+    /// Number of starts.
     pub fn count(&self) -> usize {
         match self {
             Self::Grid(grid) => grid.cells.iter().product(),
@@ -80,7 +80,7 @@ impl SectionStarts {
         }
     }
 
-    /// One of them.
+    /// State of one start.
     pub fn state(&self, index: usize) -> State {
         match self {
             Self::Grid(grid) => grid.start(index),
@@ -88,8 +88,8 @@ impl SectionStarts {
         }
     }
 
-    /// What every start ends on, on `threads` threads (all there are for `None`): the same for every number of them; told to `watch` start by
-    /// start. Those of a grid may be below the cam.
+    /// Finds the motion that every start ends on, on `threads` threads (all there are for `None`); the result does not depend on their
+    /// number. `watch` is notified start by start. Starts of a grid may be below the cam.
     pub fn basins(
         self,
         machine: &Machine,
@@ -114,15 +114,15 @@ impl SectionStarts {
     }
 }
 
-/// Why a grid of starts has no endings.
+/// Reason why the endings of starts could not be found.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum GridError {
     /// A run could not go on.
     #[error("basins: from q = {} m, v = {} m/s: {error}", state.position, state.velocity)]
     Simulate {
-        /// Its start.
+        /// Start of the run.
         state: State,
-        /// Why.
+        /// Cause of the failure.
         error: SimulateError,
     },
     /// The threads could not be started.
@@ -130,7 +130,7 @@ pub enum GridError {
     Threads(#[from] SweepError),
 }
 
-// A period stands beside the kind.
+// The period is beside the kind.
 document!(Basin as part {
     ending: part.ending.kind(),
     revolutions if_any: part.ending.period().map(|(revolutions, _)| revolutions),
@@ -143,51 +143,51 @@ document!(Basin as part {
     share_standard_error: part.share.error,
 });
 
-/// The starts of a grid that end alike.
+/// The starts that end on one motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Basin {
-    /// How they end.
+    /// The motion on which they end.
     pub ending: LongRun,
-    /// Revolutions that their runs were followed for, all together.
+    /// Revolutions that their runs were followed for, in total.
     pub followed: u64,
-    /// How many.
+    /// Number of starts.
     pub starts: usize,
-    /// Their share of the starts above the cam. Those of a grid are spread better than by chance, so that its error errs on the
-    /// large side.
+    /// Share of the starts above the cam whose runs did not fail. For starts of a grid, which are spread better than by chance, the error
+    /// is overestimated.
     pub share: Estimate,
 }
 
-/// What the starts of a grid end on.
+/// The motions on which starts end.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Basins {
     /// The starts.
     #[serde(flatten)]
     pub begun: SectionStarts,
-    /// For how long runs were followed.
+    /// Budget of each run.
     pub budget: Budget,
-    /// How many of them are above the cam.
+    /// Number of the starts above the cam whose runs did not fail.
     pub starts: usize,
-    /// The endings found, that of most starts first.
+    /// The endings found; the one with most starts comes first.
     #[serde(rename = "endings")]
     pub parts: Vec<Basin>,
-    /// Runs that neither rested nor came to an orbit soon, all together.
+    /// Totals of the runs that neither rest nor settle on an orbit soon.
     pub wandering: Wandering,
-    /// How many starts could not be run.
+    /// Number of starts that could not be run.
     pub failed: usize,
-    /// Why the first of these could not.
+    /// Reason why the first of these could not be run.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub failure: Option<String>,
-    /// For each cell the index of its part; nothing where the start is below the cam.
+    /// For each cell, the index of its part; none if the start is below the cam.
     #[serde(skip)]
     pub cells: Vec<Option<usize>>,
-    /// For each the revolutions that its run was followed for.
+    /// For each cell, the revolutions that its run was followed for.
     #[serde(skip)]
     pub followed: Vec<Option<u64>>,
 }
 
 impl Basins {
     fn new(begun: SectionStarts, budget: Budget, mut found: Ensemble) -> Self {
-        // Stable: among parts of one size the first found comes first.
+        // The sort is stable: among parts of one size, the first found comes first.
         found.attractors.sort_by_key(|part| std::cmp::Reverse(part.starts.len()));
         let (mut cells, mut followed) = (vec![None; begun.count()], vec![None; begun.count()]);
         let starts = found.attractors.iter().map(|part| part.starts.len()).sum::<usize>();

@@ -1,9 +1,8 @@
-//! The curves along which a saddle orbit is approached and left: its stable and its unstable manifold on a section.
+//! The stable and unstable manifolds of a saddle orbit on a section.
 //!
-//! Next to the saddle both curves are straight, along the eigenvectors of its matrix. A stretch of the unstable manifold,
-//! from a point to the point's image, is carried on by the map over and over; a stretch of the stable manifold by the
-//! inverse of the map. The inverse is a run backwards in time, in which an impact multiplies the relative velocity by
-//! `-1/r`.
+//! Next to the saddle both curves are straight, along the eigenvectors of its matrix. The map carries a stretch of the unstable manifold,
+//! from a point to its image, on and on; the inverse of the map does so for the stable manifold. The inverse is a run backwards in time,
+//! in which an impact multiplies the relative velocity by `-1/r`.
 
 use std::f64::consts::TAU;
 
@@ -18,10 +17,10 @@ use crate::section::StroboscopicMap;
 use crate::simulate::{EventKind, Machine};
 use crate::tolerance;
 
-/// An orbit of one revolution with one real multiplier inside and one outside of the unit circle, both positive.
+/// An orbit of one revolution with one real multiplier inside and one outside the unit circle, both positive.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Saddle {
-    /// Where it crosses the section.
+    /// State where the orbit crosses the section.
     pub state: State,
     /// The multiplier below 1, and its direction: position, m, and velocity, m/s.
     pub stable: (f64, Vector2<f64>),
@@ -30,24 +29,24 @@ pub struct Saddle {
 }
 
 impl Saddle {
-    /// The saddle that a cycle of one revolution is at `cam_angle`, rad, in `[0, 2 pi)`; `None` where it is none.
+    /// Builds the saddle of a cycle of one revolution at `cam_angle`, rad, in `[0, 2 pi)`; `None` if the cycle is not a saddle.
     pub fn new(machine: &Machine, cycle: &Cycle, cam_angle: f64) -> Option<Self> {
         let (state, matrix) = cycle.at_section(machine, cam_angle);
         let [above, below] = eigenvalues(&matrix);
-        // Their product is 1 at most: where one is above 1 both are real, and the other is below 1.
+        // The product of the multipliers is 1 at most: if one is above 1, both are real and the other is below 1.
         if !(above.re > 1.0 && below.re > 0.0 && cycle.revolutions == 1) {
             return None;
         }
-        // Lengths are compared with velocities over omega, as m/rad.
+        // Lengths are compared with velocities over omega, in m/rad.
         let omega = machine.angular_velocity();
         let along = |multiplier: f64| (multiplier, direction(&matrix, multiplier, omega));
         Some(Self { state, stable: along(below.re), unstable: along(above.re) })
     }
 }
 
-/// The eigenvector of a 2x2 matrix, of length 1 with the velocity over omega.
+/// Returns the eigenvector of a 2x2 matrix, of length 1 with the velocity over omega.
 fn direction(matrix: &Matrix2<f64>, multiplier: f64, omega: f64) -> Vector2<f64> {
-    // (A - lambda) x = 0 by the row that says more.
+    // (A - lambda) x = 0, by the longer row.
     let rows = [
         Vector2::new(matrix[(0, 1)], multiplier - matrix[(0, 0)]),
         Vector2::new(multiplier - matrix[(1, 1)], matrix[(1, 0)]),
@@ -65,10 +64,10 @@ pub struct Reversed {
 }
 
 impl Reversed {
-    /// Of the map of `follower`; `None` where the cam is not its own mirror image, `c(2 pi - theta) = c(theta)`, or where
-    /// the follower keeps nothing of an impact, r = 0, which no run backwards can tell.
+    /// Builds the inverse of the map of `follower`. `None` if the cam is not its own mirror image, `c(2 pi - theta) = c(theta)`.
+    /// Also `None` if r = 0: such an impact cannot be inverted.
     pub fn new(follower: &Follower, map: &StroboscopicMap) -> Option<Self> {
-        /// Angles at which the lift is held against its mirror image.
+        /// Angles at which the lift is compared with its mirror image.
         const LOOKED_AT: u32 = 720;
         let (cam, size) = (map.machine.cam(), lift_size(&map.machine));
         let mirrored = |index: u32| {
@@ -79,7 +78,7 @@ impl Reversed {
         if !(follower.restitution > 0.0 && (1..LOOKED_AT).all(mirrored)) {
             return None;
         }
-        // t -> -t: the mirrored cam turns on, the damping drives, and an impact gives 1/r.
+        // t -> -t: the mirrored cam turns on, the damping drives the follower, and an impact gives 1/r.
         let restitution = 1.0 / follower.restitution;
         let follower = Follower { damping: -follower.damping, restitution, ..*follower };
         let machine = Machine::new(cam.clone(), &follower, map.machine.angular_velocity());
@@ -87,8 +86,8 @@ impl Reversed {
         Some(Self { map: map.clone(), backwards: StroboscopicMap { machine, cam_angle } })
     }
 
-    /// The state one revolution before `state`; `None` where none leads there, or one that begins or ceases to stick on the way:
-    /// whatever the run backwards finds is run forwards and held against `state`.
+    /// Returns the state one revolution before `state`. `None` if no state leads there, or only one that begins or ceases to stick on the
+    /// way. The result of the run backwards is checked by a run forwards.
     pub fn apply(&self, state: State) -> Option<State> {
         let turned = |state: State| State { velocity: -state.velocity, ..state };
         let back = self.backwards.apply(turned(state)).ok()?;
@@ -101,50 +100,50 @@ impl Reversed {
     }
 }
 
-/// The size of a state, m: velocities count over omega.
+/// Size of a state, m, with the velocity over omega.
 fn size(state: State, omega: f64) -> f64 {
     elementary::hypot(state.position, state.velocity / omega)
 }
 
-/// How far a curve is followed, and how finely.
+/// Length and resolution of a curve that is followed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extent {
-    /// Times that the first stretch is carried on.
+    /// Number of times that the first stretch is carried on.
     pub stretches: u32,
-    /// Where it begins, m from the saddle: what the curve bends there is the square of it.
+    /// Distance from the saddle, m, at which the first stretch begins. There the curve's bend is of the order of its square.
     pub first: f64,
-    /// The farthest that neighbouring points are apart, m.
+    /// Largest distance between neighbouring points, m.
     pub finest: f64,
-    /// The farthest from the saddle, m, that a curve is followed.
+    /// Largest distance from the saddle, m, to which a curve is followed.
     pub farthest: f64,
 }
 
 impl Extent {
-    /// For a picture, or a part of the section, of this size, m.
+    /// Suits a picture, or a part of the section, of this size, m.
     pub fn of(size: f64) -> Self {
         Self { stretches: 40, first: 1e-7 * size, finest: 1e-3 * size, farthest: 2.0 * size }
     }
 }
 
-/// A curve on the section as a line from point to point, and where it is broken.
+/// A curve on the section, as a polyline that may be broken into pieces.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
-    /// Its pieces: states in order.
+    /// The pieces, each as states in order.
     pub pieces: Vec<Vec<State>>,
     omega: f64,
-    /// The farthest that neighbours in a piece are apart, m.
+    /// Largest distance between neighbours in a piece, m.
     finest: f64,
 }
 
 impl Curve {
-    /// One half of the saddle's unstable manifold: the one that begins along the direction, or with `sign` -1 against it.
+    /// Follows one half of the saddle's unstable manifold: along the saddle's direction, or against it if `sign` is -1.
     pub fn unstable(map: &StroboscopicMap, saddle: &Saddle, sign: f64, extent: &Extent) -> Self {
         let (multiplier, along) = saddle.unstable;
         let carry = |state| map.apply(state).ok().map(|end| end.state);
         Self::grow(saddle.state, sign * along, multiplier, carry, extent, map.machine.angular_velocity())
     }
 
-    /// One half of its stable manifold.
+    /// Follows one half of the saddle's stable manifold.
     pub fn stable(reversed: &Reversed, saddle: &Saddle, sign: f64, extent: &Extent) -> Self {
         let (multiplier, along) = saddle.stable;
         let carry = |state| reversed.apply(state);
@@ -152,8 +151,8 @@ impl Curve {
         Self::grow(saddle.state, sign * along, 1.0 / multiplier, carry, extent, omega)
     }
 
-    /// The images of a stretch from the saddle's neighbourhood: a number s from 0 to `stretches` names the image under
-    /// `floor(s)` maps of the point `first * multiplier^fract(s)` from the saddle; s is halved until images are close.
+    /// Maps a stretch near the saddle on and on. A number s from 0 to `stretches` gives the image under `floor(s)` maps of the point
+    /// `first * multiplier^fract(s)` from the saddle. Steps in s are halved until neighbouring images are close.
     fn grow(
         saddle: State,
         along: Vector2<f64>,
@@ -162,9 +161,9 @@ impl Curve {
         extent: &Extent,
         omega: f64,
     ) -> Self {
-        /// Points of one stretch to begin with.
+        /// Initial number of points in one stretch.
         const POINTS: u32 = 16;
-        /// Halvings after which two neighbours that stay apart are on either side of a break.
+        /// Halvings after which two neighbours that are still apart are on either side of a break.
         const HALVINGS: u32 = 16;
         let at = |s: f64| -> Option<State> {
             let from = extent.first * elementary::powf(multiplier, s.fract());
@@ -179,7 +178,7 @@ impl Curve {
         let mut last = (0.0, at(0.0));
         curve.push(last.1);
         for index in 1..total {
-            // What is still to be reached, the next on top.
+            // The values of s still to be reached, the next on top.
             let mut ahead = vec![(place(index), at(place(index)), 0)];
             while let Some((s, state, halvings)) = ahead.pop() {
                 let close = match (last.1, state) {
@@ -210,12 +209,12 @@ impl Curve {
         }
     }
 
-    /// Its points.
+    /// Points of the curve.
     pub fn points(&self) -> impl Iterator<Item = State> {
         self.pieces.iter().flatten().copied()
     }
 
-    /// The rectangle that it lies in.
+    /// Bounding rectangle of the curve.
     pub fn bounds(&self) -> SectionBounds {
         let none = [f64::INFINITY, f64::NEG_INFINITY];
         let join = |[low, high]: [f64; 2], value: f64| [low.min(value), high.max(value)];
@@ -227,12 +226,12 @@ impl Curve {
         })
     }
 
-    /// The distance of a state from the curve, m.
+    /// Distance of a state from the curve, m.
     pub fn distance(&self, state: State) -> f64 {
         self.distance_below(f64::INFINITY, state)
     }
 
-    /// The same where it is less than `limit`, and `limit` where it is not.
+    /// Distance of a state from the curve, m, or `limit` if the distance is not below it.
     pub fn distance_below(&self, limit: f64, state: State) -> f64 {
         let flat = |state: &State| Vector2::new(state.position, state.velocity / self.omega);
         let point = flat(&state);
@@ -241,12 +240,12 @@ impl Curve {
             while let Some(start) = piece.get(index).map(flat) {
                 let away = (point - start).norm();
                 nearest = nearest.min(away);
-                // Neighbours are no farther apart than `finest`: those that cannot be nearer are passed over.
+                // Neighbours are no farther apart than `finest`: points that cannot be nearer are skipped.
                 let passed = (away - nearest) / self.finest;
                 if let (true, Some(end)) = (passed < 1.0, piece.get(index + 1).map(flat)) {
                     let along = end - start;
                     let share = ((point - start).dot(&along) / along.norm_squared()).clamp(0.0, 1.0);
-                    // Two points in one place are no direction.
+                    // Two coincident points have no direction.
                     let foot = if share.is_finite() { start + share * along } else { start };
                     nearest = nearest.min((point - foot).norm());
                 }
@@ -266,7 +265,7 @@ pub struct SectionBounds {
 }
 
 impl SectionBounds {
-    /// The distance of a state from it, m; 0 inside.
+    /// Distance of a state from the rectangle, m; 0 inside.
     pub fn distance(&self, state: State) -> f64 {
         let beyond = |value: f64, [low, high]: [f64; 2]| (low - value).max(value - high).max(0.0);
         elementary::hypot(

@@ -1,12 +1,12 @@
-//! Which motion a start ends on, and what parts the starts that end on one from those that end on another.
+//! The motion that each start ends on, and the borders between basins.
 //!
 //! | module | what it holds |
 //! |---|---|
 //! | [`grid`] | a grid of starts on a section, side by side |
 //! | `over` | the shares of the basins over a number of the model |
-//! | [`manifold`] | the curves along which a saddle is approached and left |
-//! | `section` | the starts on a section of a model, the orbits that cross it, the curves that part the basins |
-//! | [`boundary`] | points of the border between two basins, by halving; how near a manifold comes back to the saddle's other |
+//! | [`manifold`] | the stable and unstable manifolds of a saddle |
+//! | `section` | the starts on a section of a model, the orbits that cross it, the curves that separate the basins |
+//! | [`boundary`] | points of the border between two basins, by halving; the distance between a saddle's two manifolds |
 
 pub mod boundary;
 pub mod grid;

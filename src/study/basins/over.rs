@@ -1,4 +1,4 @@
-//! The share of the starts that end on each motion, value by value of a number.
+//! The share of the starts that end on each motion, over the values of a number.
 
 use std::time::Instant;
 
@@ -9,29 +9,29 @@ use crate::progress::{Unwatched, Watch};
 use crate::study::StudyError;
 use crate::study::survey::{Axis, Over, Place, VariedNumber};
 
-/// Where the starts are at each value.
+/// Starts at each value.
 #[derive(Clone, Debug)]
 pub enum Begun {
-    /// In a grid of so many cells along the positions and the velocities, over these ranges, or over those of the value's own orbits.
+    /// A grid of so many cells along the positions and the velocities, over these ranges, or over ranges from the orbits of each value.
     Grid([usize; 2], [Option<[f64; 2]>; 2]),
-    /// These.
+    /// Given states.
     Given(Vec<State>),
 }
 
-/// What starts come to at each of several values: the document of `basins --over --summary`.
+/// The motions that starts end on at each of several values: the document of `basins --over --summary`.
 #[derive(Clone, Debug)]
 pub struct BasinsOver {
     /// The model's name.
     pub model: String,
-    /// What varies.
+    /// The number that varies.
     pub over: VariedNumber,
-    /// The lowest and the highest value.
+    /// Lowest and highest value.
     pub range: [f64; 2],
-    /// The section, rad, in `[0, 2 pi)`.
+    /// Cam angle of the section, rad, in `[0, 2 pi)`.
     pub cam_angle: f64,
-    /// For how long runs were followed.
+    /// Budget of each run.
     pub budget: Budget,
-    /// What was found at each value.
+    /// The basins at each value.
     pub at: Vec<BasinsAt>,
     /// Seconds that the runs took.
     pub wall_s: f64,
@@ -49,12 +49,12 @@ document!(BasinsOver as it {
     wall_s: it.wall_s,
 });
 
-/// What the starts of one value come to.
+/// The motions that the starts of one value end on.
 #[derive(Clone, Debug)]
 pub struct BasinsAt {
-    /// Where.
+    /// Place of the value.
     pub place: Place,
-    /// What was found, or why nothing was.
+    /// The basins, or why there are none.
     pub found: Result<Basins, String>,
 }
 
@@ -68,7 +68,7 @@ document!(BasinsAt as it {
 });
 
 impl BasinsAt {
-    /// Why nothing, or one of the starts, could be run.
+    /// Reason why nothing, or one of the starts, could be run.
     pub fn failure(&self) -> Option<&str> {
         match &self.found {
             Ok(found) => found.failure.as_deref(),
@@ -77,20 +77,20 @@ impl BasinsAt {
     }
 }
 
-/// A kind of motion, with its revolutions and impacts where it repeats.
+/// A kind of motion, with its revolutions and impacts if it repeats.
 pub type MotionKind = (Kind, Option<(u64, u64)>);
 
-/// The share of the starts that end on motions of one kind and period, at each value: none where nothing was found.
+/// The share of the starts that end on motions of one kind and period, at each value at which basins were found.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SharesOf {
     /// The motion.
     pub motion: MotionKind,
-    /// The value, and the share.
+    /// Each value, with the share.
     pub shares: Vec<[f64; 2]>,
 }
 
 impl BasinsOver {
-    /// The shares by kind and period, that of most starts first; 0 where no start ends on such a motion.
+    /// Returns the shares by kind and period, the motion of most starts first. The share is 0 where no start ends on such a motion.
     pub fn shares(&self) -> Vec<SharesOf> {
         let found = || self.at.iter().filter_map(|at| Some((at.place.across(), &at.found.as_ref().ok()?.parts)));
         let of = |part: &Basin| (part.ending.kind(), part.ending.period());
@@ -109,7 +109,7 @@ impl BasinsOver {
         all
     }
 
-    /// What starts on the section at `cam_angle`, rad, come to at each value; `watch` is told value by value.
+    /// Finds the motions that starts on the section at `cam_angle`, rad, end on at each value. `watch` is notified at each value.
     pub fn new(
         over: &Over<'_>,
         axis: &Axis,

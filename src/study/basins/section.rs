@@ -1,4 +1,4 @@
-//! The starts on a section of a model, the orbits that cross it, and the curves that part the basins.
+//! The starts on a section of a model, the orbits that cross it, and the curves that separate the basins.
 
 use serde::Serialize;
 
@@ -10,7 +10,7 @@ use crate::orbit::{Course, PeriodicOrbit, Search, search};
 use crate::section::StroboscopicMap;
 use crate::study::{StudyError, machine};
 
-/// What a grid of starts came to: the document of `basins --summary`.
+/// The basins of a grid of starts: the document of `basins --summary`.
 #[derive(Clone, Debug, Serialize)]
 pub struct Summary {
     schema: &'static str,
@@ -18,7 +18,7 @@ pub struct Summary {
     pub model: String,
     /// Speed, rpm.
     pub rpm: f64,
-    /// The starts and what they end on.
+    /// The starts, and the motions that they end on.
     #[serde(flatten)]
     pub basins: Basins,
     /// Seconds that the runs took.
@@ -26,13 +26,13 @@ pub struct Summary {
 }
 
 impl Summary {
-    /// Of `basins` of a model at a speed.
+    /// Builds the summary of `basins` for a model at a speed, rpm.
     pub fn new(model: &Model, rpm: f64, basins: Basins, wall_s: f64) -> Self {
         Self { schema: "corner-impact/basins/1", model: model.name.clone(), rpm, basins, wall_s }
     }
 }
 
-/// The section of a model at one cam angle, with the orbits of one impact a revolution.
+/// The section of a model at one cam angle, with its orbits of one impact a revolution.
 #[derive(Clone, Debug)]
 pub struct BasinSection {
     follower: Follower,
@@ -41,26 +41,26 @@ pub struct BasinSection {
     orbits: Vec<PeriodicOrbit>,
 }
 
-/// What there is to see on a section beside the basins.
+/// Orbits and curves that a picture of a section shows beside the basins.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BasinBoundary {
-    /// Where the stable orbits that starts end on cross it.
+    /// States where the stable orbits that starts end on cross the section.
     pub stable: Vec<State>,
-    /// Where the saddles do.
+    /// States where the saddles cross the section.
     pub saddles: Vec<State>,
-    /// Their stable manifolds, which part the basins.
+    /// Stable manifolds of the saddles, which separate the basins.
     pub curves: Vec<Curve>,
 }
 
 impl BasinSection {
-    /// The section at `cam_angle`, rad, in `[0, 2 pi)`.
+    /// Builds the section at `cam_angle`, rad, in `[0, 2 pi)`.
     pub fn new(model: &Model, rpm: f64, cam_angle: f64) -> Result<Self, StudyError> {
         let machine = machine(model, rpm)?;
         let orbits = search(&machine, &Search { revolutions: 1, impacts: Some(1) })?;
         Ok(Self { follower: model.follower, map: StroboscopicMap { machine, cam_angle }, orbits })
     }
 
-    /// Where an orbit of impacts crosses it.
+    /// State where an orbit with impacts crosses the section.
     fn crossing(&self, orbit: &PeriodicOrbit) -> Option<State> {
         match &orbit.course {
             Course::Impacts(cycle) => Some(cycle.at_section(&self.map.machine, self.map.cam_angle).0),
@@ -68,8 +68,8 @@ impl BasinSection {
         }
     }
 
-    /// A grid of starts; where no range is given, the positions go from the cam to twice as far from it as any of the orbits
-    /// does, and the velocities over three times the range of the orbits' and the cam's.
+    /// Builds a grid of starts. Without a given range, the positions go from the cam to twice as far from it as its top or the farthest
+    /// orbit. The velocities then cover three times the range of the orbits' and the cam's velocities.
     pub fn grid(
         &self,
         cells: [usize; 2],
@@ -85,7 +85,7 @@ impl BasinSection {
             range = [range[0].min(velocity), range[1].max(velocity)];
         }
         if range[0] == range[1] {
-            // Nothing but the cam at rest there: as fast as the cam's whole height in a radian.
+            // There is only the cam at rest: take the speed of the cam's whole height in a radian.
             let fast = machine.angular_velocity() * (machine.cam().top() - machine.cam().lowest().value);
             range = [-fast, fast];
         }
@@ -97,7 +97,7 @@ impl BasinSection {
         if is_range(positions) && is_range(velocities) { Ok(grid) } else { Err(StudyError::NoStarts) }
     }
 
-    /// What parts the basins, as finely as a picture of the grid shows it.
+    /// Returns the orbits and curves that separate the basins, to the resolution of a picture of the grid.
     pub fn border(&self, grid: &Grid, basins: &Basins) -> BasinBoundary {
         let cycles = self.orbits.iter().filter_map(|orbit| match &orbit.course {
             Course::Impacts(cycle) => Some(cycle),

@@ -1,7 +1,8 @@
-//! Which corner impacts are proved to exist, with what, and which are not; and what else the same script proves.
+//! Proofs of corner impacts by a script: which corner impacts are proved to exist, and which are refused. The same script also proves
+//! orbits and resting motions.
 //!
-//! Where to look is found here, in doubles; the proof is made by `derivations/certify.py`, in balls, from the numbers of the
-//! model file. It believes nothing of where to look, and a place that is off is refused.
+//! Candidates are found here, in doubles. `derivations/certify.py` makes the proof, in balls, from the numbers of the model file. The
+//! proof does not rely on the candidate: a wrong place is refused.
 
 mod orbits;
 mod resting;
@@ -31,7 +32,7 @@ pub use orbits::{
 };
 pub use resting::{NextRelease, ProvedRelease, ProvedResting, Round, proved_resting};
 
-/// Bits that are enough for more digits than anyone prints.
+/// Precision in bits, enough for more digits than are ever printed.
 pub const BITS: u32 = 128;
 
 /// The certificates of a range of speeds: the document `corner-impact/certify/1`.
@@ -41,11 +42,11 @@ pub struct Certified {
     pub model: ModelLabel,
     /// The range of speeds.
     pub range: Study,
-    /// Bits that the balls were computed with.
+    /// Precision of the balls, bits.
     pub bits: u32,
-    /// What is proved, by rising speed.
+    /// Proved corner impacts, by rising speed.
     pub corner_impacts: Vec<Certificate>,
-    /// What is not, by rising speed.
+    /// Corner impacts without a proof, by rising speed.
     pub refused: Vec<Unproved>,
 }
 
@@ -62,7 +63,7 @@ document!(Certified as it {
     agrees: it.agrees(),
 });
 
-/// Hypotheses of the script's proofs, with the steps that they take out of the cam.
+/// Lists the hypotheses of the script's proofs, with the steps that they remove from the cam.
 fn hypotheses(assumed: Option<Assumed>) -> Vec<String> {
     let numbers = "the machine's numbers are the decimals of its model file, but for angles of a table in radians, which are the doubles \
                    nearest to them in degrees";
@@ -77,12 +78,12 @@ fn hypotheses(assumed: Option<Assumed>) -> Vec<String> {
 }
 
 impl Certified {
-    /// Hypotheses of the proofs; empty where nothing is proved.
+    /// Hypotheses of the proofs; empty if nothing is proved.
     pub fn hypotheses(&self) -> Vec<String> {
         self.corner_impacts.first().map(Certificate::hypotheses).unwrap_or_default()
     }
 
-    /// Whether every corner impact that was found where the cam's acceleration jumps is proved.
+    /// Whether every corner impact found where the cam's acceleration jumps is proved.
     pub fn agrees(&self) -> bool {
         !self.refused.iter().any(|refused| refused.was_found)
     }
@@ -91,11 +92,11 @@ impl Certified {
 /// A corner impact without a certificate.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unproved {
-    /// Where it was looked for, rpm.
+    /// Speed at which it was looked for, rpm.
     pub speed_rpm: f64,
-    /// The corner, rad.
+    /// Cam angle of the corner, rad.
     pub cam_angle: f64,
-    /// What the proof fails at.
+    /// Reason why the proof fails.
     pub why: String,
     /// Whether a search in doubles finds a border collision there.
     pub was_found: bool,
@@ -109,8 +110,8 @@ document!(Unproved as it {
     was_found: it.was_found,
 });
 
-/// What is proved of one corner impact: there is one periodic orbit of these numbers, with these maps and this verdict, and no
-/// other whose period and impacts differ from its own by up to `alone_within` of them.
+/// Proof of one corner impact: there is one periodic orbit of these numbers, with these maps and this verdict. No other orbit has a
+/// period and impacts that differ from its own by up to `alone_within` of them.
 ///
 /// Speeds in rpm, angles in rad, times in s, lengths in m; the state is the paper's, from the spring's equilibrium.
 #[derive(Clone, Debug, Deserialize, Serialize)]
@@ -138,7 +139,7 @@ pub struct Certificate {
     pub proved: bool,
 }
 
-/// An impact, the first on the corner: it is on its piece of the cam, and no contact comes before it.
+/// An impact; the first is on the corner. It lies on its piece of the cam, and no contact comes before it.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[expect(missing_docs, reason = "the names say what each is")]
 pub struct ProvedImpact {
@@ -151,24 +152,25 @@ pub struct ProvedImpact {
 /// One side of the map.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct ProvedSide {
-    /// By rows.
+    /// Matrix A, by rows.
     #[serde(rename = "A")]
     pub a: [[Ball; 2]; 2],
-    /// By the period.
+    /// Derivatives by the period.
     #[serde(rename = "B")]
     pub b: [Ball; 2],
-    /// The one with the larger real part first, of a pair the one above the axis.
+    /// The eigenvalue with the larger real part first; of a complex pair, the one above the real axis.
     pub eigenvalues: [ProvedEigenvalue; 2],
-    /// At which speeds the machine has this side's fixed point, near the corner impact.
+    /// Speeds at which the machine has this side's fixed point, near the corner impact.
     pub fixed_point_exists_for: Speeds,
     /// Whether both eigenvalues are inside the unit circle.
     pub stable: bool,
-    /// How far from the corner impact its fixed point is followed; none where that is nowhere.
+    /// Neighbourhood of the corner impact in which the side's fixed point is followed; none if there is no such neighbourhood.
     pub followed: Option<Followed>,
 }
 
-/// For every period so near to T\* a side has one fixed point with its impact so near to the corner. Its state is so near to x\*,
-/// and it is one of the machine for the periods on the side of T\* that the verdict says.
+/// Neighbourhood in which a side's fixed point is followed. For every period within `period_within_s` of T\*, the side has exactly one
+/// fixed point with its impact within `cam_angle_within_rad` of the corner. Its state is within `state_within` of x\*. The machine has it
+/// for the periods on the side of T\* that the verdict names.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[expect(missing_docs, reason = "the names say what each is")]
 pub struct Followed {
@@ -177,7 +179,7 @@ pub struct Followed {
     pub state_within: [f64; 2],
 }
 
-/// An eigenvalue; proved to be real where the imaginary part is 0.
+/// An eigenvalue; proved to be real if the imaginary part is 0.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[expect(missing_docs, reason = "real and imaginary part")]
 pub struct ProvedEigenvalue {
@@ -194,7 +196,7 @@ pub struct ProvedCondition {
     pub sign: i8,
 }
 
-/// By how much at most polynomials of a cam miss each other where they meet, as they are typed; it is taken out.
+/// Largest steps between polynomials of a cam, as typed, where they meet. The proofs remove these steps.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 #[expect(missing_docs, reason = "the names say what each is")]
 pub struct Assumed {
@@ -208,7 +210,7 @@ impl Certificate {
         hypotheses(self.assumed)
     }
 
-    /// The middles of the map's balls.
+    /// Map with the middles of the balls.
     pub fn map(&self) -> CornerMap {
         self.sides.map(|side| SideMap {
             a: Matrix2::from_fn(|row, column| side.a[row][column].value()),
@@ -216,7 +218,7 @@ impl Certificate {
         })
     }
 
-    /// What is proved besides A and B, by the middles.
+    /// Proved quantities besides A and B, by the middles of their balls.
     pub(crate) fn own(&self) -> Own {
         let line = |[first, second, last]: [&Ball; 3]| (RowVector2::new(first.value(), second.value()), last.value());
         let eigenvalue = |it: &ProvedEigenvalue| Eigenvalue { re: it.re.value(), im: it.im.value() };
@@ -228,7 +230,7 @@ impl Certificate {
         }
     }
 
-    /// Holds the theorem of robust chaos at these speeds against the proved matrices, and says so where its hypotheses follow.
+    /// Checks the theorem of robust chaos at these speeds against the proved matrices, and marks it as proved if its hypotheses follow.
     pub(crate) fn prove(&self, chaos: &mut RobustChaos, speeds: Speeds) {
         let other = if chaos.saddle == Side::Minus { Side::Plus } else { Side::Minus };
         let sides = [chaos.saddle, other].map(|side| self.sides.of(side));
@@ -237,17 +239,17 @@ impl Certificate {
         }
     }
 
-    /// Holds the danger at the corner impact against the proved matrices, border and fixed points, and takes note of what follows.
+    /// Checks the danger at the corner impact against the proved matrices, border and fixed points, and records what follows.
     pub(crate) fn prove_danger(&self, danger: &mut Danger, local: &LocalMap) {
         let sides = [&self.sides.minus, &self.sides.plus];
         let matrices = sides.map(|side| side.a.each_ref().map(|row| row.each_ref().map(Ball::interval)));
         let [e1, e2, _] = self.border.each_ref().map(Ball::interval);
-        // Two stable sides have det(I - A) > 0 both, and so their fixed points at speeds of the two sides.
+        // Two stable sides both have det(I - A) > 0, and so their fixed points exist at speeds of the two sides.
         let is_attracting = sides.iter().all(|side| side.stable);
         danger.prove(Homogeneous::new(matrices, [e1, e2], local.units()).diverging(true), is_attracting);
     }
 
-    /// The fewest digits to which any of speed, state and map is proved; of what is 0 but for the ball's radius no digit is.
+    /// Fewest digits to which speed, state or map is proved. Numbers without a proved digit, such as a 0 with a radius, do not count.
     pub fn digits(&self) -> usize {
         let sides = [&self.sides.minus, &self.sides.plus];
         let map = sides.into_iter().flat_map(|side| side.a.iter().flatten().chain(&side.b));
@@ -256,16 +258,16 @@ impl Certificate {
     }
 }
 
-/// Why there is no answer.
+/// Reason why there is no answer.
 #[derive(Debug, thiserror::Error)]
 pub enum CertifyError {
-    /// The model or its cam.
+    /// The model or its cam is invalid.
     #[error("{0}")]
     Model(#[from] ModelError),
-    /// The range.
+    /// The range is invalid.
     #[error(transparent)]
     Range(#[from] RangeError),
-    /// Python, or the script.
+    /// Python or the script failed.
     #[error("{0}")]
     Python(String),
 }
@@ -276,9 +278,9 @@ impl From<PythonError> for CertifyError {
     }
 }
 
-/// Proves every corner impact that a search of `range` finds for orbits of `revolutions`, and everything that it refuses.
+/// Tries to prove every corner impact that a search of `range` finds for orbits of `revolutions`, and those that the search refuses.
 ///
-/// What is refused is handed on with its speed alone, so that a proof decides it again; it is told where the acceleration jumps.
+/// A refused corner impact where the acceleration jumps is passed on with its speed alone, so that the proof decides it anew.
 pub fn certify(
     model: &Model,
     range: Study,
@@ -312,7 +314,7 @@ pub fn certify(
     Ok(Certified { model: ModelLabel::of(model), range, bits, corner_impacts, refused })
 }
 
-/// What the script says of one place.
+/// The script's answer for one place.
 #[derive(Debug, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(super) enum Outcome {
@@ -320,7 +322,7 @@ pub(super) enum Outcome {
     Refused(String),
 }
 
-/// Has the script prove what it can of `candidates`, in their order.
+/// Lets the script prove the `candidates`. Returns the answers in the same order.
 pub(super) fn prove(model: &Model, candidates: Vec<Value>, bits: u32) -> Result<Vec<Outcome>, CertifyError> {
     #[derive(Deserialize)]
     struct Answer {
@@ -329,7 +331,7 @@ pub(super) fn prove(model: &Model, candidates: Vec<Value>, bits: u32) -> Result<
     Ok(ask::<Answer>(model, bits, ("candidates", json!(candidates)))?.results)
 }
 
-/// What the script says of a model, asked for by a field of its own.
+/// Runs the script on a model with one request field. Returns its answer.
 fn ask<T: DeserializeOwned>(model: &Model, bits: u32, (field, value): (&str, Value)) -> Result<T, CertifyError> {
     if is_beyond(model) {
         let allowed =
@@ -342,12 +344,12 @@ fn ask<T: DeserializeOwned>(model: &Model, bits: u32, (field, value): (&str, Val
     Ok(python::run("certify.py", &document)?)
 }
 
-/// Whether a model has a cam of which nothing is proved.
+/// Whether proofs do not cover the model's cam.
 pub(super) fn is_beyond(model: &Model) -> bool {
     model.is_smoothed() || model.table().is_some_and(|table| table.rows.len() > MOST_PROVED_ROWS)
 }
 
-/// Where a corner impact is thought to be, its flights in order from the corner on.
+/// Builds the candidate for a corner impact: its place, and its flights in order from the corner on.
 pub(super) fn candidate(model: &Model, cam: &Cam, at: &CornerImpact) -> serde_json::Value {
     let machine = Machine::new(cam.clone(), &model.follower, at.angular_velocity());
     let count = at.cycle.impacts.len();

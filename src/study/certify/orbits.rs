@@ -11,19 +11,19 @@ use crate::model::Model;
 /// The periodic orbits of one impact and of two in one revolution at a speed, found and proved by the script alone.
 #[derive(Clone, Debug, Deserialize)]
 pub struct ProvedOrbits {
-    /// Speed, rpm; the decimal that it is written as.
+    /// Speed, rpm; the decimal as written.
     #[serde(skip)]
     pub speed_rpm: f64,
-    /// Bits that the balls were computed with.
+    /// Precision of the balls, bits.
     #[serde(skip)]
     pub bits: u32,
-    /// Each once.
+    /// The orbits, each once.
     pub orbits: Vec<ProvedOrbit>,
-    /// The numbers of impacts for which there are proved to be no others.
+    /// Numbers of impacts for which the list of orbits is proved complete.
     pub complete: Vec<usize>,
-    /// Where there may be others.
+    /// Places where there may be further orbits.
     pub undecided: Vec<UndecidedOrbit>,
-    /// What is taken out of the cam.
+    /// Steps removed from the cam.
     pub assumed: Option<Assumed>,
 }
 
@@ -46,16 +46,16 @@ impl ProvedOrbits {
     }
 }
 
-/// Where it is not decided whether there is an orbit, or whether it is one of the machine.
+/// A place where the script does not decide whether there is an orbit, or whether the machine has it.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[expect(missing_docs, reason = "the names say what each is")]
 pub struct UndecidedOrbit {
     pub impacts: usize,
-    /// From where to where each impact may be, rad.
+    /// Range of each impact's cam angle, rad.
     pub cam_angles_rad: Vec<[f64; 2]>,
 }
 
-/// A periodic orbit: its flights are clear of the cam, and it is alone near its impacts.
+/// A periodic orbit. Its flights are clear of the cam, and no other orbit is near its impacts.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[expect(missing_docs, reason = "the names say what each is")]
 pub struct ProvedOrbit {
@@ -64,7 +64,7 @@ pub struct ProvedOrbit {
     pub kind: OrbitKind,
 }
 
-/// Where a flight of an orbit starts: the velocity after the impact, relative to the cam.
+/// Start of a flight of an orbit: the velocity after the impact, relative to the cam.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[expect(missing_docs, reason = "the names say what each is")]
 pub struct ProvedStart {
@@ -72,46 +72,46 @@ pub struct ProvedStart {
     pub relative_velocity_m_s: Ball,
 }
 
-/// What the multipliers of an orbit are proved to be.
+/// Kind of an orbit by its multipliers, as proved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum OrbitKind {
-    /// Both inside of the unit circle.
+    /// Both are inside the unit circle.
     Stable,
     /// One is above 1.
     Saddle,
     /// One is below -1.
     Flip,
-    /// A pair outside of the unit circle.
+    /// A complex pair is outside the unit circle.
     Unstable,
-    /// A pair on the unit circle: the follower loses nothing.
+    /// A complex pair is on the unit circle: the follower loses nothing.
     Neutral,
 }
 
 named!(OrbitKind, OrbitEvent);
 
-/// All orbits of one impact and of two in one revolution at a speed, rpm.
+/// Finds and proves all orbits of one impact and of two in one revolution at a speed, rpm.
 pub fn proved_orbits(model: &Model, speed_rpm: f64, bits: u32) -> Result<ProvedOrbits, CertifyError> {
     let found: ProvedOrbits = ask(model, bits, ("orbits_at_rpm", json!(speed_rpm)))?;
     Ok(ProvedOrbits { speed_rpm, bits, ..found })
 }
 
-/// How many orbits of one impact in one revolution there are at every speed of a range, found and proved by the script alone.
+/// Number of orbits of one impact in one revolution at every speed of a range, found and proved by the script alone.
 #[derive(Clone, Debug, Deserialize)]
 pub struct ProvedCounts {
     /// The range of speeds, rpm.
     #[serde(skip)]
     pub range_rpm: [f64; 2],
-    /// Bits that the balls were computed with.
+    /// Precision of the balls, bits.
     #[serde(skip)]
     pub bits: u32,
-    /// By rising speed, from one event to the next.
+    /// The numbers of orbits, by rising speed, from one event to the next.
     pub counts: Vec<ProvedCount>,
     /// Speeds, rpm, at which the number is not decided.
     pub undecided: Vec<[f64; 2]>,
-    /// By rising speed.
+    /// Events, by rising speed.
     pub events: Vec<ProvedEvent>,
-    /// What is taken out of the cam.
+    /// Steps removed from the cam.
     pub assumed: Option<Assumed>,
 }
 
@@ -134,47 +134,47 @@ impl ProvedCounts {
     }
 }
 
-/// The number of orbits at every speed between two; at an event, whose ball says where it is, the nearest doubles.
+/// The number of orbits at every speed between two. At an event the ends are the doubles nearest to its ball.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[expect(missing_docs, reason = "the names say what each is")]
 pub struct ProvedCount {
     pub from_rpm: f64,
     pub to_rpm: f64,
     pub one_impact_orbits: usize,
-    /// Of each of them; none where that is not decided.
+    /// Kind of each orbit; none if not decided.
     pub kinds: Vec<Option<OrbitKind>>,
 }
 
 /// The one speed, near its ball, at which an orbit appears, vanishes or changes.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct ProvedEvent {
-    /// What happens.
+    /// Kind of event.
     pub kind: OrbitEvent,
     /// Speed, rpm.
     pub speed_rpm: Ball,
-    /// Of the impact, rad.
+    /// Cam angle of the impact, rad.
     pub cam_angle_rad: Ball,
-    /// The kinds of all orbits at the speeds before it; none where their number is not decided.
+    /// Kinds of all orbits at the speeds before the event; none if their number is not decided.
     pub before: Option<Vec<Option<OrbitKind>>>,
-    /// And after it.
+    /// Kinds of all orbits at the speeds after the event, likewise.
     pub after: Option<Vec<Option<OrbitKind>>>,
 }
 
-/// What happens to an orbit of one impact as the speed rises.
+/// Event of an orbit of one impact as the speed rises.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum OrbitEvent {
-    /// Its impact is on a corner of the cam.
+    /// The impact is on a corner of the cam.
     CornerImpact,
-    /// Two orbits are one.
+    /// Two orbits merge.
     Fold,
     /// A multiplier is -1.
     Flip,
-    /// Its flight touches the cam.
+    /// The flight grazes the cam.
     Graze,
 }
 
-/// The number of orbits of one impact in one revolution at every speed of a range, rpm.
+/// Finds and proves the number of orbits of one impact in one revolution at every speed of a range, rpm.
 pub fn proved_counts(model: &Model, range_rpm: [f64; 2], bits: u32) -> Result<ProvedCounts, CertifyError> {
     let found: ProvedCounts = ask(model, bits, ("orbits_over_rpm", json!(range_rpm)))?;
     Ok(ProvedCounts { range_rpm, bits, ..found })

@@ -8,23 +8,23 @@ use crate::ball::Ball;
 use crate::known::Evidence;
 use crate::model::Model;
 
-/// What becomes of a follower that rests on the cam at a speed.
+/// Long-run behaviour of a follower that rests on the cam at a speed.
 #[derive(Clone, Debug, Deserialize)]
 pub struct ProvedResting {
-    /// Speed, rpm; the decimal that it is written as.
+    /// Speed, rpm; the decimal as written.
     #[serde(skip)]
     pub speed_rpm: f64,
-    /// Bits that the balls were computed with: as many as it took.
+    /// Precision of the balls, bits: as many as it took.
     pub bits: u32,
-    /// From where to where the cam presses against a follower that rests, rad.
+    /// Ranges of cam angle, rad, in which the cam presses against a resting follower.
     pub pressed_rad: Vec<[f64; 2]>,
-    /// Where it lets go.
+    /// Places where the cam releases the follower.
     pub releases: Vec<ProvedRelease>,
-    /// Impacts up to which a rest was looked for.
+    /// Largest number of impacts within which a rest was looked for.
     pub looked_at: u64,
-    /// The motions that repeat.
+    /// The periodic motions.
     pub periodic: Vec<Round>,
-    /// What is taken out of the cam.
+    /// Steps removed from the cam.
     pub assumed: Option<Assumed>,
 }
 
@@ -41,29 +41,29 @@ document!(ProvedResting as it {
     hypotheses: it.hypotheses(),
 });
 
-/// A place where the cam lets go of the follower.
+/// A place where the cam releases the follower.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct ProvedRelease {
-    /// Where, rad.
+    /// Cam angle, rad.
     pub cam_angle_rad: Ball,
-    /// What comes after it; none where that is not at rest again within the impacts that were looked at.
+    /// The next release; none if the follower does not rest again within the impacts examined.
     pub next: Option<NextRelease>,
 }
 
-/// From a release to the next.
+/// The way from one release to the next.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct NextRelease {
-    /// Impacts before those without end, by which it comes to rest.
+    /// Number of impacts before the infinite sequence that ends at rest.
     pub impacts: u64,
-    /// Where it is at rest at the latest, rad.
+    /// Cam angle by which the follower rests, rad.
     pub rests_by_rad: f64,
-    /// Which release is the next.
+    /// Index of the next release.
     pub release: usize,
-    /// Turns of the cam from the one to the other, counted by whole ones: those between the revolutions that they are in.
+    /// Turns of the cam from one release to the next: the difference of the revolutions that they are in.
     pub revolutions: u64,
 }
 
-/// A motion that repeats: from release to release, and round.
+/// A motion that repeats, from release to release.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[expect(missing_docs, reason = "the names say what each is")]
 pub struct Round {
@@ -80,13 +80,13 @@ impl ProvedResting {
         all
     }
 
-    /// Whether every motion that rests is proved to be periodic some time later.
+    /// Whether every resting motion is proved to become periodic.
     pub fn all_repeat(&self) -> bool {
         self.releases.iter().all(|release| release.next.is_some())
     }
 }
 
-/// What becomes of a follower that rests on the cam at a speed, rpm.
+/// Finds and proves the behaviour of a follower that rests on the cam at a speed, rpm.
 pub fn proved_resting(model: &Model, speed_rpm: f64, bits: u32) -> Result<ProvedResting, CertifyError> {
     let found: ProvedResting = ask(model, bits, ("resting_at_rpm", json!(speed_rpm)))?;
     Ok(ProvedResting { speed_rpm, ..found })

@@ -1,4 +1,4 @@
-//! What a machine does over two of its numbers: at each point of a grid, what one run comes to.
+//! A chart over two numbers of a model: at each point of a grid, the long-run motion of one run.
 
 pub mod store;
 
@@ -12,43 +12,43 @@ use crate::orbit::long_run::{Budget, Kind};
 use crate::progress::Watch;
 use crate::study::survey::{Axis, GridResults, Point, Start, Survey, SurveyError, SweepError};
 
-/// A grid over two numbers of a model, and how it is run.
+/// A grid over two numbers of a model, with the settings of its runs.
 #[derive(Clone, Debug)]
 pub struct Chart {
     /// The model.
     pub model: Model,
     survey: Survey,
-    /// Across.
+    /// Horizontal axis.
     pub x: Axis,
-    /// Up.
+    /// Vertical axis.
     pub y: Axis,
-    /// Where every run starts.
+    /// Start of every run.
     pub start: Start,
-    /// For how long each goes on.
+    /// Budget of each run.
     pub budget: Budget,
 }
 
-/// What was found over a grid.
+/// Results over a grid.
 #[derive(Clone, Debug)]
 pub struct Charted {
     /// The grid.
     pub chart: Chart,
-    /// Row by row, the first axis fastest; the reason where a point has no motion.
+    /// Results row by row, the first axis fastest; the reason if a point has no motion.
     pub points: GridResults<Point>,
-    /// Seconds of the threads that ran it, and from its beginning to its end.
+    /// Seconds of the threads that ran it, and of wall-clock time.
     pub times: [f64; 2],
 }
 
-/// What was found for a store of a chart.
+/// Results of filling a store of a chart.
 #[derive(Clone, Debug)]
 pub struct Filled {
     /// The chart.
     pub chart: Chart,
-    /// Points that were run.
+    /// Number of points that were run.
     pub points: usize,
-    /// Its blocks.
+    /// Blocks of the store.
     pub blocks: Blocks,
-    /// Seconds of the threads that ran them, and of the day.
+    /// Seconds of the threads that ran them, and of wall-clock time.
     pub times: [f64; 2],
 }
 
@@ -62,18 +62,18 @@ document!(Filled as it {
     wall_s: it.times[1],
 });
 
-/// The blocks of a store.
+/// Numbers of blocks of a store.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Blocks {
-    /// Computed now.
+    /// Blocks computed now.
     pub computed: usize,
-    /// Done, by whomever.
+    /// Blocks done, by any process.
     pub done: usize,
-    /// All.
+    /// All blocks.
     pub total: usize,
 }
 
-/// How many points of one kind there are; none is for those that failed.
+/// Number of points of each kind; the kind is none for those that failed.
 type Counts = Vec<(Option<Kind>, usize)>;
 
 // A class of points is a kind of motion, or that there is none.
@@ -117,13 +117,13 @@ impl<'a> AxisDocument<'a> {
     }
 }
 
-/// The name of a class of points in files.
+/// Returns the name of a class of points in files.
 pub fn class(kind: Option<Kind>) -> String {
     kind.map_or_else(|| "failed".into(), |kind| kind.to_string())
 }
 
 impl Chart {
-    /// A chart of `model` over two numbers, or why there is none; at `rpm` where neither of them is the speed.
+    /// Builds a chart of `model` over two numbers; at `rpm` if neither of them is the speed.
     pub fn new(
         model: &Model,
         rpm: Option<f64>,
@@ -135,19 +135,19 @@ impl Chart {
         Ok(Self { model: model.clone(), survey, x, y, start, budget })
     }
 
-    /// The speed of all points, rpm; none where it varies.
+    /// The speed of all points, rpm; none if it varies.
     pub fn speed(&self) -> Option<f64> {
         self.survey.speed()
     }
 
-    /// Runs every point on `threads` threads (all there are for `None`), told to `watch` row by row.
+    /// Runs every point on `threads` threads (all there are for `None`). `watch` is notified row by row.
     pub fn run(self, threads: Option<usize>, watch: &dyn Watch) -> Result<Charted, SweepError> {
         let (points, times) = self.part([0..self.x.values.len(), 0..self.y.values.len()], threads, watch)?;
         Ok(Charted { chart: self, points, times })
     }
 
-    /// The points of some columns and rows, row by row, and the seconds of the threads that ran them, and from the beginning to
-    /// the end.
+    /// Runs the points of some columns and rows. Returns them row by row, with the seconds of the threads that ran them and of wall-clock
+    /// time.
     pub fn part(
         &self,
         part: [Range<usize>; 2],
@@ -159,7 +159,7 @@ impl Chart {
 }
 
 impl Charted {
-    /// How many points there are of each kind that there is, in the order of the kinds; those that failed come last.
+    /// Returns the number of points of each kind that occurs, in the order of the kinds. The failed points come last.
     pub fn counts(&self) -> Counts {
         let kinds = [Kind::Stays, Kind::Periodic, Kind::Resting, Kind::Chaotic, Kind::Undecided].map(Some);
         let number = |kind: Option<Kind>| {
@@ -168,12 +168,12 @@ impl Charted {
         kinds.into_iter().chain([None]).map(|kind| (kind, number(kind))).filter(|(_, number)| *number > 0).collect()
     }
 
-    /// Revolutions that the runs were followed for, all together.
+    /// Revolutions that the runs were followed for, in total.
     pub fn followed(&self) -> u64 {
         self.points.iter().flatten().map(|point| point.followed).sum()
     }
 
-    /// Why the first point that failed did.
+    /// Reason why the first failed point failed.
     pub fn failure(&self) -> Option<&str> {
         self.points.iter().find_map(|point| point.as_ref().err()).map(String::as_str)
     }

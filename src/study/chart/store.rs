@@ -1,8 +1,8 @@
-//! A chart as a zarr store of version 3: a folder that xarray and its like read, block by block, and that several
-//! processes may fill at once.
+//! A chart as a zarr store of version 3: a folder that xarray and similar tools read, block by block. Several processes may fill it at
+//! once.
 //!
-//! Each variable is an array of little-endian numbers without compression; a block of it is one file, which is there whole
-//! or not at all. A block whose files are all there is done: to go on, to share the work and to put it together is the same.
+//! Each variable is an array of little-endian numbers without compression. A block of it is one file, which exists completely or not at
+//! all. A block is done if all its files exist. So resuming, sharing the work and merging need no further record.
 
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
@@ -17,38 +17,38 @@ use crate::orbit::long_run::Kind;
 use crate::progress::{Unwatched, Watch};
 use crate::study::survey::{Axis, Placed, Point, Start, SweepError};
 
-/// A store of a chart, in a folder.
+/// A store of a chart in a folder.
 #[derive(Clone, Copy, Debug)]
 pub struct Store<'a> {
     folder: &'a Path,
     chart: &'a Chart,
-    /// Columns and rows of a block.
+    /// Number of columns and rows of a block.
     sides: [usize; 2],
 }
 
-/// Why there is no store, or none of its blocks.
+/// Reason why there is no store, or not one of its blocks.
 #[derive(Debug, thiserror::Error)]
 #[expect(missing_docs, reason = "the message says what each is")]
 pub enum StoreError {
-    /// It is another chart's.
+    /// The store belongs to another chart.
     #[error("{folder}: holds another chart: {how}")]
     Another { folder: String, how: String },
-    /// There is none.
+    /// The folder holds no store.
     #[error("{folder}: no store of a chart: {why}")]
     None { folder: String, why: String },
-    /// Blocks have no such sides.
+    /// The sides of a block are not allowed.
     #[error("blocks of {columns} x {rows} points: they have 1 or more on each side, and {most} or fewer in all")]
     Sides { columns: usize, rows: usize, most: usize },
-    /// It has no such block.
+    /// The store has no such block.
     #[error("no block {block}: the store has {total}, counted from 0")]
     NoBlock { block: usize, total: usize },
-    /// A folder of it cannot be.
+    /// A folder of the store cannot be made.
     #[error("{folder}: cannot be made: {error}")]
     Folder { folder: String, error: std::io::Error },
-    /// A file of it cannot be.
+    /// A file of the store cannot be read or written.
     #[error(transparent)]
     File(#[from] FileError),
-    /// What a file of it holds is not on the disk.
+    /// The contents of a file cannot be written to the disk.
     #[error(transparent)]
     Write(#[from] std::io::Error),
     /// The chart cannot be run.
@@ -56,12 +56,12 @@ pub enum StoreError {
     Chart(#[from] SweepError),
 }
 
-/// The part of the blocks that a process sees to: those whose number, counted from 1, leaves `index` if divided by `of`.
+/// The share of the blocks that one process fills: those whose number, counted from 1, is `index` modulo `of`.
 #[derive(Clone, Copy, Debug)]
 pub struct Shard {
-    /// From 1 to `of`.
+    /// Number of the share, from 1 to `of`.
     pub index: usize,
-    /// How many parts there are.
+    /// Number of shares.
     pub of: usize,
 }
 
@@ -70,26 +70,26 @@ impl Shard {
     pub const ALL: Self = Self { index: 1, of: 1 };
 }
 
-/// Columns and rows of a block, where nothing else is asked for.
+/// Default number of columns and rows of a block.
 pub const SIDES: [usize; 2] = [100, 100];
-/// The most points of a block.
+/// Largest number of points in a block.
 const MOST: usize = 1 << 24;
 
 /// An array of the store.
 #[derive(Clone, Copy, Debug)]
 pub struct Variable {
-    /// Its name.
+    /// Name of the array.
     pub name: &'static str,
-    /// Bytes of a whole number; none of a double.
+    /// Number of bytes of an integer; none for a double.
     pub whole: Option<usize>,
-    /// Its unit.
+    /// Unit of the values.
     pub units: &'static str,
-    /// What it is.
+    /// Description of the values.
     pub long_name: &'static str,
     value: fn(&Point) -> f64,
 }
 
-/// Those of each point, where it is none not a number, or -1; the class comes last, as a block without it is not done.
+/// Variables of each point; NaN, or -1 for an integer, where a point failed. The class comes last: a block without it is not done.
 pub const VARIABLES: [Variable; 8] = [
     Variable {
         name: "revolutions",
@@ -149,7 +149,7 @@ pub const VARIABLES: [Variable; 8] = [
     },
 ];
 
-/// Classes in the order of their codes; none is for points that failed.
+/// Classes in the order of their codes; none for points that failed.
 pub const CLASSES: [Option<Kind>; 6] =
     [Some(Kind::Stays), Some(Kind::Periodic), Some(Kind::Resting), Some(Kind::Chaotic), Some(Kind::Undecided), None];
 
@@ -166,7 +166,7 @@ impl Variable {
         }
     }
 
-    /// Its value at a point: that of a whole number, too.
+    /// Returns the variable's value at a point, as a double even for an integer.
     pub fn of(&self, point: &Result<Point, String>) -> f64 {
         match point {
             Ok(point) => (self.value)(point),
@@ -175,7 +175,7 @@ impl Variable {
         }
     }
 
-    /// What stands where nothing was computed: no point has it.
+    /// Fill value, as JSON and as a double, where nothing was computed or a point failed.
     fn fill(&self) -> (Value, f64) {
         if self.whole.is_some() { (json!(-1), -1.0) } else { (json!("NaN"), f64::NAN) }
     }
@@ -188,7 +188,7 @@ impl Variable {
         }
     }
 
-    /// Its name, type and attributes, those of CF among them.
+    /// Returns the name, type and attributes of the variable, with those of the CF conventions.
     pub fn document(&self, units: &Units) -> Value {
         json!({ "name": self.name, "dtype": self.data_type(), "attributes": self.attributes(units) })
     }
@@ -219,8 +219,8 @@ fn array(shape: &[usize], chunk: &[usize], data_type: &str, fill: &Value, names:
 }
 
 impl<'a> Store<'a> {
-    /// The store of `chart` in a folder, of blocks with so many columns and rows, begun where there is none; another chart's is
-    /// refused.
+    /// Opens the store of `chart` in a folder, with blocks of so many columns and rows. Creates it if there is none, and refuses the
+    /// store of another chart.
     pub fn open(folder: &'a Path, chart: &'a Chart, sides: [usize; 2]) -> Result<Self, StoreError> {
         let [columns, rows] = sides;
         if !(1..=MOST).contains(&columns.saturating_mul(rows)) {
@@ -233,7 +233,7 @@ impl<'a> Store<'a> {
             (Path::new(axis.parameter.name()).join("c/0"), bytes)
         });
         let there = match file::text(&folder.join("zarr.json")) {
-            // Where there is a file on the way, making the folder says so.
+            // If a file is in the way, making the folder reports it.
             Err(error) if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => None,
             read => Some(read.map_err(|error| none(folder, error.to_string()))?),
         };
@@ -241,7 +241,7 @@ impl<'a> Store<'a> {
             let there = serde_json::from_str(&text).map_err(|error| none(folder, error.to_string()))?;
             let is_other = |(file, bytes): &&(PathBuf, Vec<u8>)| {
                 let file = folder.join(file);
-                // Of another length it is another's, and need not be read.
+                // A file of another length differs and need not be read.
                 !std::fs::metadata(&file).is_ok_and(|there| there.len() == bytes.len() as u64)
                     || !std::fs::read(file).is_ok_and(|there| there == *bytes)
             };
@@ -260,12 +260,12 @@ impl<'a> Store<'a> {
         for (name, document) in arrays.into_iter().flatten() {
             store.write_document(&Path::new(name).join("zarr.json"), document)?;
         }
-        // The last: who finds it finds the others.
+        // This file is written last: whoever finds it finds the others.
         store.write_document(Path::new("zarr.json"), &whole)?;
         Ok(store)
     }
 
-    /// Computes those blocks of a part that are not done, on `threads` threads.
+    /// Computes the blocks of a share that are not done, on `threads` threads.
     pub fn fill(&self, part: Shard, threads: Option<usize>, watch: &dyn Watch) -> Result<Filled, StoreError> {
         let (total, mut times) = (self.total(), [0.0; 2]);
         let (mut computed, mut points) = (0, 0);
@@ -280,7 +280,7 @@ impl<'a> Store<'a> {
         Ok(Filled { chart: self.chart.clone(), points, blocks, times })
     }
 
-    /// Computes one block, counted row by row from 0, if it is not done: how many points, and the times that they took.
+    /// Computes one block, counted row by row from 0, if it is not done. Returns the number of points, and the times that they took.
     pub fn fill_block(&self, block: usize, threads: Option<usize>) -> Result<Option<(usize, [f64; 2])>, StoreError> {
         let (total, [across, _]) = (self.total(), self.blocks());
         if block >= total {
@@ -310,7 +310,7 @@ impl<'a> Store<'a> {
         self.blocks().iter().product()
     }
 
-    /// Blocks across and up.
+    /// Number of blocks across and up.
     pub fn blocks(&self) -> [usize; 2] {
         let [x, y] = [&self.chart.x, &self.chart.y].map(|axis| axis.values.len());
         [x.div_ceil(self.sides[0]), y.div_ceil(self.sides[1])]
@@ -361,7 +361,7 @@ impl<'a> Store<'a> {
     }
 }
 
-/// What a chart says of where it comes from, by CF's conventions and by names of its own.
+/// Returns the attributes that describe a chart's origin, by the CF conventions and by names of its own.
 pub fn attributes(chart: &Chart) -> Value {
     json!({
         "Conventions": "CF-1.10",
@@ -388,7 +388,7 @@ fn start(start: &Start) -> Value {
     }
 }
 
-/// What tells the chart of a store from the one that is asked for, by their documents: the first that does.
+/// Returns the first difference between the chart of a store and the requested one, by their documents.
 fn difference(there: &Value, asked: &Value) -> Option<String> {
     const CLASSES: &str = "/consolidated_metadata/metadata/class";
     let told = [
@@ -406,7 +406,7 @@ fn difference(there: &Value, asked: &Value) -> Option<String> {
         let [there, asked] = [there, asked].map(|document| document.pointer(pointer).unwrap_or(&Value::Null));
         (there != asked).then(|| format!("its {name} is {there}, and not {asked}"))
     };
-    // A model's text and what is said of arrays are too long to be shown.
+    // A model's text and the attributes of arrays are too long to be shown.
     let long = || match there["attributes"]["model_toml"] == asked["attributes"]["model_toml"] {
         true => "what is said of its arrays is something else".into(),
         false => "numbers of its model are others".into(),
@@ -414,7 +414,7 @@ fn difference(there: &Value, asked: &Value) -> Option<String> {
     told.iter().find_map(differs).or_else(|| (there != asked).then(long))
 }
 
-/// Whether every file of a block is there, with its length.
+/// Whether every file of a block exists with its full length.
 fn is_done(folder: &Path, [column, row]: [usize; 2], sides: [usize; 2]) -> bool {
     VARIABLES.iter().all(|variable| {
         let file = folder.join(variable.name).join(format!("c/{row}/{column}"));
@@ -423,7 +423,7 @@ fn is_done(folder: &Path, [column, row]: [usize; 2], sides: [usize; 2]) -> bool 
     })
 }
 
-/// How much of the store in a folder is done.
+/// Counts the blocks of the store in a folder, and those that are done.
 pub fn status(folder: &Path) -> Result<Blocks, StoreError> {
     let blocks = blocks_of(folder)?;
     Ok(Blocks { computed: 0, done: blocks.iter().filter(|done| **done).count(), total: blocks.len() })

@@ -1,4 +1,4 @@
-//! What is found of one model, number by number, each by a name, and how far it may be off.
+//! The quantities found for one model, each by a name, with their uncertainties.
 
 use std::array;
 use std::collections::BTreeMap;
@@ -23,19 +23,19 @@ use crate::study::cam::Largest;
 use crate::study::design::contact::{Contact, Separation};
 use crate::study::verify::{External, Verification, Whole, verify_watched};
 
-/// Numbers by their names.
+/// Numbers by name.
 pub(super) type Numbers = BTreeMap<String, f64>;
 
-/// Numbers and words by their names.
+/// Numbers and words by name.
 pub type NamedValues = BTreeMap<String, Value>;
 
-/// As documents have it. What is flattened here has names for its fields, so that it can be one.
+/// Converts a result to the form that documents have. Everything flattened here has named fields, so that this cannot fail.
 fn document(found: &impl Serialize) -> Value {
     serde_json::to_value(found).unwrap_or_default()
 }
 
-/// Puts numbers and words of a document beside others, in the units of a model: their names are made of those of fields and of
-/// indices, `A_minus_21`.
+/// Adds the numbers and words of a document to others, in the units of a model. Their names are made of the names of fields and the
+/// indices, as in `A_minus_21`.
 fn flatten(before: &str, value: &Value, told: Option<Converted>, units: &Units, all: &mut NamedValues) {
     let name = || before.trim_end_matches('_').to_owned();
     match value {
@@ -62,14 +62,14 @@ fn flatten(before: &str, value: &Value, told: Option<Converted>, units: &Units, 
     }
 }
 
-/// The numbers and words of documents, the first that has one of that name.
+/// Returns the numbers and words of documents. If several documents have one name, the first counts.
 fn flattened(documents: &[Value], units: &Units) -> NamedValues {
     let mut all = NamedValues::new();
     documents.iter().rev().for_each(|document| flatten("", document, None, units, &mut all));
     all
 }
 
-/// What follows from a map and its border.
+/// Returns the documents of all quantities that follow from a map and its border.
 fn follows(route: &Route, border: LinearForm, is_classified: bool) -> Vec<Value> {
     let (map, c, (e, f)) = (&route.map, route.c(), route.own.border.unwrap_or(border));
     let entries = json!({
@@ -81,7 +81,7 @@ fn follows(route: &Route, border: LinearForm, is_classified: bool) -> Vec<Value>
         "eigenvalues": route.eigenvalues(),
     });
     let kind = classify(map, (e, f)).ok().filter(|_| is_classified).map_or(Value::Null, |kind| {
-        // The border stands above, the determinants are among the conditions.
+        // The border is stated above, and the determinants are among the conditions.
         let mut kind = document(&kind);
         kind["border"].take();
         kind["determinant_of_identity_minus_a"].take();
@@ -96,10 +96,10 @@ fn follows(route: &Route, border: LinearForm, is_classified: bool) -> Vec<Value>
     vec![entries, form, kind, Value::Object(conditions.collect())]
 }
 
-/// What depends on the cam and, where there is one, on the corner impact, as the closed form has it.
+/// Returns the quantities that depend on the cam and, if there is one, on the corner impact, by the closed form.
 fn computed(model: &Model, cam: &Cam, at: Option<(&CornerImpact, bool)>, units: &Units) -> NamedValues {
     const NAMES: [&str; 3] = ["largest_velocity_m", "largest_acceleration_m", "largest_jerk_m"];
-    // Both flanks of a cam may have it, one upwards and one downwards: which of them is rounding.
+    // Both flanks of a cam may have the largest value, one upwards and one downwards. Rounding decides between them.
     let largest =
         NAMES.iter().zip(1..).map(|(name, order)| ((*name).to_owned(), json!(Largest::of(cam, order).value_m.abs())));
     let follower = &model.follower;
@@ -120,7 +120,7 @@ fn computed(model: &Model, cam: &Cam, at: Option<(&CornerImpact, bool)>, units: 
     let mut all = vec![Value::Object(largest.collect()), of_cam];
     if let Some((at, is_classified)) = at {
         let mut orbit = document(&Whole(at));
-        // How well the period is known, and not what it is.
+        // These say how well the period is known, not what it is.
         for field in ["period_bracket_s", "period_residual", "closure"] {
             orbit[field].take();
         }
@@ -131,9 +131,9 @@ fn computed(model: &Model, cam: &Cam, at: Option<(&CornerImpact, bool)>, units: 
     flattened(&all, units)
 }
 
-/// What a verification finds beside the map, which it knows by one route alone.
+/// Returns the quantities of a verification besides the map. Only one route gives them.
 fn besides(found: &Verification) -> Vec<Value> {
-    /// Of the many orbits of some maps.
+    /// Largest number of words from the many orbits of some maps.
     const MOST_WORDS: usize = 8;
     let curved = found.second_order.as_ref().map(|curved| {
         // Each matrix is symmetric, and the fixed points to first order are those of the map.
@@ -175,7 +175,7 @@ fn besides(found: &Verification) -> Vec<Value> {
     ]
 }
 
-/// How far the routes differ in each number that follows from the map and its border, and in the orbit.
+/// Returns the spread between the routes in each number that follows from the map and its border, and in the orbit.
 fn spreads(found: &Verification, units: &Units) -> Numbers {
     let mut ranges: BTreeMap<String, (usize, [f64; 2])> = BTreeMap::new();
     for route in &found.routes {
@@ -199,15 +199,15 @@ fn spreads(found: &Verification, units: &Units) -> Numbers {
     spreads
 }
 
-/// What is found of a model.
+/// The quantities found for a model.
 pub(super) struct Findings {
     pub verdict: CornerVerdict,
-    /// Where its corner impact is, and whether it is classified.
+    /// The corner impact, and whether it is classified.
     at: Option<(CornerImpact, bool)>,
-    /// What the closed form and the cam tell, and what is known beside that.
+    /// Quantities from the closed form and the cam.
     pub computed: NamedValues,
     besides: NamedValues,
-    /// How far numbers may be off but for what a measured cam leaves open; not of those of one route alone.
+    /// Uncertainties of numbers, without the part from a measured cam. Numbers of one route alone have none, except the separation speed.
     pub errors: Numbers,
 }
 
@@ -238,7 +238,7 @@ impl Findings {
         Ok(Self { verdict, at, computed, besides, errors })
     }
 
-    /// What the closed form and the cam tell of a model that may as well be meant; nothing where that has not this corner impact.
+    /// Returns the quantities from the closed form and the cam for another model that is as likely. None if it lacks this corner impact.
     pub fn like(&self, model: &Model, cam: &Cam, units: &Units) -> Option<NamedValues> {
         let Some((at, is_classified)) = &self.at else { return Some(computed(model, cam, None, units)) };
         let (first, others) = corner::locate(model, cam).ok()?;
@@ -255,7 +255,7 @@ impl Findings {
     }
 }
 
-/// What `compare` has of one model, in its own units: of its cam, and of its corner impact where that is known.
+/// Returns the quantities that `compare` has of one model, in its own units: those of its cam, and those of its corner impact if given.
 pub(crate) fn values(model: &Model, cam: &Cam, found: Option<&Verification>) -> NamedValues {
     let at = found.map(|found| (&found.at, found.classification.is_ok()));
     let mut all = found.map_or_else(NamedValues::new, |found| flattened(&besides(found), &model.units));
@@ -263,18 +263,18 @@ pub(crate) fn values(model: &Model, cam: &Cam, found: Option<&Verification>) -> 
     all
 }
 
-/// The numbers among values.
+/// Returns the numbers among values.
 pub(super) fn numbers(values: &NamedValues) -> Numbers {
     values.iter().filter_map(|(name, value)| Some((name.clone(), value.as_f64()?))).collect()
 }
 
-/// Numbers less others of the same names.
+/// Returns the numbers of `b` less those of the same names in `a`.
 pub(super) fn differences(b: &NamedValues, a: &NamedValues) -> Numbers {
     let a = numbers(a);
     numbers(b).into_iter().filter_map(|(name, number)| Some((name.clone(), number - a.get(&name)?))).collect()
 }
 
-/// How far a measured cam leaves numbers open; not a number where that is not known.
+/// Returns the uncertainties of numbers from a measured cam; NaN if unknown.
 pub(super) fn open(
     likely: &PlausibleCams,
     numbers: &Numbers,

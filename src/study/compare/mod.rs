@@ -1,7 +1,7 @@
-//! What moved between two models? Every number that `verify`, `cam` and `design` find of both, by one name, with how far it may be off.
+//! Comparison of two models: every number that `verify`, `cam` and `design` find for both, by one name, with its uncertainty.
 //!
-//! A number that follows from A and B is taken from these by each route: how far routes differ in it is how well it is known. What
-//! a measured cam leaves open is looked at on the cams that are as likely, and comes on top.
+//! A number that follows from A and B is computed from them by each route. The spread between the routes is its uncertainty. The
+//! uncertainty from a measured cam is computed on the cams that are as likely, and is added.
 
 mod findings;
 
@@ -26,28 +26,28 @@ use crate::tolerance;
 use findings::{Findings, differences, numbers, open};
 pub(crate) use findings::{NamedValues, values};
 
-/// Something of each of the two models.
+/// A value for each of the two models.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Pair<T> {
-    /// Of the first.
+    /// Value of the first model.
     pub a: T,
-    /// Of the second.
+    /// Value of the second model.
     pub b: T,
 }
 
-/// What moved: the document `corner-impact/compare/1`, in the units of the first model.
+/// The result of a comparison: the document `corner-impact/compare/1`, in the units of the first model.
 #[derive(Clone, Debug)]
 pub struct ModelComparison {
-    /// Which models.
+    /// The two models.
     pub models: Pair<ModelLabel>,
-    /// What happens at the corner impact of either.
+    /// Verdict at the corner impact of each.
     pub verdict: Pair<CornerVerdict>,
     /// The fields of the model files that differ.
     pub fields: Vec<FieldChange>,
-    /// What differs by more than its error: words, then numbers, the speeds first and then those that moved most in parts of their size,
-    /// and those without an error after those with one, then what one model has alone.
+    /// Quantities that differ by more than their error. Words come first, then numbers with an error, numbers without one, and quantities
+    /// of one model alone. Among numbers, the speeds come first, then the largest relative changes.
     pub changes: Vec<Change>,
-    /// What does not, in the order of the names.
+    /// Quantities that do not differ by more than their error, in the order of their names.
     pub unchanged: Vec<Change>,
 }
 
@@ -63,7 +63,8 @@ document!(ModelComparison as it {
 });
 
 impl ModelComparison {
-    /// Whether something else happens, or is known; that nothing is there is the same whatever the file and the corners.
+    /// Whether the two verdicts differ, or the two agreements. Two models without a corner impact have one verdict, whatever the file and
+    /// the corners.
     pub fn verdict_changed(&self) -> bool {
         let Pair { a, b } = &self.verdict;
         let is_alike = match (&a.found, &b.found) {
@@ -80,25 +81,25 @@ impl ModelComparison {
     }
 }
 
-/// What happens at a corner impact, and whether its verification agrees.
+/// The verdict at a corner impact, and whether its verification agrees.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CornerVerdict {
-    /// What happens, or why that is not known.
+    /// The verdict, or the reason why there is none.
     pub found: Result<Scenario, NoVerdict>,
-    /// Whether the routes that ran agree; they do where none had to run.
+    /// Whether the routes that ran agree; true if none had to run.
     pub agrees: bool,
 }
 
-/// Why it is not told what happens.
+/// Reason why there is no verdict.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum NoVerdict {
     /// There is no corner impact to verify.
     #[error("no corner impact: {0}")]
     NotThere(LocateError),
-    /// It is not said where to look for one.
+    /// The model does not say where to look for a corner impact.
     #[error("no corner impact is looked for: the model has no [study]")]
     NotLookedFor,
-    /// Its map is refused.
+    /// The map of the corner impact is refused.
     #[error("{0}")]
     Refused(Refusal),
 }
@@ -119,41 +120,41 @@ impl Serialize for CornerVerdict {
     }
 }
 
-/// A field of the model files.
+/// A field that differs between the model files.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FieldChange {
-    /// Its path.
+    /// Path of the field.
     pub field: String,
-    /// What the first model has there, in its units, if anything.
+    /// Value in the first model, in its units, if any.
     pub a: Option<Value>,
-    /// What the second one has.
+    /// Value in the second model, in the units of the first, if any.
     pub b: Option<Value>,
 }
 
 /// One quantity of both models.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Change {
-    /// Its name in the documents of `verify`, `cam` and `design`, with its side and its indices, counted from 1.
+    /// Name in the documents of `verify`, `cam` and `design`, with its side and its indices, counted from 1.
     pub quantity: String,
-    /// A number, a word, or nothing where the first model has no such quantity.
+    /// Value in the first model: a number, a word, or nothing if it has no such quantity.
     pub a: Option<Value>,
-    /// Of the second.
+    /// Value in the second model, likewise.
     pub b: Option<Value>,
     /// Number b less number a.
     pub difference: Option<f64>,
-    /// How far the difference may be off; nothing where that is not known.
+    /// Uncertainty of the difference; none if unknown.
     pub error: Option<f64>,
     /// The size of the difference, over its error.
     pub times_error: Option<f64>,
-    /// The difference over the size of the first number; none where that is 0.
+    /// Difference over the size of the first number; none if that is 0.
     pub relative: Option<f64>,
-    /// Whether the two differ by more than their error; without one by more than rounding.
+    /// Whether the two differ by more than their error; without an error, by more than rounding.
     #[serde(skip)]
     pub is_one: bool,
 }
 
 impl Change {
-    /// Of what is found of both models, with how far the numbers may be off, and the difference by what a measured cam leaves open besides.
+    /// Compares the values of both models, with the uncertainty of each. `open` is the uncertainty of the difference from a measured cam.
     fn new(quantity: &str, [a, b]: [Option<&Value>; 2], errors: [Option<f64>; 2], open: f64) -> Self {
         let numbers = a.and_then(Value::as_f64).zip(b.and_then(Value::as_f64));
         let difference = numbers.map(|(a, b)| b - a);
@@ -175,8 +176,8 @@ impl Change {
         }
     }
 
-    /// Words first, then numbers with an error, then those without, then what one model has alone; of numbers the speeds in front that
-    /// everybody asks for, then what moved most before what moved less.
+    /// Sort key: words first, then numbers with an error, those without, and quantities of one model alone. Among numbers, the two main
+    /// speeds come first, then larger relative changes before smaller ones.
     fn rank(&self) -> (bool, bool, bool, bool, f64) {
         const SPEEDS: [&str; 2] = ["speed_rpm", "separation_speed_rpm"];
         let is_alone = self.a.is_none() || self.b.is_none();
@@ -187,7 +188,7 @@ impl Change {
     }
 }
 
-/// The fields in which two model files differ, in the units of the first.
+/// Returns the fields in which two model files differ, in the units of the first.
 fn fields(a: &Model, b: &Model) -> Vec<FieldChange> {
     let told = |path: &str, value: &Value| {
         let units = path.strip_prefix("follower.").map(|name| (a.units.of_follower(name), b.units.of_follower(name)));
@@ -213,7 +214,7 @@ fn fields(a: &Model, b: &Model) -> Vec<FieldChange> {
     fields
 }
 
-/// What moved from one model to another; without `external`, by the routes of this program alone.
+/// Compares two models. Without `external`, only the routes of this program run.
 pub fn compare(a: &Model, b: &Model, external: External, watch: &dyn Watch) -> Result<ModelComparison, StudyError> {
     let lengths = [a, b].map(|model| model.units.length.name().to_owned());
     if lengths[0] != lengths[1] {
@@ -226,7 +227,7 @@ pub fn compare(a: &Model, b: &Model, external: External, watch: &dyn Watch) -> R
     watch.at("what a measured cam leaves open", 0, 0);
     let noisy = |model| PlausibleCams::of(model).map(|likely| likely.filter(|likely| likely.best.is_some()));
     let opens = match (noisy(a)?, noisy(b)?) {
-        // Of one cam under both followers it leaves open what the difference is, and less than of two.
+        // One cam under both followers leaves the difference uncertain, by less than two cams would.
         (Some(likely), Some(_)) if a.cam == b.cam => {
             let of = |model: &Model, cam: &Cam| {
                 let other = b.on_cam_of(model).ok()?;
@@ -244,7 +245,7 @@ pub fn compare(a: &Model, b: &Model, external: External, watch: &dyn Watch) -> R
     };
     let names: BTreeSet<&String> = of_a.names().chain(of_b.names()).collect();
     let all = names.into_iter().map(|name| {
-        // What only a measured cam leaves open has no other error.
+        // A quantity that only a measured cam makes uncertain has no other error.
         let is_open = opens.iter().any(|open| open.contains_key(name));
         let error = |found: &Findings| found.errors.get(name).copied().or(is_open.then_some(0.0));
         let open = opens.iter().filter_map(|open| open.get(name)).sum();
@@ -271,7 +272,7 @@ mod tests {
         let moved = change([1.0, 1.5], [Some(0.1), Some(0.2)]);
         assert!(moved.is_one && (moved.times_error.unwrap() - 5.0 / 3.0).abs() < 1e-12);
         assert!((moved.relative.unwrap() - 0.5).abs() < 1e-12);
-        // Without an error every difference but rounding is told.
+        // Without an error, every difference above rounding is reported.
         assert!(change([1.0, 1.3], [Some(10.0), None]).is_one);
         assert!(!change([1.0, 1.0 + f64::EPSILON], [None; 2]).is_one);
         assert!(!change([0.0, 0.0], [Some(0.0); 2]).is_one);
