@@ -25,8 +25,7 @@ pub fn entropy(revolutions: &[u64]) -> f64 {
     logarithm(low.into()).low().max(0.0)
 }
 
-/// Lower bound on the logarithm: `ln x = 2 (z + z^3/3 + z^5/5 + ...)` with `z = (x - 1)/(x + 1)`, whose terms are all positive for x above
-/// 1.
+/// Lower bound on the logarithm: `ln x = 2 (z + z^3/3 + z^5/5 + ...)` with `z = (x - 1)/(x + 1)`, with positive terms for x above 1.
 fn logarithm(number: Interval) -> Interval {
     /// Terms of the series. For up to 40 symbols they omit less than a tenth.
     const TERMS: u32 = 60;

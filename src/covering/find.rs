@@ -50,7 +50,7 @@ const POINTS: usize = 12_000;
 const SHORTER: f64 = 0.8;
 const SHORTEST: f64 = 0.06;
 
-/// Boxes after which the proof of a strip is given up, some seconds. Strips that cover with a margin take some hundreds.
+/// Boxes after which the proof of a strip is given up, which takes some seconds. Strips that cover with a margin take some hundreds.
 const MOST_BOXES: usize = 1536;
 
 /// Extent of the proof.

@@ -8,8 +8,8 @@
 //! |a| - L |b| > 1        |c| + L |d| <= L (|a| - L |b|)
 //! ```
 //!
-//! Both hold for a mean of derivatives where they hold for each, so they are shown box by box. With them one motion only follows a sequence
-//! in both directions. For the map can be run backwards, and each impact shrinks `u dtheta du` by exactly `r^2 e^{-2 zeta t}`. So the
+//! Both hold for a mean of derivatives where they hold for each, so they are shown box by box. With them exactly one motion follows a
+//! sequence in both directions: the map can be run backwards, and each impact shrinks `u dtheta du` by exactly `r^2 e^{-2 zeta t}`. So the
 //! impacts of one past, which lie between two graphs of slope L or less, lie on one graph. Two of them with one future would differ within
 //! the cone, and separate. The argument needs losses, and u above 0 all over N.
 

@@ -1,4 +1,4 @@
-//! FigureContext of the figures: a model, its corner impact if it has one, and the speeds shown.
+//! Context of the figures: a model, its corner impact if it has one, and the speeds shown.
 
 use std::sync::OnceLock;
 

@@ -3,7 +3,7 @@
 //! Each operation is rounded to nearest. Then its ends, except an exact 0, are moved outwards by one ulp, which is more than the rounding
 //! error.
 //! Sine and cosine are alternating series, summed in doubles and widened by bounds on the rounding and on the omitted terms.
-//! A result without a bound, or NaN, becomes the whole real line: no comparison then holds, so nothing is concluded from it.
+//! A result with no bound on either side, or NaN, is the whole real line: no comparison then holds, so nothing is concluded from it.
 
 pub mod dual;
 pub mod mean_value_form;
@@ -174,7 +174,7 @@ impl Interval {
         (low <= high).then_some(Self { low, high })
     }
 
-    /// Intersection of two enclosures of one number.
+    /// Intersection of two enclosures of one number; the whole real line if they are disjoint.
     #[inline]
     pub(crate) fn and(self, other: Self) -> Self {
         // Two enclosures of one number have it in common; were they to have nothing, either would be as wrong.

@@ -1,4 +1,4 @@
-//! Finds all roots of equations in a box by bisection, until each part contains no root, or exactly one.
+//! Finds all roots of equations in a box, which is halved until each part contains no root, or certainly one.
 //!
 //! Krawczyk's operator about the middle m of a box X, with C near the inverse of the derivative J,
 //!
@@ -63,7 +63,7 @@ pub struct BoxValues<const N: usize> {
 pub struct Isolated<const N: usize> {
     /// Boxes that contain one root each, as narrow as rounding allows.
     pub roots: Vec<IntervalBox<N>>,
-    /// Boxes that further halving would not decide: they may contain roots. All other roots are in `roots`.
+    /// Undecided boxes, which may contain roots: halving would not help, or the limit was reached. All other roots are in `roots`.
     pub undecided: Vec<IntervalBox<N>>,
     /// Number of boxes examined.
     pub boxes: usize,

@@ -71,7 +71,7 @@ pub fn step<E: Equations>(
     closed(equations, from, along, step, from + along * step)
 }
 
-/// Solves for the point of [`step`] from a guess.
+/// Solves for the point of `step` from a guess.
 pub fn closed<E: Equations>(
     equations: &E,
     from: &DVector<f64>,

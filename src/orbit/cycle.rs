@@ -1,7 +1,7 @@
 //! A periodic orbit as the sequence of its impacts, and the equations that close it.
 //!
-//! Impact i is on a known segment of the cam, at angle `t_i` with velocity `v_i` before it. The follower leaves it with `w_i = (1 + r) c'_i
-//! - r v_i`, and the flight to the next impact, over `t_{i+1} - t_i`, must end there:
+//! Impact i is on a known segment of the cam, at angle `t_i` with velocity `v_i` before it. The follower leaves it with
+//! `w_i = (1 + r) c'_i - r v_i`, and the flight to the next impact, over `t_{i+1} - t_i`, must end there:
 //!
 //! ```text
 //! q(t_{i+1}) = c_{i+1}        v(t_{i+1}) = v_{i+1}        the last is followed by the first, n revolutions on

@@ -30,7 +30,8 @@ pub struct Budget {
 }
 
 impl Budget {
-    /// The default of `speeds`, `basins`, `simulate` and `diagram --attractors`: all runs of a speed share the patience, and one run can afford it.
+    /// The default of `speeds`, `basins`, `simulate` and `diagram --attractors`: all runs of a speed share the patience, and one run can
+    /// afford it.
     pub const SURVEY: Self = Self { transient: 200, record: 1600, longest: 32, patience: 100_000 };
     /// The default of `chart` and `diagram`: they run thousands of points, and a chaotic run costs all the revolutions for which it is
     /// followed.

@@ -6,7 +6,7 @@
 //! | `cycle` | an orbit as its impacts, the equations that close it, Newton's method |
 //! | `chain` | linear equations that link each impact with the next, in one pass |
 //! | [`stability`] | whether small deviations from an orbit die out |
-//! | `departure` | whether a cycle is an orbit of the cam as it is, by simulation |
+//! | `departure` | whether a cycle is an orbit of the actual cam, by simulation |
 //! | `complete` | all orbits of one impact, or of two in one revolution, by enclosures |
 //! | [`mod@search`] | orbits of one machine: those of `complete`, and others from many starts |
 //! | [`near`] | the orbit near a guess or near a run |

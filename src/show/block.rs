@@ -316,7 +316,7 @@ pub struct PageRow {
 
 #[derive(Clone, Debug)]
 pub struct Table {
-    /// FigureContext of the table.
+    /// Subject of the table.
     pub label: String,
     pub columns: Vec<Column>,
     pub rows: Vec<PageRow>,

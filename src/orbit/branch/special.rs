@@ -25,7 +25,7 @@ pub enum SpecialKind {
         /// Lowest order of a derivative of the lift that jumps there.
         jump_order: usize,
     },
-    /// A flight touches the cam, or an impact becomes a touch: the number of impacts changes from one to the other.
+    /// A flight touches the cam, or an impact becomes a touch: the number of impacts changes.
     Graze {
         /// Impacts before, in the direction in which the branch was followed.
         before: usize,
@@ -36,8 +36,8 @@ pub enum SpecialKind {
         /// For an orbit without impacts: class of the graze.
         first: Option<FirstTouch>,
     },
-    /// Along a curve of corner impacts or grazes: a multiplier of the map on one side of the corner, or of the orbit without
-    /// the touch, passes 1 or -1: a fold or a flip meets the curve.
+    /// Along a curve of corner impacts or grazes: a fold or a flip meets the curve. A multiplier of the map on one side of the corner, or
+    /// of the orbit without the touch, passes 1 or -1.
     Type {
         /// Whether that side is the one after the corner; `None` for a graze.
         after_corner: Option<bool>,

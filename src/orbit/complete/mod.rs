@@ -23,7 +23,7 @@ pub(super) use two_impacts::of_two_impacts;
 /// Status of a solution of the equations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Standing {
-    /// An orbit of the cam as it is.
+    /// An orbit of the actual cam.
     Orbit,
     /// No orbit: the follower would come out of the cam, or meet it on the way.
     NoOrbit,
