@@ -541,14 +541,18 @@ impl Model {
             Ok(need) => Ok((text, need)),
             Err(words) => refused(words),
         };
+        if log && over.is_none() {
+            return refused("log is of the number that over names".into());
+        }
         let (rpm, over) = match (rpm, over) {
-            (None, None) => (None, None),
-            (Some(Rpm::Range(range)), None) => (Some(values::speed_range(range)?), None),
-            (Some(Rpm::One(rpm)), None) => (Some([values::speed(rpm)?; 2]), None),
-            (Some(Rpm::One(rpm)), over) => {
-                (Some([values::speed(rpm)?; 2]), Some(values::axis(&self.model, Rpm::One(rpm), over, log)?.1))
+            (Some(Rpm::One(rpm)), Some(over)) => {
+                let (_, axis) = values::axis(&self.model, Rpm::One(rpm), Some(over), log)?;
+                (Some([rpm; 2]), Some(axis))
             }
             (_, Some((name, ..))) => return refused(format!("over {name}, rpm is one speed")),
+            (Some(Rpm::One(rpm)), None) => (Some([values::speed(rpm)?; 2]), None),
+            (Some(Rpm::Range(range)), None) => (Some(values::speed_range(range)?), None),
+            (None, None) => (None, None),
         };
         let asked = Asked {
             rpm,

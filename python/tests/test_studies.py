@@ -105,6 +105,7 @@ def test_surveys_go_over_any_number(paper: Model) -> None:
         lambda: paper.speeds((600, 700), over=("mass", 1, 2)),
         lambda: paper.design((600, 700), over=("mass", 1, 2, 2)),
         lambda: paper.design(over=("mass", 1, 2, 2)),
+        lambda: paper.design((600, 700), log=True),
         lambda: paper.speeds(700),
     ):
         with pytest.raises(ValueError):

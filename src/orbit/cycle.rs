@@ -141,7 +141,7 @@ impl Cycle {
     }
 
     /// Determinant of that derivative for deviations that grow by `multiplier` in one period, with velocities over omega by a unit, m/rad.
-    /// It is 0 for a multiplier of the orbit. Each row has the length 1, so that it is 1 at most (Hadamard).
+    /// The determinant is 0 for a multiplier of the orbit. Its rows have length 1, so its size is at most 1 (Hadamard).
     pub fn characteristic(&self, machine: &Machine, multiplier: f64, velocity: f64) -> f64 {
         let (_, mut links) = self.equations(machine);
         let is_alone = links.len() == 1;

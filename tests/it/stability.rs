@@ -202,7 +202,7 @@ fn neighbouring_places_that_are_undecided_are_one() {
     );
 }
 
-/// How far the entries of a matrix are moved.
+/// Displacement of each entry of a matrix.
 const PART: f64 = 1e-6;
 
 fn exactly(entries: [[f64; 2]; 2]) -> Rows {
