@@ -151,29 +151,26 @@ impl Segment {
     /// shows.
     ///
     /// Where derivatives up to n - 1 vanish, the extremum is found to about the nth root of the lift's rounding. That far beside it
-    /// lower derivatives are not 0. So an order counts only if its term of the Taylor series decides the lift where it exceeds rounding:
+    /// lower derivatives are not 0. So an order counts only if its term of the Taylor series alone decides the lift where it exceeds
+    /// rounding, and does so within a radian:
     ///
     /// ```text
-    /// d = (rounding / |c_n|)^(1/n),    |c_m| d^(m-n) <= |c_n| for m > n,    c_n = c^(n) / n!
+    /// d = (rounding / |c_n|)^(1/n) <= 1,    |c_m| d^m <= rounding for m > n,    c_n = c^(n) / n!
     /// ```
-    pub(crate) fn order_at(&self, angle: f64) -> Option<usize> {
-        let (jet, sizes, terms) = (self.law.jet(angle), sizes(self), self.law.terms(angle));
+    #[doc(hidden)]
+    pub fn order_at(&self, angle: f64) -> Option<usize> {
+        let rounding = tolerance::RANGE_ROUNDING.value * sizes(self)[0];
         let mut factorial = 1.0;
-        let taylor = jet.0.iter().enumerate().map(|(order, derivative)| {
+        let taylor = self.law.jet(angle).0.into_iter().enumerate().map(|(order, derivative)| {
             factorial *= order.max(1) as f64;
             derivative.abs() / factorial
         });
         let taylor: Vec<f64> = taylor.collect();
-        let decides = |order: &usize| {
-            let here = taylor[*order];
-            let seen = elementary::powf(tolerance::RANGE_ROUNDING.value * sizes[0] / here, 1.0 / *order as f64);
-            (order + 1..Jet::ORDERS).all(|higher| taylor[higher] * seen.powi((higher - order) as i32) <= here)
-        };
-        let is_there = |order: &usize| {
-            let rounding = tolerance::JET_ROUNDING.value * (sizes[order + 1] + terms.0[*order].abs());
-            jet.0[*order].abs() > tolerance::CAM_JUMP.value * sizes[*order] + rounding
-        };
-        (2..=Jet::HIGHEST_JUMP).find(|order| is_there(order) && decides(order))
+        (2..=Jet::HIGHEST_JUMP).find(|order| {
+            let seen = elementary::powf(rounding / taylor[*order], 1.0 / *order as f64);
+            let mut higher = taylor.iter().enumerate().skip(order + 1);
+            seen <= 1.0 && higher.all(|(m, term)| term * seen.powi(m as i32) <= rounding)
+        })
     }
 }
 

@@ -109,6 +109,11 @@ pub fn apart(one: f64, two: f64) -> f64 {
     turned.min(TAU - turned)
 }
 
+/// The angle plus the whole turns that bring it nearest to another angle, rad.
+pub fn nearest_turn(angle: f64, other: f64) -> f64 {
+    angle - ((angle - other) / TAU).round() * TAU
+}
+
 /// A periodic lift profile; clones share its data.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cam {

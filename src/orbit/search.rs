@@ -70,7 +70,8 @@ pub fn search_all(machine: &Machine, wanted: &Search, watch: &dyn Watch) -> Resu
 
 /// Velocity that few impacts of the machine exceed, m/s: that of one revolution under the force at the top, plus four times the cam's
 /// fastest.
-pub(crate) fn velocity_scale(machine: &Machine) -> f64 {
+#[doc(hidden)]
+pub fn velocity_scale(machine: &Machine) -> f64 {
     let cam = machine.cam();
     let omega = machine.angular_velocity();
     let steepest = cam.segments().iter().flat_map(|segment| segment.bounds.slope).fold(0.0_f64, |s, b| s.max(b.abs()));

@@ -169,9 +169,9 @@ impl Judgement {
     /// Verdict on a product of factors with a known determinant, and the error of the eigenvalues of `matrix`.
     fn of(factors: &[Rows], determinant: f64, loses: bool, matrix: &Matrix2<f64>) -> Self {
         let (middle, error) = trace(factors);
-        let size = middle.abs();
-        let room = error + tolerance::ULP.value * (1.0 + size + determinant);
-        let decided = Stability::of_trace([size - room, size + room], [1.0 + determinant; 2], loses);
+        let size = Interval::from(middle.abs()) + Interval::new(-error, error);
+        let flip = Interval::from(1.0) + Interval::from(determinant);
+        let decided = Stability::of_trace([size.low(), size.high()], [flip.low(), flip.high()], loses);
         let error = multipliers_error(matrix, (middle, error), determinant);
         Self { stability: decided.unwrap_or(Stability::Neutral), known: Evidence::Computed, error }
     }

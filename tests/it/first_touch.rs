@@ -77,6 +77,7 @@ fn a_follower_at_rest_is_touched_where_the_cams_top_is_as_high() {
     for (name, range, at, larger) in cases {
         let branch = follow(&model, 20.0, &orbit, name, range);
         let (point, first) = graze(&branch);
+        assert!(branch.holds(0.5 * (point.value + range[usize::from(!larger)]), &orbit), "{name}");
         assert!((point.value - at).abs() < 1e-12 && first.larger == larger, "{name}: {} {first:?}", point.value);
         let special = point.special.unwrap();
         assert!(matches!(special.kind, SpecialKind::Graze { before: 0, after: 1, turned: 0.0, .. }), "{special:?}");

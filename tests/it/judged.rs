@@ -8,10 +8,10 @@ use corner_impact::orbit::long_run::{Budget, Kind, LongRun, Recorded, StickingOr
 use corner_impact::orbit::runs::{LongRuns, RunOutcome};
 use corner_impact::progress::Unwatched;
 use corner_impact::simulate::{ImpactTally, Machine, Motion, SimulateError};
-use corner_impact::study::attractors::{Cause, Resolution};
+use corner_impact::study::attractors::{AttractorsAtValue, Cause, Resolution};
 use corner_impact::study::design::contact::Separation;
 use corner_impact::study::speeds::{Off, SpeedSurvey};
-use corner_impact::study::survey::{Ensemble, Place, Wandering, attractors_of, long_run};
+use corner_impact::study::survey::{Ensemble, Place, Sample, Wandering, attractors_of, long_run, outlasts};
 
 use crate::attractors::ball;
 use crate::common;
@@ -319,4 +319,35 @@ fn a_run_comes_to_its_orbit_in_any_unit() {
         });
         assert!(told[0] == told[1] && told[0] == told[2], "{rpm} rpm: {told:?}");
     }
+}
+
+/// Starts from rest that leave the cam for good are not counted among those of the sample.
+#[test]
+fn starts_from_rest_are_not_counted_with_the_sample() {
+    let text = "[follower]\nmass = 0.5\nrestitution = 0.5\nstiffness = 0.0\nrest_position = 0.0\ngravity = 0.0\ndamping = 0.0\n\
+                [cam]\nlaw = \"harmonic\"\noffset = 0.02\namplitudes = [0.0, 0.02]\nphases_deg = [0.0, 0.0]\n";
+    let free = Model::parse("free.toml", text).unwrap();
+    let here = AttractorsAtValue::new(&machine(&free, 100.0), &Sample::Spread(4), Budget::SURVEY).unwrap();
+    assert!(here.rests > 0 && here.sampled == 4 && here.off_for_good == 4, "{here:?}");
+}
+
+/// Of 100 rests in 10,000 revolutions at least 80 are to be expected again, 8 in a thousand: runs of which fewer than one in ten of these rest are
+/// on another motion.
+#[test]
+fn runs_that_rest_a_tenth_as_often_are_on_another_motion() {
+    let seen = |revolutions, rested| Wandering { revolutions, left: 0, rested };
+    let soon = seen(10_000, 100);
+    for (long, wanted) in [
+        (seen(1_240, 0), false),
+        (seen(1_260, 0), true),
+        (seen(2_490, 1), false),
+        (seen(2_510, 1), true),
+        (seen(12_490, 9), false),
+        (seen(12_510, 9), true),
+    ] {
+        assert_eq!(outlasts(long, soon), wanted, "{long:?}");
+    }
+    // Fewer than four rests may have been none.
+    assert!(!outlasts(seen(1_000_000_000, 0), seen(10, 4)) && outlasts(seen(1_000_000_000, 0), seen(10, 5)));
+    assert!(!outlasts(seen(1_000, 0), Wandering::default()));
 }

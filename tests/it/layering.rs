@@ -263,7 +263,7 @@ fn thresholds_stand_in_the_table() {
     }
 }
 
-/// `make mutants` looks into stages that are there, and what is told of mutants that survive is about the source as it is.
+/// `make mutants` looks into stages that are there, and asks tests that are there.
 #[test]
 fn mutants_are_looked_for_where_there_is_something() {
     let root = Path::new(crate::common::ROOT);
@@ -273,26 +273,6 @@ fn mutants_are_looked_for_where_there_is_something() {
     let named: Vec<&str> = after.split_once(']').unwrap().0.split('"').skip(1).step_by(2).collect();
     let stages = stages(&root.join("src"));
     assert!(named.len() > 10 && named.iter().all(|name| stages.iter().any(|stage| stage == name)), "{named:?}");
-    let explained: toml::Table = toml::from_str(&text("tests/mutants/explained.toml")).unwrap();
-    for reason in explained["reason"].as_array().unwrap() {
-        assert!(reason["why"].as_str().unwrap().len() > 20, "{reason:?}");
-        let files = reason.as_table().unwrap().iter().filter(|(name, _)| *name != "why");
-        for (file, known) in files {
-            let source = text(file).split_whitespace().collect::<Vec<_>>().join(" ");
-            for mutant in known.as_array().unwrap() {
-                let words: Vec<&str> = mutant.as_array().unwrap().iter().map(|word| word.as_str().unwrap()).collect();
-                let [function, code, others @ ..] = words.as_slice() else { panic!("{file}: {mutant:?}") };
-                let function = function.rsplit("::").next().unwrap();
-                let is_there = source.split(&format!("fn {function}")).skip(1).any(|rest| {
-                    let body = rest.split(" fn ").next().unwrap();
-                    // What a function returns is told by its name.
-                    body.contains(code) || code == &function
-                });
-                let are_other = !others.is_empty() && others.iter().all(|other| !other.is_empty());
-                assert!(is_there && are_other, "{file}: {mutant:?}");
-            }
-        }
-    }
     let failing: toml::Table = toml::from_str(&text("tests/mutants/failing.toml")).unwrap();
     for (file, tests) in failing["of"].as_table().unwrap() {
         assert!(root.join(file).is_file(), "{file}");
@@ -300,7 +280,7 @@ fn mutants_are_looked_for_where_there_is_something() {
             let words: Vec<&str> = test.split("::").collect();
             let [module, .., function] = words.as_slice() else { panic!("{file}: {test}") };
             let is_there = text(&format!("tests/it/{module}.rs")).contains(&format!("fn {function}("));
-            assert!(is_there && failing["seconds"].get(test).is_some(), "{file}: {test}");
+            assert!(is_there, "{file}: {test}");
         }
     }
 }

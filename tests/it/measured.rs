@@ -7,7 +7,8 @@ use corner_impact::cam::{Cam, Corner, Law, Segment, Side, apart};
 use corner_impact::figures::corner_marks;
 use corner_impact::measured::PlausibleCams;
 use corner_impact::model::{Model, Study};
-use corner_impact::orbit::{PeriodicOrbit, Search};
+use corner_impact::orbit::long_run::Budget;
+use corner_impact::orbit::{Parameter, PeriodicOrbit, Search};
 use corner_impact::progress::Unwatched;
 use corner_impact::show::Paged;
 use corner_impact::study::attractors::{Cause, Resolution, Step, Transition};
@@ -17,6 +18,7 @@ use corner_impact::study::design::{Asked, design, known};
 use corner_impact::study::locate::locate;
 use corner_impact::study::orbit::{OrbitQuery, orbits};
 use corner_impact::study::speeds::SpeedSurvey;
+use corner_impact::study::survey::{Axis, Spacing, Values};
 use corner_impact::study::verify::{External, Verification, verify};
 use serde_json::{Value, json};
 
@@ -1275,5 +1277,33 @@ fn a_noise_that_is_unknown_is_said_to_be() {
     for page in [sheet, design, as_drawn] {
         let page = crate::common::in_one_line(&page);
         assert!(page.contains("How far the rows are from a smooth motion is unknown"), "{page}");
+    }
+}
+
+/// Loads of a measured cam have uncertainties where its rows are noisy, and over speeds alone; the force round the cam is told of one speed, and of
+/// no other number.
+#[test]
+fn loads_are_as_uncertain_as_noisy_rows_leave_them() {
+    let model = |step: f64| {
+        let lift = |angle: f64| 0.05 + 0.01 * angle.to_radians().cos();
+        let rows: Vec<[f64; 2]> = (0..90)
+            .map(|row| 4.0 * f64::from(row))
+            .map(|angle| [angle, if step > 0.0 { (lift(angle) / step).round() * step } else { lift(angle) }])
+            .collect();
+        machine(json!({ "law": "table", "spline": "quintic", "unit": "m", "rows": rows })).unwrap()
+    };
+    let noisy = model(1e-5);
+    let budget = Some(Budget { transient: 20, record: 0, longest: 8, patience: 0 });
+    let apart = 1.3 * Contact::new(&Cam::new(&noisy).unwrap(), noisy.follower).separation().speed();
+    let of_speed = Asked { rpm: Some([apart; 2]), budget, ..Asked::default() };
+    let values = Values { low: noisy.follower.mass, high: noisy.follower.mass, count: 1, spacing: Spacing::Linear };
+    let mass = Axis::new(Parameter::named(&noisy, "mass").unwrap(), &values);
+    let of_mass = Asked { over: Some(mass), ..of_speed.clone() };
+    for (model, asked, is_uncertain, is_round) in
+        [(&noisy, &of_speed, true, true), (&model(0.0), &of_speed, false, true), (&noisy, &of_mass, false, false)]
+    {
+        let found = design(model, asked, &Unwatched).unwrap();
+        assert_eq!(found.loads.len(), 1);
+        assert_eq!((found.loads[0].errors.is_some(), !found.round.is_empty()), (is_uncertain, is_round));
     }
 }

@@ -8,6 +8,7 @@ use corner_impact::model::Model;
 use corner_impact::orbit::branch::{Branch, BranchPoint, End, Following, SpecialKind};
 use corner_impact::orbit::long_run::{Budget, LongRun};
 use corner_impact::orbit::runs::LongRuns;
+use corner_impact::orbit::search::velocity_scale;
 use corner_impact::orbit::{Course, Parameter, PeriodicOrbit, Search, search, search_all};
 use corner_impact::progress::Unwatched;
 use corner_impact::simulate::{EventKind, Machine, angular_velocity};
@@ -394,4 +395,18 @@ fn what_runs_of_any_machine_come_to() {
         told += "\n";
     }
     is_as_it_was("endings", &told);
+}
+
+/// Few impacts are faster than a flight of one revolution under the force at the cam's top, plus four times the cam's velocity: g T and 4 V of a
+/// weight without a spring.
+#[test]
+fn impacts_have_a_scale_of_velocity() {
+    let text = "[follower]\nmass = 2.0\nrestitution = 0.5\nstiffness = 0.0\nrest_position = 0.0\ngravity = 9.81\ndamping = 0.0\n\
+                [cam]\nlaw = \"harmonic\"\noffset = 0.0\namplitudes = [0.02]\nphases_deg = [0.0]\n";
+    let ball = Model::parse("ball.toml", text).unwrap();
+    for rpm in [60.0, 600.0] {
+        let wanted = 9.81 * 60.0 / rpm + 4.0 * 0.02 * angular_velocity(rpm);
+        let scale = velocity_scale(&machine(&ball, rpm));
+        assert!((scale / wanted - 1.0).abs() < 1e-6, "{rpm}: {scale} {wanted}");
+    }
 }

@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use approx::assert_relative_eq;
-use corner_impact::cam::Cam;
+use corner_impact::cam::{Cam, nearest_turn};
 use corner_impact::model::Model;
 use corner_impact::study::design::contact::{Contact, Separation};
 
@@ -322,5 +322,56 @@ fn the_force_next_to_separation_is_no_rounding_in_any_unit() {
                 assert_eq!(here, 0.0, "{unit} {heavy} {gravity} {damping}");
             }
         }
+    }
+}
+
+/// A lowest lift is flat up to the first order whose term exceeds rounding where the lift does. `4 cos x - (1 + e/4) cos 2x` has the derivatives e
+/// and -12 of orders 2 and 4 at its minimum: the parabola counts while `e/2` exceeds the root of 12/24 of the rounding, and a lift that is
+/// constant but for rounding has none.
+#[test]
+fn an_extremum_has_the_order_that_rounding_leaves() {
+    let order = |amplitudes: [f64; 2], offset: f64| {
+        let cam =
+            format!("law = \"harmonic\"\noffset = {offset:?}\namplitudes = {amplitudes:?}\nphases_deg = [0.0, 0.0]\n");
+        Cam::new(&machine([0.5, 0.0, 1.0], "rest_position = 0.0\ngravity = 0.0", &cam)).unwrap().segments()[0]
+            .order_at(0.0)
+    };
+    for (second, wanted) in [(1.0, 2), (1e-5, 2), (4e-7, 2), (8e-8, 4), (1e-12, 4), (0.0, 4)] {
+        assert_eq!(order([4.0, -1.0 - 0.25 * second], 0.0), Some(wanted), "{second}");
+    }
+    assert_eq!(order([1e-16, 0.0], 1.0), None);
+    let flat = |motion: &str| {
+        let cam = format!(
+            "law = \"program\"\nbase = 0.1\n[[cam.segment]]\nmotion = \"{motion}\"\nspan_deg = 90.0\nrise = 0.02\n\
+             [[cam.segment]]\nmotion = \"{motion}\"\nspan_deg = 180.0\nrise = -0.02\n\
+             [[cam.segment]]\nmotion = \"dwell\"\nspan_deg = 90.0\nrise = 0.0\n"
+        );
+        let cam = Cam::new(&machine([0.5, 0.0, 1.0], "rest_position = 0.0\ngravity = 0.0", &cam)).unwrap();
+        let [first, .., last, dwell] = cam.segments() else { panic!("{motion}") };
+        [first.order_at(first.start), last.order_at(last.end), dwell.order_at(dwell.start)]
+    };
+    for (motion, order) in [("harmonic", 2), ("parabolic", 2), ("cycloidal", 3), ("poly345", 3), ("poly4567", 4)] {
+        assert_eq!(flat(motion), [Some(order), Some(order), None], "{motion}");
+    }
+}
+
+/// A follower leaves a cam whose velocity jumps at any speed, however little that throws it.
+#[test]
+fn a_jump_of_the_velocity_is_left_at_any_speed() {
+    let cam = "law = \"polynomial\"\n[[cam.segment]]\nstart_deg = 0\ncoefficients = [0.0, 0.01]\n\
+               [[cam.segment]]\nstart_deg = 180\ncoefficients = [0.031415926535897934, -0.01]\n";
+    let model = machine([0.5, 0.0, 1000.0], "preload = 10.0\ngravity = 9.81", cam);
+    let cam = Cam::new(&model).unwrap();
+    let contact = Contact::new(&cam, model.follower);
+    assert!(contact.least(1e-3).value > 0.0 && contact.leaves(1e-3));
+}
+
+/// Of an angle and its whole turns the one that is nearest to another.
+#[test]
+fn an_angle_is_turned_to_the_nearest() {
+    for (angle, other, wanted) in
+        [(0.1, 6.2, 0.1 + TAU), (6.2, 0.1, 6.2 - TAU), (1.0, 3.0, 1.0), (3.0, 1.0, 3.0), (0.5, 20.0, 0.5 + 3.0 * TAU)]
+    {
+        assert_relative_eq!(nearest_turn(angle, other), wanted, max_relative = 1e-14);
     }
 }

@@ -13,7 +13,7 @@ use corner_impact::orbit::{Parameter, Search, search};
 use corner_impact::progress::Unwatched;
 use corner_impact::simulate::angular_velocity;
 use corner_impact::study::attractors::{
-    Attractors, AttractorsAtValue, Cause, Resolution, Step, Transition, attractors, detachment,
+    Attractors, AttractorsAtValue, Cause, Resolution, StableRange, Step, Transition, attractors, detachment,
 };
 use corner_impact::study::speeds::At;
 use corner_impact::study::survey::{Attractor, Over, Placed, Sample, Start, Starts, Wandering};
@@ -413,4 +413,34 @@ fn an_orbit_is_reached_from_the_next_speed() {
         by_neighbours += usize::from(here.count(attractor) == 0);
     }
     assert!(row.at.len() > 4 && by_neighbours > 0);
+}
+
+/// A grid begins with the last multiple of its step that is not above the range, also where the quotient of the two is rounded up to it.
+#[test]
+fn a_grid_begins_at_or_below_its_range() {
+    let step = common::step(0.3);
+    for count in 1..200 {
+        let low = (f64::from(count * 3) / 10.0).next_down();
+        let first = step.over([low, low + 1.0]).next().unwrap();
+        assert!(first <= low && low < first + 0.31, "{low}: {first}");
+    }
+}
+
+/// An orbit is the same however the cam is turned on its shaft, so that its range has no end: it is followed to both sides of negative angles and
+/// of 0, and holds nothing beyond what was followed.
+#[test]
+fn a_range_is_followed_below_0() {
+    let ball = ball();
+    let over = Over::new(&ball, Parameter::named(&ball, "phases_deg[0]").unwrap(), Some(900.0)).unwrap();
+    let runs = search(&over.machine(0.0).unwrap(), &Search { revolutions: 1, impacts: Some(1) }).unwrap();
+    let orbit = runs.iter().find(|orbit| orbit.is_stable()).unwrap();
+    for range in [[0.0, 0.0], [-0.5, 0.5], [-2.0, 0.0]] {
+        let found = StableRange::all(&over, 0.0, orbit, range, 0.01).unwrap();
+        let [first, last] = found.ends();
+        assert!(
+            found.ends.iter().all(Option::is_none) && first < range[0] && range[1] < last,
+            "{range:?}: {first} {last}"
+        );
+        assert!(found.near(0.0).is_some() && found.near(first - 0.1).is_none() && found.near(last + 0.1).is_none());
+    }
 }

@@ -4,7 +4,7 @@ All changes are compiled at once, as mutant schemata (Untch, Offutt, Harrold 199
 says "a + b, but a - b in mutant 17 and a * b in mutant 18", and an environment variable says which mutant a process is. One build
 then serves thousands of mutants, of which each takes as long as the tests that reach it, quickest first, up to the first
 that fails. Which tests those are is listed in failing.toml, of each file; what passes them is asked all tests that reach it,
-which a first run of each test notes.
+which a first run of each test notes. How long each takes is kept beside the build.
 
     python tests/mutants/mutants.py                   every mutant of every stage: some hours
     python tests/mutants/mutants.py simulate/again    those in files whose path has these words
@@ -41,6 +41,7 @@ import tree_sitter_rust
 ROOT = Path(__file__).resolve().parents[2]
 COPY = ROOT / "target" / "mutants"
 REACHED = COPY / "reached.json"
+SECONDS = COPY / "seconds.json"
 FAILING = ROOT / "tests" / "mutants" / "failing.toml"
 STAGES = ["model", "cam", "flight", "impact", "simulate", "section", "orbit", "corner", "border_collision", "study", "interval"]
 
@@ -106,7 +107,7 @@ class Schema:
         # In what is written: from where to where a mutant stands, to tell which of them the compiler complains about.
         self.places = []
         self.function = ""
-        self.repeated = Counter()
+        self.repeated, self.seen = Counter(), Counter()
         self.out, self.length = [], 0
         self.node(parser.parse(self.source).root_node)
         self.text = "".join(self.out)
@@ -118,13 +119,16 @@ class Schema:
     def said(self, node):
         return self.source[node.start_byte : node.end_byte].decode()
 
-    def take(self, node, replacements):
-        """Those of the replacements that compile, each with its number."""
+    def take(self, node, operator, replacements):
+        """Those of the replacements that compile, each with its number. A mutant is named by its function, the operator, and which of these
+        operators in the function it is, from 1."""
         code, ids = flat(self.said(node)), []
+        self.seen[self.function, operator] += 1
         for replacement in replacements:
             mutant = {"file": str(self.path), "function": self.function, "code": code, "replacement": replacement}
             key = json.dumps(mutant)
             self.repeated[key] += 1
+            mutant |= {"operator": operator, "ordinal": self.seen[self.function, operator]}
             mutant |= {"line": node.start_point[0] + 1, "key": f"{key}#{self.repeated[key]}"}
             if self.viable(mutant["key"]):
                 ids.append((len(self.mutants), replacement))
@@ -191,7 +195,7 @@ class Schema:
             if child == body:
                 self.put("{")
                 # By the name alone: a body is too long to tell it by.
-                for id, value in self.take(node.child_by_field_name("name"), values):
+                for id, value in self.take(node.child_by_field_name("name"), "returns", values):
                     self.wrapped([(id, value)], lambda: self.put(f"if crate::mutants::is({id}) {{ return {value}; }}"))
                 self.put("{")
                 self.children(child)
@@ -207,7 +211,7 @@ class Schema:
         replacements = ARITHMETIC.get(operator) or COMPARISONS.get(operator) or (operator in ("&&", "||") and LOGICAL)
         if not replacements or "let_condition" in str(node):
             return False
-        ids = self.take(node, list(replacements))
+        ids = self.take(node, operator, list(replacements))
         if not ids:
             return False
 
@@ -236,7 +240,7 @@ class Schema:
     def compound_assignment_expr(self, node):
         left, right = node.child_by_field_name("left"), node.child_by_field_name("right")
         operator = self.said(node.child_by_field_name("operator"))
-        ids = self.take(node, [other + "=" for other in ARITHMETIC.get(operator[:-1], "")])
+        ids = self.take(node, operator, [other + "=" for other in ARITHMETIC.get(operator[:-1], "")])
         if not ids:
             return False
 
@@ -252,7 +256,7 @@ class Schema:
 
     def unary_expression(self, node):
         operator = node.children[0].type
-        ids = self.take(node, ["without it"]) if operator in "-!" else []
+        ids = self.take(node, f"{operator}x", ["without it"]) if operator in "-!" else []
         if not ids:
             return False
 
@@ -284,7 +288,7 @@ class Schema:
                 self.node(child)
                 continue
             left_out = takes_all and child != arms[-1]
-            ids = dict((name, id) for id, name in self.take(pattern, (["arm left out"] if left_out else []) + (["guard left out"] if guard else [])))
+            ids = dict((name, id) for id, name in self.take(pattern, "arm", (["arm left out"] if left_out else []) + (["guard left out"] if guard else [])))
             begin = self.length
             self.put(self.source[child.start_byte : (guard.start_byte if guard else pattern.end_byte)].decode())
             conditions = []
@@ -486,12 +490,12 @@ def main():
     ask.add_argument("--list", action="store_true", help="list them, and run none")
     asked = ask.parse_args()
     if asked.learn:
-        return learned(asked.learn, {test: took for test, (took, _) in json.loads(REACHED.read_text())["tests"].items()} if REACHED.exists() else {})
+        return learned(asked.learn)
     begun = time.monotonic()
     listed = tomllib.loads((ROOT / "tests/mutants/explained.toml").read_text())
-    name = lambda mutant: tuple(mutant[key] for key in ("file", "function", "code", "replacement"))
-    told = {(file, function, code, other) for reason in listed["reason"] for file, known in reason.items()
-            if file != "why" and Path(file) in sources(asked.words) for function, code, *others in known for other in others}
+    name = lambda mutant: tuple(mutant[key] for key in ("file", "function", "operator", "ordinal", "replacement"))
+    told = {(file, *place, other) for reason in listed["reason"] for file, known in reason.items()
+            if file != "why" and Path(file) in sources(asked.words) for *place, others in known for other in others}
 
     gone = told - {name(mutant) for mutant in schemata(lambda key: True, asked.words)[1]}
     if gone:
@@ -504,7 +508,7 @@ def main():
     random.Random(asked.seed).shuffle(chosen)
     if asked.list:
         for id in sorted(chosen):
-            print(*name(mutants[id]), sep=" | ")
+            print(*name(mutants[id]), mutants[id]["code"], sep=" | ")
         return
     print(f"ready after {time.monotonic() - begun:.0f} s", flush=True)
 
@@ -538,7 +542,9 @@ def main():
                     total += seconds[batch[-1]]
                 most *= 2
                 passed += total
-                done, failed, _ = became(binary, batch, 2 + 8 * total, str(id))
+                done, failed, took = became(binary, batch, 2 + 8 * total, str(id))
+                if done == "pass" and len(batch) == 1:
+                    seconds[batch[0]] = took
             with turn:
                 kills.update((mutant["file"], test) for test in failed)
                 end_of[id], left[id] = (done, failed), len(tests)
@@ -551,12 +557,14 @@ def main():
         return [id for id in ids if end_of.get(id, ("", []))[0] == "pass"]
 
     failing = tomllib.loads(FAILING.read_text())
+    # Of a test that has not run yet, more than most take.
+    seconds = defaultdict(lambda: 1.0, json.loads(SECONDS.read_text()) if SECONDS.exists() else {})
     there = {test for test in named(binary) if not asked.tests or any(word in test for word in asked.tests)}
     of_file = lambda id: [test for test in failing["of"].get(mutants[id]["file"], []) if test in there]
-    alive = ask_all([id for id in chosen if id not in end_of], failing["seconds"], of_file)
+    alive = ask_all([id for id in chosen if id not in end_of], seconds, of_file)
     # A test that fails of itself tells nothing.
     told_by = sorted({test for _, test in kills})
-    done, failed, _ = became(binary, told_by, 2 + 8 * sum(failing["seconds"][test] for test in told_by), "") if told_by else ("pass", [], 0)
+    done, failed, _ = became(binary, told_by, 2 + 8 * sum(seconds[test] for test in told_by), "") if told_by else ("pass", [], 0)
     if done != "pass":
         sys.exit(f"fails without a mutant, or takes too long: {failed}")
     if alive:
@@ -574,13 +582,15 @@ def main():
         # What is not begun in time has not been tried.
         for id in alive:
             del end_of[id]
-        alive = ask_all(alive, {test: took for test, (took, _) in tests.items()}, likely)
+        seconds.update((test, took) for test, (took, _) in tests.items())
+        alive = ask_all(alive, seconds, likely)
 
+    SECONDS.write_text(json.dumps(dict(sorted(seconds.items()))))
     if out:
         out.writelines(json.dumps(mutants[id] | {"tests": "pass", "failed": []}) + "\n" for id in alive)
     for id in sorted(alive):
         mutant = mutants[id]
-        print("survives:", f"{mutant['file']}:{mutant['line']}", mutant["function"], "|", mutant["code"], "|", mutant["replacement"],
+        print("survives:", f"{mutant['file']}:{mutant['line']}", mutant["function"], mutant["operator"], mutant["ordinal"], "|", mutant["code"], "|", mutant["replacement"],
               "(reached by no test)" if not places[place[id]] else f"(of {left[id]} tests not asked)" if left[id] else "")
     count = Counter((stage(id), end) for id, (end, _) in end_of.items())
     for part in in_all:
@@ -591,24 +601,22 @@ def main():
     sys.exit(bool(alive))
 
 
-def learned(tried, seconds):
+def learned(tried):
     """Adds to what is listed of each file until each of its mutants that failed a test fails one of those: each time the one that most of
     what is left fail for the time that it takes."""
-    listed = tomllib.loads(FAILING.read_text())
-    seconds = listed["seconds"] | seconds
+    listed = tomllib.loads(FAILING.read_text())["of"]
+    seconds = defaultdict(lambda: 1.0, json.loads(SECONDS.read_text()))
     failed = defaultdict(dict)
     for line in map(json.loads, Path(tried).read_text().splitlines()):
-        failed[line["file"]][line["key"]] = set(line["failed"]) & seconds.keys()
+        failed[line["file"]][line["key"]] = set(line["failed"])
     for file, of_file in failed.items():
-        tests = listed["of"].setdefault(file, [])
+        tests = listed.setdefault(file, [])
         while left := [those for those in of_file.values() if those and not those & set(tests)]:
             counts = Counter(test for those in left for test in those)
             # A process takes some time to begin as well.
             tests.append(max(sorted(counts), key=lambda test: counts[test] / (0.05 + seconds[test])))
-    asked = sorted({test for tests in listed["of"].values() for test in tests})
-    lines = ["# Tests that the mutants of a file fail, those first that most of them do, and how long each takes, s of a core: by mutants.py --learn.", "", "[of]"]
-    lines += [f"{json.dumps(file)} = {json.dumps(tests, indent=4)}" for file, tests in sorted(listed["of"].items())]
-    lines += ["", "[seconds]", *(f"{json.dumps(test)} = {round(seconds[test], 2)}" for test in asked)]
+    lines = ["# Tests that the mutants of a file fail, those first that most of them do: by mutants.py --learn.", "", "[of]"]
+    lines += [f"{json.dumps(file)} = {json.dumps(tests, indent=4)}" for file, tests in sorted(listed.items())]
     FAILING.write_text("\n".join(lines) + "\n")
 
 

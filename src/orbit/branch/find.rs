@@ -199,7 +199,7 @@ fn points_on(branches: &[Branch], is_wanted: impl Fn(SpecialKind) -> bool) -> Ve
     let mut found: Vec<BranchPoint> = Vec::new();
     for point in branches.iter().flat_map(|branch| &branch.points).filter(is_met) {
         let same = |known: &BranchPoint| {
-            (known.rpm - point.rpm).abs() <= tolerance::SAME_ORBIT.value * point.rpm
+            (known.rpm / point.rpm - 1.0).abs() <= tolerance::SAME_ORBIT.value
                 && kind(known).map(|kind| kind.name()) == kind(point).map(|kind| kind.name())
                 && known.orbit.is_same(&point.orbit)
         };

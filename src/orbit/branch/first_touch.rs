@@ -156,7 +156,7 @@ fn struck_deeper(angle: f64) -> Option<u64> {
     let within = angle.rem_euclid(TAU);
     let halves = PI / within;
     let is_resonant = |off: f64| off.abs() <= tolerance::UNIT_EIGENVALUE.value * angle.max(1.0);
-    if is_resonant(within) || is_resonant(TAU - within) || is_resonant((halves - halves.round()) * within) {
+    if is_resonant(within) || is_resonant(TAU - within) || is_resonant(PI - halves.round() * within) {
         return None;
     }
     Some(halves.floor() as u64 + 1)

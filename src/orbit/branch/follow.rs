@@ -314,7 +314,7 @@ impl Walk<'_> {
         let mut folds = false;
         let mut signs = Vec::new();
         // Along a continuum of orbits a multiplier is 1 but for rounding, whose signs tell nothing.
-        let stands = first.is_none() && self.stride.stands(&end_point);
+        let stands = self.stride.stands(&end_point);
         let passed = if stands { Vec::new() } else { self.stride.passed() };
         for (index, cut) in passed.into_iter().enumerate() {
             let at = |point: &CurvePoint| self.stride.measure(&problem, cut, point);

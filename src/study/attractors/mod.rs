@@ -36,6 +36,8 @@ use crate::tolerance;
 pub use at_value::AttractorsAtValue;
 pub use detachment::detachment;
 pub use family::{AttractorFamily, GridValue, StartsAndBudget, ValueGrid, families};
+#[doc(hidden)]
+pub use stable_range::StableRange;
 pub use step::Step;
 pub use transition::{Cause, Transition};
 

@@ -56,7 +56,8 @@ impl Step {
     }
 
     /// Returns the values from the last one not above `low` to the first one not below `high`, both as places of the spacing.
-    pub(super) fn over(self, [low, high]: [f64; 2]) -> impl Iterator<Item = f64> {
+    #[doc(hidden)]
+    pub fn over(self, [low, high]: [f64; 2]) -> impl Iterator<Item = f64> {
         let mut first = (low / self.width()).floor() as i64 - 1;
         while self.times(first + 1) <= low {
             first += 1;

@@ -5,14 +5,12 @@ pub mod contact;
 pub mod loads;
 pub mod needs;
 
-use std::f64::consts::{PI, TAU};
-
 use rayon::prelude::*;
 use serde::Serialize;
 
 use super::{ModelLabel, StudyError};
 use crate::bracket::{Width, halve};
-use crate::cam::{Cam, Least};
+use crate::cam::{Cam, Least, nearest_turn};
 use crate::known::Evidence;
 use crate::measured::{Measured, PlausibleCams};
 use crate::model::{CORNER_ROUNDING, Model, Units};
@@ -289,10 +287,8 @@ struct RoundEntry {
 pub fn known(separation: Separation, likely: Option<&PlausibleCams>) -> Separation {
     let Some(likely) = likely.filter(|likely| likely.best.is_some()) else { return separation };
     let Separation::At { rpm, error, cam_angle, .. } = separation else { return separation };
-    // An angle on the other side of angle 0 counts as near.
-    let near = |angle: f64| cam_angle + (angle - cam_angle + PI).rem_euclid(TAU) - PI;
     let of = |model: &Model, cam: &Cam| match Contact::new(cam, model.follower).separation() {
-        Separation::At { rpm, cam_angle, .. } => Some([rpm, near(cam_angle)]),
+        Separation::At { rpm, cam_angle: of_other, .. } => Some([rpm, nearest_turn(of_other, cam_angle)]),
         _ => None,
     };
     let [open, angle_error] = likely.error([rpm, cam_angle], of).unwrap_or([f64::NAN; 2]);

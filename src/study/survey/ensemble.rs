@@ -305,7 +305,8 @@ fn soon_rested(end: &End) -> Wandering {
 
 /// Whether the long wandering runs rest so much less often than they did `soon` that they are on another motion than the runs that rested
 /// then.
-fn outlasts(long: Wandering, soon: Wandering) -> bool {
+#[doc(hidden)]
+pub fn outlasts(long: Wandering, soon: Wandering) -> bool {
     /// If 10 rests are expected, none occurs once in 20,000 times.
     const FEWER: f64 = 10.0;
     let rested = soon.rested as f64;

@@ -29,6 +29,8 @@ mod sweep;
 mod threads;
 
 pub use axis::{Axis, Place, Spacing, Values, VariedNumber};
+#[doc(hidden)]
+pub use ensemble::outlasts;
 pub use ensemble::{Attractor, Ensemble, Failed, Judged, Wandering, attractors_of, long_run};
 pub use grid::{GridResults, RunError, Survey, SurveyError};
 pub use over::{Over, OverError};
