@@ -154,43 +154,75 @@ fn attractors_are_matched_over_a_restitution() {
     }
 }
 
-/// Two halves of a range have what the whole has: the kinds of motion and their shares at each value, and the located events. It is asked over
-/// the damper and the spring; over the rest position by the test of its offset, and over a restitution by one of its own.
+/// Two halves of a range have what the whole has: the kinds of motion and their shares at each value, and the located events. A step that is half
+/// as long has the same at the values of both, and the events of what was seen there. It is asked over every number of the model but the phase and the rounding of corners, of which there are none.
 #[test]
 #[ignore = "slow"]
 fn parts_of_a_range_of_any_number_have_their_part_of_the_answer() {
     let wall = wall();
-    for (name, low, middle, high, step) in [("damping", 0.2, 0.6, 1.0, 0.2), ("stiffness", 60.0, 100.0, 140.0, 20.0)] {
-        let over = Over::new(&wall, Parameter::named(&wall, name).unwrap(), Some(250.0)).unwrap();
-        let found = |range| speeds(&over, range, &Resolution::new(common::step(step), 2), &Unwatched).unwrap();
-        let [whole, lower, upper] = [[low, high], [low, middle], [middle, high]].map(found);
-        let here = |found: &SpeedSurvey, value: f64| -> Vec<(Kind, f64)> {
-            let at = found.attractors.iter().flat_map(|row| &row.at).filter(|at| at.value() == value);
-            at.map(|at| (at.ending.kind(), at.share.value)).collect()
-        };
-        let mut values: Vec<f64> = whole.attractors.iter().flat_map(|row| row.at.iter().map(|at| at.value())).collect();
+    let here = |found: &SpeedSurvey, value: f64| -> Vec<(Kind, f64)> {
+        let at = found.attractors.iter().flat_map(|row| &row.at).filter(|at| at.value() == value);
+        at.filter(|at| at.share.value > 0.0).map(|at| (at.ending.kind(), at.share.value)).collect()
+    };
+    let values = |found: &SpeedSurvey| -> Vec<f64> {
+        let mut values: Vec<f64> = found.attractors.iter().flat_map(|row| row.at.iter().map(|at| at.value())).collect();
         values.sort_by(f64::total_cmp);
         values.dedup();
-        assert!(values.len() >= 5, "{name}: {values:?}");
-        for value in values {
+        values
+    };
+    let events = |surveys: &[&SpeedSurvey]| -> Vec<(Cause, f64)> {
+        let rows = surveys.iter().flat_map(|found| &found.attractors);
+        let all = rows.flat_map(|row| row.birth.iter().chain(&row.death)).filter(|end| end.is_located());
+        all.map(|end| (end.cause, end.value())).collect()
+    };
+    let axes = [
+        ("damping", [0.6, 0.8, 1.0], 0.2),
+        ("stiffness", [100.0, 120.0, 140.0], 20.0),
+        ("mass", [0.6, 0.7, 0.8], 0.1),
+        ("gravity", [-0.1, 0.0, 0.1], 0.1),
+        ("rest_position", [0.004, 0.005, 0.006], 0.001),
+        ("restitution", [0.4, 0.5, 0.6], 0.1),
+        ("amplitudes[0]", [0.008, 0.009, 0.01], 0.001),
+        ("cam.offset", [-0.001, 0.0, 0.001], 0.001),
+    ];
+    let asked: Vec<&str> = axes.iter().map(|(name, ..)| *name).collect();
+    let changes_nothing = |path: &str| path.ends_with("phases_deg[0]") || path.ends_with("corner_rounding_deg");
+    let is_asked = |path: &str| changes_nothing(path) || asked.iter().any(|name| path.ends_with(name));
+    assert!(wall.numbers().all(|(path, _)| is_asked(&path)), "{:?}", wall.numbers().collect::<Vec<_>>());
+    let mut seen = 0;
+    for (name, [low, middle, high], step) in axes {
+        let over = Over::new(&wall, Parameter::named(&wall, name).unwrap(), Some(250.0)).unwrap();
+        let found = |range, step| {
+            let budget = Budget { patience: 2_000, ..Budget::SURVEY };
+            let resolution = Resolution { budget, ..Resolution::new(common::step(step), 2) };
+            speeds(&over, range, &resolution, &Unwatched).unwrap()
+        };
+        let [whole, lower, upper] = [[low, high], [low, middle], [middle, high]].map(|range| found(range, step));
+        let fine = found([low, high], 0.5 * step);
+        let all = values(&whole);
+        assert!(all.len() >= 3, "{name}: {all:?}");
+        for value in all {
             for part in [&lower, &upper].into_iter().filter(|part| part.range[0] <= value && value <= part.range[1]) {
                 assert_eq!(here(part, value), here(&whole, value), "{name} {value}");
             }
+            assert_eq!(here(&fine, value), here(&whole, value), "{name} {value}, of a step half as long");
         }
-        let events = |surveys: &[&SpeedSurvey]| -> Vec<(Cause, f64)> {
-            let rows = surveys.iter().flat_map(|found| &found.attractors);
-            let all = rows.flat_map(|row| row.birth.iter().chain(&row.death)).filter(|end| end.is_located());
-            all.map(|end| (end.cause, end.value())).collect()
-        };
         let [of_whole, of_parts] = [events(&[&whole]), events(&[&lower, &upper])];
-        assert!(!of_whole.is_empty(), "{name}");
-        for (one, other) in [(&of_whole, &of_parts), (&of_parts, &of_whole)] {
+        seen += of_whole.len();
+        // An attractor that no value of the grid has is met by chance.
+        let on_the_grid = SpeedSurvey {
+            attractors: whole.attractors.iter().filter(|row| !row.at.is_empty()).cloned().collect(),
+            ..whole.clone()
+        };
+        let [of_fine, of_grid] = [events(&[&fine]), events(&[&on_the_grid])];
+        for (one, other) in [(&of_whole, &of_parts), (&of_parts, &of_whole), (&of_grid, &of_fine)] {
             for (cause, value) in one {
                 let is_same = |(known, at): &(Cause, f64)| known == cause && (at - value).abs() < 1e-9 * (high - low);
                 assert!(other.iter().any(is_same), "{name}: {cause:?} at {value}");
             }
         }
     }
+    assert!(seen >= 8, "{seen}");
 }
 
 /// A table of amplitude a lets go of a ball that lies on it where gravity falls below `a w^2`.
