@@ -188,7 +188,7 @@ fn parts_of_a_range_of_any_number_have_their_part_of_the_answer() {
     let asked: Vec<&str> = axes.iter().map(|(name, ..)| *name).collect();
     let changes_nothing = |path: &str| path.ends_with("phases_deg[0]") || path.ends_with("corner_rounding_deg");
     let is_asked = |path: &str| changes_nothing(path) || asked.iter().any(|name| path.ends_with(name));
-    assert!(wall.numbers().all(|(path, _)| is_asked(&path)), "{:?}", wall.numbers().collect::<Vec<_>>());
+    assert!(wall.numbers().all(|(path, _)| is_asked(path)), "{:?}", wall.numbers().collect::<Vec<_>>());
     let mut seen = 0;
     for (name, [low, middle, high], step) in axes {
         let over = Over::new(&wall, Parameter::named(&wall, name).unwrap(), Some(250.0)).unwrap();
