@@ -49,6 +49,9 @@
 //! plot into SVG or PNG and knows no mechanics, `untrusted`, which shows text of somebody else, and `file`, which writes files whole or not at all and reads them up to
 //! a limit.
 //!
+//! Modules and items that this documentation does not show serve the command, the Python package and the tests. They may change in any
+//! release.
+//!
 //! ```
 //! use corner_impact::{model::{Model, OSORIO_2008}, study::verify::{External, verify}};
 //!
@@ -63,8 +66,10 @@
 #[macro_use]
 mod named;
 
+#[doc(hidden)]
 pub mod tolerance;
 
+#[doc(hidden)]
 pub mod elementary;
 
 pub mod known;
@@ -73,16 +78,22 @@ pub mod progress;
 
 pub mod cancel;
 
+#[doc(hidden)]
 pub mod untrusted;
 
+#[doc(hidden)]
 pub mod bracket;
 pub mod estimate;
+#[doc(hidden)]
 pub mod interval;
 
+#[doc(hidden)]
 pub mod ball;
 
+#[doc(hidden)]
 pub mod draw;
 
+#[doc(hidden)]
 pub mod file;
 
 pub mod model;
@@ -90,7 +101,9 @@ pub mod model;
 pub mod cam;
 
 pub mod flight;
+#[doc(hidden)]
 pub mod impact;
+#[doc(hidden)]
 pub mod reading;
 
 pub mod measured;
@@ -101,32 +114,43 @@ pub mod section;
 
 pub mod orbit;
 
+#[doc(hidden)]
 pub mod covering;
 
+#[doc(hidden)]
 pub mod python;
 
 pub mod corner;
 
+#[doc(hidden)]
 pub mod agreement;
 
 pub mod border_collision;
 
+#[doc(hidden)]
 pub mod published;
 
 pub mod study;
 
+#[doc(hidden)]
 pub mod paper;
 
+#[doc(hidden)]
 pub mod show;
 
+#[doc(hidden)]
 pub mod figures;
 
+#[doc(hidden)]
 pub mod report;
 
+#[doc(hidden)]
 pub mod explain;
 
+#[doc(hidden)]
 pub mod pages;
 
+#[doc(hidden)]
 pub mod cli;
 
 /// The program on the page about the theory is a test.

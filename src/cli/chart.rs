@@ -33,7 +33,7 @@ pub(super) struct Arguments {
     /// The horizontal axis: rpm or a number of the model, its lowest and highest value, and how many; with :log spaced by their logarithm.
     #[arg(long, value_name = "NAME=LO:HI:N[:log]", value_parser = axis, required_unless_present = "status")]
     x: Option<(String, Values)>,
-    /// What varies upwards, alike.
+    /// The vertical axis, in the same form.
     #[arg(long, value_name = "NAME=LO:HI:N[:log]", value_parser = axis, required_unless_present = "status")]
     y: Option<(String, Values)>,
     /// Speed of the cam, rpm, where neither --x nor --y is it.
@@ -43,7 +43,7 @@ pub(super) struct Arguments {
     budget: BudgetArguments,
     #[command(flatten)]
     start: StartArguments,
-    /// What the colours of a picture tell; a table and a store have all of it.
+    /// Quantity that the colours of a picture show; a table and a store hold all of them.
     #[arg(long, value_enum, default_value = "period")]
     show: ShowName,
     /// Draw over a picture the curves of corner impacts, folds, flips, grazes, detachment and the onset of resting of motions

@@ -23,7 +23,7 @@ pub(super) struct Arguments {
     /// The model file that it is compared with [default: A, with the numbers of --set].
     #[arg(value_name = "B", required_unless_present = "numbers")]
     second: Option<PathBuf>,
-    /// Of the second model.
+    /// Changes of the second model.
     #[command(flatten)]
     changes: Changes,
     /// Run the routes that need Python, too.

@@ -31,7 +31,7 @@ pub(super) struct Arguments {
     /// Speed at which the orbits are looked for.
     #[arg(long, value_name = "R", value_parser = rpm, allow_hyphen_values = true)]
     from_rpm: f64,
-    /// What changes, and from where to where: rpm, or a number of the model file, such as restitution.
+    /// The number to vary, with its lowest and highest value: rpm, or a number of the model file, such as restitution.
     #[arg(long, value_name = "NAME=LO:HI", value_parser = parameter)]
     parameter: (String, [f64; 2]),
     /// Turns of the cam in one period.

@@ -28,7 +28,7 @@ pub(super) struct Arguments {
     /// Speeds between which events of the model are looked for.
     #[arg(long, value_name = "LO:HI", value_parser = rpm_range, allow_hyphen_values = true)]
     rpm: [f64; 2],
-    /// What changes, and from where to where: a number of the model file, such as restitution.
+    /// The number to vary, with its lowest and highest value: a number of the model file, such as restitution.
     #[arg(long, value_name = "NAME=LO:HI", value_parser = parameter)]
     parameter: (String, [f64; 2]),
     /// Which events are followed; may be repeated [default: all].

@@ -37,7 +37,7 @@ pub(super) struct Arguments {
     /// Speeds of a range.
     #[arg(long, value_name = "N", default_value_t = 21, value_parser = clap::value_parser!(u32).range(2..=10_000))]
     speeds: u32,
-    /// What is needed: "no separation to 4500 rpm", "impact speed below 0.5 m/s to 6000 rpm"; also gap and energy (may
+    /// A need: "no separation to 4500 rpm", "impact speed below 0.5 m/s to 6000 rpm"; also gap and energy (may
     /// be repeated).
     #[arg(long, value_name = "TEXT", value_parser = need)]
     need: Vec<(String, Need)>,
@@ -45,7 +45,7 @@ pub(super) struct Arguments {
     /// be repeated).
     #[arg(long, value_name = "NAME=VALUE", value_parser = limit)]
     limit: Vec<(Load, f64, Option<f64>)>,
-    /// What is needed against one of preload, stiffness, damping and mass, in the units of the model.
+    /// Table of what each need takes for several values of preload, stiffness, damping or mass, in the units of the model.
     #[arg(long, value_name = "NAME=LO:HI:N", value_parser = against, requires = "need", allow_hyphen_values = true)]
     against: Option<(Lever, Values)>,
     #[command(flatten)]

@@ -16,7 +16,7 @@ const STYLES: Styles = Styles::styled()
     .literal(AnsiColor::Cyan.on_default().bold())
     .placeholder(AnsiColor::Cyan.on_default());
 
-/// What the program is tried with first.
+/// Commands for a first try, at the end of the help.
 const EXAMPLES: &str = "Examples:
   corner-impact verify --no-external       check the paper's model, which is built in
   corner-impact new my-machine.toml        begin a model file of your own

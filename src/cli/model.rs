@@ -72,7 +72,7 @@ impl ModelArgument {
         Ok(model)
     }
 
-    /// The same for a command whose answer is of the cam as it is drawn: of a measured one it says how far that is known.
+    /// Reads the model for a command that answers for the cam as drawn. Notes how accurately a measured cam is known.
     pub(super) fn read_as_drawn(&self, session: &mut Session<'_>) -> Result<Model, CommandError> {
         let model = self.read(session)?;
         if let Some(words) = notes::as_drawn(&model)? {

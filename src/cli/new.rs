@@ -42,7 +42,7 @@ enum Law {
 const FOLLOWER: &str = include_str!("templates/follower.toml");
 const STUDY: &str = include_str!("templates/study.toml");
 const LIFTS: &str = include_str!("templates/lifts.csv");
-/// What the templates call the machine and its table.
+/// Names of the machine and of its table in the templates.
 const NAME: &str = "my-machine";
 const TABLE: &str = "lifts.csv";
 

@@ -15,10 +15,10 @@ pub(super) fn watched<T>(what: &str, work: impl FnOnce(&dyn Watch) -> T) -> T {
     work(&Progress::spinner(what))
 }
 
-/// How far a command has come: a bar where the total is known, a spinner where it is not, and what it is at.
+/// Progress of a command: a bar if the total is known, otherwise a spinner, and the current step.
 pub(super) struct Progress {
     bar: ProgressBar,
-    /// What the look of the bar was made for: whether something is done, and the total.
+    /// State that the bar was styled for: whether something is done, and the total.
     looks: Mutex<(bool, u64)>,
     /// Ends when this does.
     shows: Option<(Sender<()>, JoinHandle<()>)>,

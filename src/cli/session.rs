@@ -56,7 +56,7 @@ pub(super) fn only_prints(command: &clap::Command, matches: &clap::ArgMatches) -
         && files.all(|file| given.get_raw(file.get_id().as_str()).is_none_or(|mut names| names.all(|name| name == "-")))
 }
 
-/// What the streams of a process are connected to, and what its environment wants.
+/// Terminals behind the streams of a process, and the settings of its environment.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Terminal {
     /// Whether standard output is a terminal.
@@ -119,13 +119,13 @@ pub(super) struct Session<'a> {
     pub(super) out: &'a mut dyn Write,
     /// Complaints, notes and accounts.
     pub(super) err: &'a mut dyn Write,
-    /// What they are connected to.
+    /// Terminals behind both streams.
     pub(super) terminal: Terminal,
-    /// What `--color` says.
+    /// Value of `--color`.
     pub(super) color: ColorChoice,
     /// The speeds that the command line asks for, rpm.
     pub(super) rpm: Option<[f64; 2]>,
-    /// Those of the model that the command is about.
+    /// Units of the model that the command is about.
     pub(super) units: Units,
     /// Its name.
     pub(super) model: String,
@@ -159,7 +159,7 @@ impl Session<'_> {
         let _ = writeln!(self.err, "{} {}", complaint::word(self.colours_err()), untrusted::sentence(words));
     }
 
-    /// The same, with the line of the model file that it is about.
+    /// Prints a complaint with the line of the model file that it is about.
     pub(super) fn complain_at(&mut self, words: &str, at: &ModelError) {
         self.complain(words);
         let shown = complaint::shown(words, at, self.colours_err(), self.terminal.err, self.width());

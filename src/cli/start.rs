@@ -52,7 +52,7 @@ impl StartArguments {
             .or(Some(states).filter(|all| !all.is_empty()))
     }
 
-    /// Those, or so many of a sample.
+    /// The given states, or a sample of `spread` starts.
     pub(super) fn sample(&self, spread: usize) -> Sample {
         self.given().map_or(Sample::Spread(spread), Sample::Given)
     }

@@ -9,7 +9,7 @@ use crate::untrusted;
 /// A thread without work looks through all others for some, so that what is lost grows with the square of how many there are: a tenth
 /// of a second of one core with these, before anything is done, and more than a second with four times as many.
 const MOST: u16 = 256;
-/// What a machine's own set-up says, for programs of many kinds.
+/// Environment variable with the number of threads for all programs that use rayon.
 const VARIABLE: &str = "RAYON_NUM_THREADS";
 
 /// How many, for clap.

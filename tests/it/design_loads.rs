@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 use corner_impact::model::{Model, Units};
+use corner_impact::orbit::long_run::Budget;
 use corner_impact::orbit::{Search, search};
 use corner_impact::progress::Unwatched;
 use corner_impact::simulate::Machine;
@@ -189,4 +190,18 @@ fn a_limit_of_the_force_is_passed_only_where_the_follower_is_on_the_cam() {
     let found = passed(0.0, (Load::Force, 20.0), [1850.0, 1950.0], 2).unwrap();
     assert!(round(1850.0) > 20.0 && force(1850.0) == 0.0);
     assert!(force(found) > 20.0 && force(found * 0.998) < 20.0, "{found}");
+}
+
+/// Loads of a motion that never repeats are those of eight revolutions for each start that ends on it.
+#[test]
+fn loads_of_chaos_are_of_eight_revolutions_for_each_start() {
+    let model = crate::common::osorio();
+    let machine = machine(&model, 671.0);
+    let (found, attractors) = Loads::among(&model, &machine, None, Budget::DESIGN).unwrap();
+    let [chaos] = &attractors[..] else { panic!("{attractors:?}") };
+    assert!(chaos.ending.period().is_none() && chaos.starts.len() == 4, "{chaos:?}");
+    let recorded = Loads::recorded(&model, &machine, chaos.motion, 32).unwrap();
+    let fastest = |count: usize| recorded[..count].iter().fold(0.0_f64, |most, loads| most.max(loads.impact_speed));
+    assert_eq!(found.impact_speed, fastest(32));
+    assert!(fastest(12) < fastest(32), "{} {}", fastest(12), fastest(32));
 }

@@ -5,7 +5,7 @@ use corner_impact::estimate::{ErrorIs, Estimate};
 use corner_impact::flight::State;
 use corner_impact::model::Model;
 use corner_impact::orbit::long_run::{Budget, Kind, LongRun, Recorded, StickingOrbit};
-use corner_impact::orbit::runs::{LongRuns, RunOutcome};
+use corner_impact::orbit::runs::{AfterRelease, LongRuns, RunOutcome};
 use corner_impact::progress::Unwatched;
 use corner_impact::simulate::{ImpactTally, Machine, Motion, SimulateError};
 use corner_impact::study::attractors::{AttractorsAtValue, Cause, Resolution};
@@ -350,4 +350,36 @@ fn runs_that_rest_a_tenth_as_often_are_on_another_motion() {
     // Fewer than four rests may have been none.
     assert!(!outlasts(seen(1_000_000_000, 0), seen(10, 4)) && outlasts(seen(1_000_000_000, 0), seen(10, 5)));
     assert!(!outlasts(seen(1_000, 0), Wandering::default()));
+}
+
+/// A release that is known to come to no rest is not followed again if it was followed for as long as a rest is waited for now; a release that
+/// is known to recur is never.
+#[test]
+fn what_follows_a_known_release_is_not_asked_again() {
+    let machine = machine(&common::osorio(), 183.0);
+    let budget = |patience| Budget { transient: 100, record: 50, longest: 8, patience };
+    let long = LongRuns::unaided(&machine, budget(1_000));
+    let short = LongRuns::unaided(&machine, budget(0));
+    assert!(long.budget.rest() == long.budget.later_rest() && short.budget.rest() < short.budget.later_rest());
+    let start = machine.start(1.0, State { position: 60.0, velocity: 0.0 }).unwrap();
+    let wanders = |angle: f64| {
+        let released = long.released(angle).unwrap();
+        Some(AfterRelease::Wanders { released, end: released })
+    };
+    let kind = |runs: &LongRuns<'_>, known: &dyn Fn(f64) -> Option<AfterRelease>| {
+        runs.by_growth(start, 3, known).unwrap().kind()
+    };
+    for runs in [&long, &short] {
+        assert_eq!(kind(runs, &|_| None), Kind::Resting);
+    }
+    assert_ne!(kind(&long, &wanders), Kind::Resting);
+    assert_eq!(kind(&short, &wanders), Kind::Resting);
+    let recurs = |angle: f64| {
+        let orbit =
+            StickingOrbit { releases: vec![angle], revolutions: 77, impacts: 1, impact_speed: 1.0, growth: 0.0 };
+        Some(AfterRelease::Recurs(orbit))
+    };
+    for runs in [&long, &short] {
+        assert_eq!(runs.by_growth(start, 3, &recurs).unwrap().period().map(|(turns, _)| turns), Some(77));
+    }
 }
