@@ -50,7 +50,7 @@ pub(super) struct Arguments {
     /// Start every value alike, or go on from the next lower (up) or next higher one (down).
     #[arg(long = "start", value_enum, default_value = "fixed")]
     following: FollowingName,
-    /// Record, at each value, what happens on each attractor that 64 starts come to there, or those of --state, as `speeds` finds them.
+    /// Record each attractor that 64 starts, or those of --state, come to at a value, from a point on the attractor. They are found as by `speeds`.
     #[arg(long, conflicts_with = "following")]
     attractors: bool,
     #[command(flatten)]
@@ -223,6 +223,11 @@ fn one_row(arguments: &Arguments, survey: &Survey, session: &mut Session<'_>) ->
     let points = watched("", |watch| swept::one_row(survey, start, budget, threads, watch))?;
     file.write_all(csv::told(&csv::one_row(survey.axis(), &points), &session.units).as_bytes())?;
     super::commit(vec![file])?;
+    let failed = || points.iter().enumerate().filter_map(|(index, point)| Some((index, point.as_ref().err()?)));
+    if let Some((index, why)) = failed().next() {
+        let (count, all) = (failed().count(), points.len());
+        session.note(&format!("{count} of {all} values could not be run; the first is {}: {why}", survey.words(index)));
+    }
     Ok(Exit::Agrees)
 }
 

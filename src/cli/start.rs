@@ -17,7 +17,7 @@ pub(super) struct StartArguments {
     /// Cam angle at the start, rad or as 90deg.
     #[arg(long, value_name = "RAD", default_value_t = 0.0, value_parser = angle, allow_hyphen_values = true)]
     pub(super) start_angle: f64,
-    /// Position and velocity at the start, in the model's units; of a survey in place of its sample of starts (may be repeated).
+    /// Position and velocity at the start, in the model's units. A survey of many starts takes it repeatedly, in place of its sample.
     #[arg(long, value_name = "Q,V", value_parser = state, allow_hyphen_values = true, conflicts_with = "relative_velocity")]
     state: Vec<State>,
     /// Start on the cam and leave it at this velocity, m/s, 0 or more [default: 0].

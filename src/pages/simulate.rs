@@ -48,7 +48,16 @@ impl Paged for Swept {
                 format!("{model}: {turns} revolutions, {} rows, {} impacts", tally.points, tally.impacts).into(),
             ),
             Block::Line(
-                format!("  each run followed for {}, and not judged", words::many(self.followed, "revolution")).into(),
+                format!(
+                    "  each run followed for {}{}",
+                    words::many(self.followed, "revolution"),
+                    if self.is_judged {
+                        "; what is judged is followed as long as the budget says"
+                    } else {
+                        ", and not judged"
+                    }
+                )
+                .into(),
             ),
             Block::Line(format!("  {wall_s:.3} s on {threads}{each}").into()),
         ]

@@ -1,8 +1,10 @@
 //! The page of `speeds`: the short answer first, then every attractor with its beginning and end.
 
+use std::collections::BTreeMap;
+
 use crate::elementary;
 use crate::measured::Measured;
-use crate::orbit::long_run::Budget;
+use crate::orbit::long_run::{Budget, Kind};
 use crate::show::Paged;
 use crate::show::block::{Block, Column, Table, TextMark, Words, words};
 use crate::show::digits::{Digits, with_error};
@@ -15,7 +17,7 @@ impl Paged for SpeedSurvey {
     fn blocks(&self) -> Vec<Block> {
         let heading = |text: String| Block::Line((TextMark::Heading, text.as_str()).into());
         let mut page = vec![heading(format!("{}, {}", self.model, self.over.range(self.range))), Block::Gap];
-        let leaves = if self.over.is_speed() { "  leaves the cam first at  " } else { "  on the cam or off from   " };
+        let leaves = if self.over.is_speed() { "  leaves the cam first at  " } else { "  leaves the cam at        " };
         page.push(Block::Line(words![leaves, detachment(self)]));
         let together = together(self);
         let together =
@@ -25,9 +27,7 @@ impl Paged for SpeedSurvey {
             Block::Gap,
             Block::Table(table(self)),
         ]);
-        for attractor in &self.attractors {
-            page.extend(rests(attractor).map(Block::paragraph));
-        }
+        page.extend(remarks(self));
         page.extend(self.off_for_good().map(|off| Block::paragraph(off.words)));
         page.extend(dangers(self));
         page.push(Block::paragraph(how(self)));
@@ -88,7 +88,7 @@ pub(crate) fn detachment(found: &SpeedSurvey) -> Words {
     let Some(separation) = found.separation else {
         return match found.detachment() {
             Some([value, _]) => words![(value, Digits::Significant(9)), unit(found)],
-            None => "no value that was located".into(),
+            None => "no value in between was located".into(),
         };
     };
     match found.detachment() {
@@ -162,7 +162,7 @@ pub(crate) fn cam(measured: &Measured) -> Option<Block> {
 }
 
 /// Frequency of rests of a motion that bounces chaotically in between.
-pub(crate) fn rests(attractor: &AttractorRow) -> Option<String> {
+fn rests(attractor: &AttractorRow) -> Option<String> {
     let rests = attractor.rests()?;
     let id = &attractor.id;
     Some(match rests.rate_error {
@@ -227,6 +227,24 @@ pub(crate) fn table(found: &SpeedSurvey) -> Table {
         ]);
     }
     table
+}
+
+/// Remarks on each attractor, below the table.
+pub(crate) fn remarks(found: &SpeedSurvey) -> impl Iterator<Item = Block> {
+    let of_one = |attractor| other_kinds(found, attractor).into_iter().chain(rests(attractor));
+    found.attractors.iter().flat_map(of_one).map(Block::paragraph)
+}
+
+/// Other kinds that an attractor is of at some values than at most.
+fn other_kinds(found: &SpeedSurvey, attractor: &AttractorRow) -> Option<String> {
+    let mut others: BTreeMap<Kind, usize> = BTreeMap::new();
+    let different = attractor.at.iter().map(|at| at.ending.kind()).filter(|kind| *kind != attractor.kind);
+    different.for_each(|kind| *others.entry(kind).or_default() += 1);
+    let all = words::many(attractor.at.len() as u64, found.over.value());
+    let others: Vec<String> =
+        others.into_iter().map(|(kind, count)| format!("{} at {count}", words::kind(kind))).collect();
+    (!others.is_empty())
+        .then(|| format!("Of {all} at which {} was seen, it is {}.", attractor.id, others.join(" and ")))
 }
 
 /// Digits of a located value: six decimals for a speed.

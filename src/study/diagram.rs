@@ -11,8 +11,8 @@ use crate::simulate::{Machine, Motion, SimulateError};
 use crate::study::attractors::AttractorsAtValue;
 use crate::study::design::loads::Loads;
 use crate::study::survey::{
-    GridResults, Places, Point, RecordBlock, Sample, Section, Spacing, Start, Survey, Sweep, SweepError, SweepStart,
-    SweepTally,
+    Beginning, GridResults, Places, Point, RecordBlock, Sample, Section, Spacing, Start, Survey, Sweep, SweepError,
+    SweepStart, SweepTally,
 };
 
 /// Returns a motion on each attractor of `machine`, as found without other machines.
@@ -68,8 +68,11 @@ pub struct Swept {
     /// Numbers of rows recorded, impacts among them, and revolutions run.
     #[serde(flatten)]
     pub tally: SweepTally,
-    /// Revolutions that each run was followed for, recorded or not. The long-run motion is not judged.
+    /// Revolutions that each run was followed for, recorded or not.
     pub followed: u64,
+    /// Whether the growth or the attractors were asked for, which are judged within a budget. Otherwise no motion is judged.
+    #[serde(skip)]
+    pub is_judged: bool,
     /// Threads used.
     pub threads: usize,
     /// Seconds that the sweep took, including writing its results.
@@ -85,9 +88,9 @@ impl Swept {
         watch: &dyn Watch,
         mut take: impl FnMut(B) -> Result<(), E>,
     ) -> Result<Self, E> {
-        let cores = || std::thread::available_parallelism().map_or(1, usize::from);
         let threads = match sweep.following {
-            SweepStart::Nothing => threads.unwrap_or_else(cores).min(sweep.over.count()),
+            // As many as RAYON_NUM_THREADS says, or one for each core.
+            SweepStart::Nothing => threads.unwrap_or_else(rayon::current_num_threads).min(sweep.over.count()),
             SweepStart::Up | SweepStart::Down => 1,
         };
         let clock = Instant::now();
@@ -96,8 +99,9 @@ impl Swept {
             take(block)
         })?;
         let followed = sweep.transient + sweep.record;
+        let is_judged = sweep.growth.is_some() || matches!(sweep.starts, Beginning::Found(_));
         let (schema, wall_s) = ("corner-impact/diagram/1", clock.elapsed().as_secs_f64());
-        Ok(Self { schema, model: model.into(), tally, followed, threads, wall_s })
+        Ok(Self { schema, model: model.into(), tally, followed, is_judged, threads, wall_s })
     }
 }
 

@@ -413,7 +413,7 @@ pub fn speeds(
     };
     let run = || grid.iter().filter(is_inside).filter_map(|at| Some((over.place(at.value), at.found.as_ref().ok()?)));
     let off = run().filter(|(_, here)| here.off_for_good > 0);
-    let off = off.map(|(at, here)| Off { at, share: Estimate::share(here.off_for_good, here.sampled) }).collect();
+    let off = off.map(|(at, here)| Off { at, share: Estimate::share(here.off_for_good, here.run()) }).collect();
     let failed = |at: &GridValue| {
         let (starts, why) = match &at.found {
             Err(error) => (None, error.to_string()),
@@ -524,7 +524,7 @@ impl At {
     fn new(place: Place, here: &AttractorsAtValue, attractor: &Attractor, impacts: Vec<[f64; 2]>) -> Self {
         let impact_speed = impacts.iter().map(|[_, speed]| *speed).reduce(f64::max);
         let impact_angles = impacts.into_iter().map(|[angle, _]| angle).collect();
-        let share = Estimate::share(here.count(attractor), here.sampled);
+        let share = Estimate::share(here.count(attractor), here.run());
         let (ending, followed, wandering) = (attractor.ending.clone(), attractor.followed(), here.wandering);
         Self { place, share, ending, followed, wandering, impact_angles, impact_speed }
     }

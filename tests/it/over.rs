@@ -5,6 +5,7 @@ use corner_impact::model::Model;
 use corner_impact::orbit::Parameter;
 use corner_impact::orbit::long_run::{Budget, Kind};
 use corner_impact::progress::Unwatched;
+use corner_impact::show::Paged;
 use corner_impact::study::attractors::{AttractorsError, Cause, Resolution, Step, attractors};
 use corner_impact::study::basins::{Basin, BasinsOver, Begun};
 use corner_impact::study::design::contact::Contact;
@@ -511,5 +512,60 @@ fn axes_that_cannot_be_are_refused() {
         let complaint = refused(&words);
         assert!(common::in_one_line(&complaint).contains(says), "{words}: {complaint}");
         assert_eq!(complaint.matches("error:").count(), 1, "{complaint}");
+    }
+}
+
+/// A start below the cam cannot be run: the shares are of the others.
+#[test]
+fn shares_are_of_the_starts_that_could_be_run() {
+    let words = ["speeds", MODEL, "--rpm", "700:710", "--step", "10", "--state", "0.45,0", "--state", "-1,0", "--json"];
+    let found: serde_json::Value = serde_json::from_str(&told(&words).0).unwrap();
+    let rows = found["attractors"].as_array().unwrap().iter().flat_map(|row| row["shares"].as_array().unwrap());
+    let shares: Vec<f64> = rows.map(|at| at["share"].as_f64().unwrap()).collect();
+    assert_eq!(shares, [1.0, 1.0]);
+    assert_eq!(found["failed"][0]["starts"], 1, "{found}");
+    // Where none can be run, a speed of the range is named.
+    let said = refused(&format!("speeds {MODEL} --rpm 700:710 --step 10 --state -1,0"));
+    assert!(said.contains("at 700 rpm, and at every other value"), "{said}");
+    let (table, said) = told(&["diagram", MODEL, "--rpm", "700:710:3", "--state", "-1,0", "--one-row", "--out", "-"]);
+    assert_eq!(table.matches("failed").count(), 3, "{table}");
+    assert!(said.contains("3 of 3 values could not be run; the first is 700 rpm: "), "{said}");
+}
+
+/// The row of an attractor that is of another kind at some values says so.
+#[test]
+fn a_row_of_two_kinds_names_both() {
+    let mut found = crate::common::speeds(
+        &crate::attractors::ball(),
+        [600.0, 640.0],
+        &Resolution::new(common::step(20.0), 2),
+        &Unwatched,
+    )
+    .unwrap();
+    let row = found.attractors.iter_mut().find(|row| row.at.len() == 3).unwrap();
+    let motion = row.kind;
+    row.at[1].ending = crate::attractors::by_growth(1.0, 0.1);
+    assert_ne!(row.at[1].ending.kind(), motion);
+    assert!(
+        found.text().unwrap().contains("Of 3 speeds at which A1 was seen, it is chaotic at 1."),
+        "{}",
+        found.text().unwrap()
+    );
+}
+
+/// A diagram runs on as many threads as the environment says, and is judged only as far as it was asked.
+#[test]
+fn a_diagram_says_its_threads_and_whether_it_judges() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("rows.csv").to_str().unwrap().to_owned();
+    let said = |options: &[&str]| {
+        let line = [&["diagram", MODEL, "--rpm", "690:710:3", "--record", "2", "--out", &out], options].concat();
+        text(common::program(line).env("RAYON_NUM_THREADS", "1").output().unwrap().stdout)
+    };
+    let plain = said(&[]);
+    assert!(plain.contains("302 revolutions, and not judged") && plain.contains(" s on 1 thread,"), "{plain}");
+    for options in [&["--lyapunov"][..], &["--attractors"]] {
+        let judged = said(options);
+        assert!(!judged.contains("not judged") && judged.contains("as long as the budget says"), "{judged}");
     }
 }

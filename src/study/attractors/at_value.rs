@@ -14,7 +14,7 @@ pub struct AttractorsAtValue {
     pub budget: Budget,
     /// The motions that were found. Start indices below `sampled` belong to the sample.
     pub attractors: Vec<Attractor>,
-    /// Number of starts of the sample that were run.
+    /// Number of starts of the sample.
     pub sampled: usize,
     /// Number of these starts whose runs leave the cam for good.
     pub off_for_good: usize,
@@ -80,6 +80,12 @@ impl AttractorsAtValue {
     /// attractor do not count.
     pub fn is_reached(&self, attractor: &Attractor) -> bool {
         attractor.starts.is_empty() || attractor.starts.iter().any(|start| *start < self.sampled + self.rests)
+    }
+
+    /// Number of the sample's starts that could be run, at least 1.
+    pub fn run(&self) -> usize {
+        let failed = self.failed.iter().filter(|(start, _)| *start < self.sampled).count();
+        (self.sampled - failed).max(1)
     }
 
     /// Number of the sample's starts that end on an attractor.

@@ -385,10 +385,9 @@ impl AttractorFamily {
         }
     }
 
-    /// Brackets, found by runs, of the ends of an attractor on which the follower stays on the cam; none for any other attractor.
-    pub(super) fn contact_ends(&self) -> impl Iterator<Item = [f64; 2]> {
-        let ends = self.ends.iter().flatten().filter(|_| self.class == Class::Stays);
-        ends.map(|end| end.bracket)
+    /// Brackets of the ends.
+    pub(super) fn brackets(&self) -> impl Iterator<Item = [f64; 2]> {
+        self.ends.iter().flatten().map(|end| end.bracket)
     }
 
     /// Cuts the family to a range of values. Returns false if nothing is left.

@@ -161,7 +161,8 @@ pub fn attractors(
     let mut grid: Vec<GridValue> = values.par_iter().map(at).collect();
     // Beyond the range there may be no machine.
     grid.retain(|at| (range[0] <= at.value && at.value <= range[1]) || !matches!(at.found, Err(RunError::Family(_))));
-    if let Some(GridValue { value, found: Err(error) }) = grid.first()
+    let inside = grid.iter().find(|at| range[0] <= at.value && at.value <= range[1]).or(grid.first());
+    if let Some(GridValue { value, found: Err(error) }) = inside
         && grid.iter().all(|at| at.found.is_err())
     {
         return Err(AttractorsError::Run { place: over.parameter.words(*value), error: Box::new(error.clone()) });
@@ -182,11 +183,9 @@ pub fn attractors(
     let detachments: Vec<[f64; 2]> = match separation {
         Some(Separation::At { rpm, error, .. }) => vec![[rpm, error]],
         Some(_) => Vec::new(),
-        None => families
-            .iter()
-            .flat_map(AttractorFamily::contact_ends)
-            .filter_map(|bracket| leaves(over, bracket))
-            .collect(),
+        None => {
+            families.iter().flat_map(AttractorFamily::brackets).filter_map(|bracket| leaves(over, bracket)).collect()
+        }
     };
     for [value, error] in detachments {
         families.iter_mut().for_each(|family| family.detaches(over, value, error));

@@ -2,7 +2,7 @@
 
 use crate::pages::report::html::HtmlError;
 use crate::pages::report::html::plates::plate;
-use crate::pages::speeds::{cam, dangers, detachment, how, rests, table, together};
+use crate::pages::speeds::{cam, dangers, detachment, how, remarks, table, together};
 use crate::report::Report;
 use crate::show::block::{self, Block, PageSection, Words, words};
 use crate::study::speeds::SpeedSurvey;
@@ -28,7 +28,7 @@ fn attractors(found: &SpeedSurvey) -> Vec<Block> {
     let separation = block::about("separation", detachment(found));
     let about = words!["The follower leaves the cam for the first time at ", separation, ". ", together];
     let mut blocks = vec![Block::paragraph(about), Block::Table(table(found))];
-    blocks.extend(found.attractors.iter().filter_map(rests).map(Block::paragraph));
+    blocks.extend(remarks(found));
     blocks.extend(dangers(found));
     blocks.push(Block::paragraph(how(found)));
     blocks.extend(found.measured.iter().filter_map(cam));
