@@ -714,3 +714,10 @@ fn a_follower_may_meet_the_cam_behind_its_top() {
         }
     }
 }
+
+/// Without a spring a follower without weight rests wherever it is: no value of the cam's offset is one at which it comes to be touched.
+#[test]
+fn a_follower_without_a_spring_has_no_curve_of_touches() {
+    let found = touches(&wall(0.1, 0.0, -1.02), "offset", [-1.05, -0.95], [10.0, 80.0]);
+    assert!(found.curves.is_empty(), "{found:?}");
+}
