@@ -52,7 +52,7 @@ impl Paged for Swept {
                     "  each run followed for {}{}",
                     words::many(self.followed, "revolution"),
                     if self.is_judged {
-                        "; what is judged is followed as long as the budget says"
+                        ", and longer where growth or attractors are judged"
                     } else {
                         ", and not judged"
                     }

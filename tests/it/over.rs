@@ -566,6 +566,9 @@ fn a_diagram_says_its_threads_and_whether_it_judges() {
     assert!(plain.contains("302 revolutions, and not judged") && plain.contains(" s on 1 thread,"), "{plain}");
     for options in [&["--lyapunov"][..], &["--attractors"]] {
         let judged = said(options);
-        assert!(!judged.contains("not judged") && judged.contains("as long as the budget says"), "{judged}");
+        assert!(
+            !judged.contains("not judged") && judged.contains("and longer where growth or attractors are judged"),
+            "{judged}"
+        );
     }
 }

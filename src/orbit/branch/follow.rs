@@ -8,7 +8,7 @@ use super::step_event::{Cut, Located, Stride};
 use super::switch::{self, Exit};
 use super::{BranchPoint, End, Following, HalfBranch, Special, least_gap, special};
 use crate::orbit::curve::{self, CurvePoint, NoPoint};
-use crate::orbit::{Cycle, Departure, Family, FamilyError, Impact, OrbitError, PeriodicOrbit};
+use crate::orbit::{Cycle, Departure, Family, FamilyError, OrbitError, PeriodicOrbit};
 use crate::tolerance;
 
 /// Impacts per revolution beyond which a follower counts as chattering.
@@ -72,12 +72,18 @@ pub(super) fn half(
 
 /// Follows the branch from the touch of an orbit without impacts. The impacts of the start's cycle are touches there.
 pub(super) fn from_touch(family: &Family, start: &Start<'_>, following: &Following) -> Result<HalfBranch, OrbitError> {
-    let (mut cycle, (machine, _)) = (start.cycle.clone(), family.machine(start.values)?);
+    let mut cycle = start.cycle.clone();
     for impact in 0..cycle.impacts.len() {
-        // The follower meets the cam before its top: from the start of a segment the impact moves onto the one before.
-        let Impact { segment, cam_angle, .. } = cycle.impacts[impact];
-        if cam_angle <= machine.cam().segments()[segment].start {
-            cycle = Pinned { impact, at_end: false }.other_side(&cycle, &machine);
+        let stride = Stride::begun(family, &Start { cycle: &cycle, ..*start }, following)?;
+        let Ok(tangent) = switch::from_touch(&stride.problem(), &stride.from.unknowns) else {
+            return Ok((Vec::new(), End::Graze));
+        };
+        // A top where two segments meet is on the one that the impact moves into.
+        let (machine, _) = family.machine(start.values)?;
+        let segment = &machine.cam().segments()[cycle.impacts[impact].segment];
+        let (angle, moves) = (cycle.impacts[impact].cam_angle, tangent[2 * impact]);
+        if angle <= segment.start && moves < 0.0 || angle >= segment.end && moves > 0.0 {
+            cycle = Pinned { impact, at_end: moves > 0.0 }.other_side(&cycle, &machine);
         }
     }
     let mut stride = Stride::begun(family, &Start { cycle: &cycle, ..*start }, following)?;
