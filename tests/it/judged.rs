@@ -331,8 +331,8 @@ fn starts_from_rest_are_not_counted_with_the_sample() {
     assert!(here.rests > 0 && here.sampled == 4 && here.off_for_good == 4, "{here:?}");
 }
 
-/// Of 100 rests in 10,000 revolutions at least 80 are to be expected again, 8 in a thousand: runs of which fewer than one in ten of these rest are
-/// on another motion.
+/// Long runs are on another motion if ten times as many rests were to be expected as came. 100 rests in 10,000 revolutions make at least 8 in a
+/// thousand to be expected.
 #[test]
 fn runs_that_rest_a_tenth_as_often_are_on_another_motion() {
     let seen = |revolutions, rested| Wandering { revolutions, left: 0, rested };

@@ -366,7 +366,7 @@ fn a_jump_of_the_velocity_is_left_at_any_speed() {
     assert!(contact.least(1e-3).value > 0.0 && contact.leaves(1e-3));
 }
 
-/// Of an angle and its whole turns the one that is nearest to another.
+/// An angle is turned by whole turns until it is as near as it can be to another.
 #[test]
 fn an_angle_is_turned_to_the_nearest() {
     for (angle, other, wanted) in
