@@ -1,5 +1,6 @@
 //! The page of `chart`: the number of points of each kind.
 
+use crate::orbit::long_run::Kind;
 use crate::show::Paged;
 use crate::show::block::Block;
 use crate::show::words;
@@ -14,7 +15,10 @@ impl Paged for Charted {
         let mut lines = vec![format!("{}{at}, {y} over {x}, {points} points", chart.model.name)];
         for (kind, number) in self.counts() {
             let share = number as f64 / points as f64;
-            lines.push(format!("  {share:.4}  {} ({number})", kind.map_or("failed", words::kind)));
+            // Chaos is said with how long it was seen.
+            let chaotic = self.points.iter().flatten().filter(|_| kind == Some(Kind::Chaotic));
+            let seen = words::followed_for(chaotic.filter(|it| it.kind == Kind::Chaotic).map(|it| it.followed));
+            lines.push(format!("  {share:.4}  {} ({number}){seen}", kind.map_or("failed", words::kind)));
         }
         lines.extend(self.failure().map(|why| format!("  the first that failed: {why}")));
         let [cpu_s, wall_s] = self.times;

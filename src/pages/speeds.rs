@@ -161,10 +161,14 @@ pub(crate) fn cam(measured: &Measured) -> Option<Block> {
     measured.is_noisy.then(|| Block::paragraph(words))
 }
 
-/// Frequency of rests of a motion that bounces chaotically in between.
+/// Frequency of rests of a motion that bounces chaotically in between; for how long chaos was seen, where runs were too short for that.
 fn rests(attractor: &AttractorRow) -> Option<String> {
-    let rests = attractor.rests()?;
     let id = &attractor.id;
+    let Some(rests) = attractor.rests() else {
+        let chaotic = attractor.at.iter().filter(|at| at.ending.kind() == Kind::Chaotic);
+        let seen = words::followed_for(chaotic.map(|at| at.followed));
+        return (!seen.is_empty()).then(|| format!("{id} is chaotic{seen}."));
+    };
     Some(match rests.rate_error {
         Some(error) => format!(
             "{id} rests on the cam once in {:.0} ± {:.0} revolutions where it is chaotic in between ({} rests in {} revolutions): \
