@@ -46,6 +46,11 @@ impl Estimate {
         Self { value: number / of, error: (likely * (1.0 - likely) / of).sqrt(), error_is: ErrorIs::Standard }
     }
 
+    /// Share of `number` out of `of` that were all there is, so that nothing is uncertain.
+    pub(crate) fn counted(number: usize, of: usize) -> Self {
+        Self { value: number as f64 / of as f64, error: 0.0, error_is: ErrorIs::Standard }
+    }
+
     /// Result of an extrapolation.
     pub(crate) fn extrapolated(value: f64, error: f64) -> Self {
         Self { value, error, error_is: ErrorIs::Correction }

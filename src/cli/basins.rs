@@ -121,6 +121,8 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let summary = Summary::new(&model, rpm, basins, wall_s);
     if !to_standard {
         session.answer(&summary, arguments.summary)?;
+    } else if let Some(why) = &summary.basins.failure {
+        session.failures("starts", [summary.basins.failed, summary.basins.begun.count()], why);
     }
     Ok(Exit::Agrees)
 }
@@ -153,8 +155,12 @@ fn shares(
         Target::create(path, &mut *session.out, arguments.picture.look()?)?
             .fill(&model.units, table, || Ok(shares_figure(&found)))?;
     }
+    let failed = || found.at.iter().filter_map(|at| Some((at, at.failure()?)));
     if !to_standard {
         session.answer(&found, arguments.summary)?;
+    } else if let Some((at, why)) = failed().next() {
+        let first = found.over.words(at.place.across());
+        session.failures("values", [failed().count(), found.at.len()], &format!("{first}: {why}"));
     }
     Ok(Exit::Agrees)
 }

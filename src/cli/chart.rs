@@ -169,6 +169,9 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     };
     if !to_standard {
         session.answer(&found, arguments.summary)?;
+    } else if let Some(why) = found.failure() {
+        let failed = found.points.iter().filter(|point| point.is_err()).count();
+        session.failures("points", [failed, found.points.len()], why);
     }
     Ok(Exit::Agrees)
 }

@@ -225,8 +225,8 @@ fn one_row(arguments: &Arguments, survey: &Survey, session: &mut Session<'_>) ->
     super::commit(vec![file])?;
     let failed = || points.iter().enumerate().filter_map(|(index, point)| Some((index, point.as_ref().err()?)));
     if let Some((index, why)) = failed().next() {
-        let (count, all) = (failed().count(), points.len());
-        session.note(&format!("{count} of {all} values could not be run; the first is {}: {why}", survey.words(index)));
+        let first = format!("{}: {why}", survey.words(index));
+        session.failures("values", [failed().count(), points.len()], &first);
     }
     Ok(Exit::Agrees)
 }

@@ -153,6 +153,11 @@ impl Session<'_> {
         let _ = writeln!(self.err, "note: {}", untrusted::sentence(words));
     }
 
+    /// Notes that some of the parts of a survey failed, and the first of them: tables do not say why.
+    pub(super) fn failures(&mut self, what: &str, [count, all]: [usize; 2], first: &str) {
+        self.note(&format!("{count} of {all} {what} could not be run; the first is {first}"));
+    }
+
     /// Complains on standard error, in the words that every complaint begins with.
     pub(super) fn complain(&mut self, words: &str) {
         // A closed pipe leaves nobody to tell.

@@ -42,8 +42,7 @@ fn speeds(found: &Design) -> Figure {
     type Quantity = (&'static str, &'static str, f64);
     let all = found.forces.iter().map(|at| at.place).chain(found.loads.iter().map(|loads| loads.place));
     let range = extent(all.map(|place| place.across()));
-    let (name, spacing) = (found.over.as_deref().unwrap_or("rpm"), found.spacing);
-    let across = Across::new(name, spacing, range, &found.units);
+    let across = Across::named(&found.over.name, &found.over.unit, found.over.spacing, range);
     let x = |place: Place| across.place(place.across());
     let forces = found.forces.iter().map(|at| [x(at.place), found.force(at.least.value)]);
     let mut panels = Vec::new();
@@ -75,7 +74,6 @@ fn speeds(found: &Design) -> Figure {
         }));
     }
     let at = found.separation.speed();
-    let is_speed = found.over.is_none();
     let label = || match found.separation {
         Separation::At { rpm, error, .. } if Measured::noisy(&found.measured).is_some() => {
             let (digits, error) = with_error(error);
@@ -83,8 +81,8 @@ fn speeds(found: &Design) -> Figure {
         }
         _ => format!("separation, {at:.1} rpm"),
     };
-    let marks = (is_speed && range[0] <= at && at <= range[1]).then(|| Mark { at, label: label() });
-    let at = found.over.as_ref().map_or(String::new(), |_| format!(" at {} rpm", found.rpm()));
+    let marks = (found.over.is_speed() && range[0] <= at && at <= range[1]).then(|| Mark { at, label: label() });
+    let at = found.over.rpm.map_or(String::new(), |rpm| format!(" at {rpm} rpm"));
     let title = format!("{}: contact force and loads{at}", found.model.name);
     Figure { marks: marks.into_iter().collect(), ..Figure::new(&title, across.axis(), panels) }
 }

@@ -26,6 +26,12 @@ impl Paged for Design {
         let mut page = vec![title];
         page.extend(source(&self.model.source));
         page.extend([Block::Gap, Block::paragraph(separation(self))]);
+        if !self.over.is_speed() {
+            let name = self.over.own_name();
+            page.push(Block::paragraph(format!(
+                "This speed, and those of rounded corners, are with the model's own {name}."
+            )));
+        }
         let unknown = self.measured.as_ref().and_then(|measured| measured.noise_unknown.as_deref());
         page.extend(unknown.map(|why| Block::paragraph(noise_unknown(why))));
         if let Some(words) = margin(self) {
@@ -87,7 +93,7 @@ pub(crate) fn margin(found: &Design) -> Option<Words> {
     /// Share of the separation speed above which rounding dominates the force.
     const BELOW: f64 = 0.999;
     // For a survey over another number, each value has its own separation speed.
-    if found.over.is_some() {
+    if !found.over.is_speed() {
         return None;
     }
     let below = BELOW * found.separation.speed();
@@ -101,8 +107,7 @@ pub(crate) fn margin(found: &Design) -> Option<Words> {
 pub(crate) fn speeds(found: &Design) -> Vec<Block> {
     let is_open = Measured::noisy(&found.measured).is_some();
     let force = found.units.force.name();
-    let over = found.over.as_deref().unwrap_or("rpm");
-    let mut columns = vec![number(over), number(format!("least force {force}")), number("at deg")];
+    let mut columns = vec![number(found.over.head()), number(format!("least force {force}")), number("at deg")];
     let head = |name: &str, unit: &'static str| number(words![name, Span::Unit(unit)]);
     if !found.loads.is_empty() {
         columns.extend([
@@ -113,7 +118,7 @@ pub(crate) fn speeds(found: &Design) -> Vec<Block> {
             number(format!("most force {force}")),
         ]);
     }
-    let by = found.over.as_ref().map_or("speed".into(), |name| format!("{name} at {} rpm", found.rpm()));
+    let by = found.over.at_speed("speed");
     let mut table = Table::new(&format!("Contact force and loads by {by}"), columns);
     let mut values: Vec<f64> = found.forces.iter().map(|at| at.place.across()).collect();
     values.extend(found.loads.iter().map(|loads| loads.place.across()));
@@ -154,7 +159,7 @@ pub(crate) fn speeds(found: &Design) -> Vec<Block> {
         }
         table.row(cells);
     }
-    let heading = found.over.as_ref().map_or("Speeds".into(), |name| format!("Over {name} at {} rpm", found.rpm()));
+    let heading = if found.over.is_speed() { "Speeds".into() } else { format!("Over {}", found.over.at_speed("")) };
     let mut blocks = vec![Block::Heading(heading.as_str().into()), Block::Table(table)];
     blocks.push(Block::Note(
         "least force: between follower and cam as long as they touch, where it is below 0 they part; computed.".into(),
@@ -163,7 +168,7 @@ pub(crate) fn speeds(found: &Design) -> Vec<Block> {
         let transient = found.budget.transient;
         let words = format!(
             "The other columns are the most of what the starts come to, four unless they are given: over 8 revolutions after up to {transient}; \
-             sampled. Energy is what impacts take, force that between them."
+             sampled: another start may come to more. Energy is what impacts take, force that between them."
         );
         blocks.push(Block::Note(words.as_str().into()));
         if found.loads.iter().any(|loads| loads.errors.is_some()) {
@@ -180,7 +185,7 @@ fn limits(found: &Design) -> Vec<Block> {
     let sentence = |passed: &crate::study::design::Passed| {
         let name = passed.limit.to_string().replace('-', " ");
         let limit = words![format!("{name} of "), (passed.value, SIX), format!(" {}: ", passed.unit)];
-        let values = if found.over.is_none() { "speeds" } else { "values" };
+        let values = if found.over.is_speed() { "speeds" } else { "values" };
         let open = if is_open { ", of the cam as it is drawn: what it leaves open is the ± above" } else { "" };
         match passed.at {
             Some(at) => {
@@ -189,7 +194,7 @@ fn limits(found: &Design) -> Vec<Block> {
                     Span::Marked(TextMark::Bad, "passed".into()),
                     " at ",
                     (at.across(), Digits::Significant(4)),
-                    if found.over.is_none() {
+                    if found.over.is_speed() {
                         " rpm first, as far as the speeds above tell"
                     } else {
                         " first, as far as the values above tell"

@@ -1,7 +1,5 @@
 //! The page of `speeds`: the short answer first, then every attractor with its beginning and end.
 
-use std::collections::BTreeMap;
-
 use crate::elementary;
 use crate::measured::Measured;
 use crate::orbit::long_run::{Budget, Kind};
@@ -10,7 +8,7 @@ use crate::show::block::{Block, Column, Table, TextMark, Words, words};
 use crate::show::digits::{Digits, with_error};
 use crate::show::words;
 use crate::study::attractors::Transition;
-use crate::study::speeds::{AttractorRow, SpeedSurvey};
+use crate::study::speeds::{AttractorRow, SpeedSurvey, kinds};
 use crate::study::survey::{Sample, Spacing};
 
 impl Paged for SpeedSurvey {
@@ -241,14 +239,10 @@ pub(crate) fn remarks(found: &SpeedSurvey) -> impl Iterator<Item = Block> {
 
 /// Other kinds that an attractor is of at some values than at most.
 fn other_kinds(found: &SpeedSurvey, attractor: &AttractorRow) -> Option<String> {
-    let mut others: BTreeMap<Kind, usize> = BTreeMap::new();
-    let different = attractor.at.iter().map(|at| at.ending.kind()).filter(|kind| *kind != attractor.kind);
-    different.for_each(|kind| *others.entry(kind).or_default() += 1);
     let all = words::many(attractor.at.len() as u64, found.over.value());
-    let others: Vec<String> =
-        others.into_iter().map(|(kind, count)| format!("{} at {count}", words::kind(kind))).collect();
-    (!others.is_empty())
-        .then(|| format!("Of {all} at which {} was seen, it is {}.", attractor.id, others.join(" and ")))
+    let others = kinds(&attractor.at).into_iter().filter(|(kind, _)| *kind != attractor.kind);
+    let others: Vec<String> = others.map(|(kind, count)| format!("{} at {count}", words::is_of(kind))).collect();
+    (!others.is_empty()).then(|| format!("Of {all} at which {} was seen, it {}.", attractor.id, others.join(" and ")))
 }
 
 /// Digits of a located value: six decimals for a speed.

@@ -367,6 +367,12 @@ pub(crate) fn kind(kind: Kind) -> &'static str {
     }
 }
 
+/// Kind of motion as a predicate: `is chaotic`, `rests on the cam`.
+pub(crate) fn is_of(kind: Kind) -> String {
+    let is = if matches!(kind, Kind::Stays | Kind::Resting) { "" } else { "is " };
+    format!("{is}{}", self::kind(kind))
+}
+
 pub(crate) fn many(count: u64, what: &str) -> String {
     format!("{count} {what}{}", if count == 1 { "" } else { "s" })
 }

@@ -154,7 +154,8 @@ document!(AttractorRow as it {
 pub struct At {
     /// Place of the value.
     pub place: Place,
-    /// Share of the sample's starts that end on it. The starts are spread better than by chance, so the error is an overestimate.
+    /// Share of the sample's starts that end on it. A sample is spread better than by chance, so its error is an overestimate; given
+    /// starts are counted, and the error is 0.
     pub share: Estimate,
     /// The motion.
     pub ending: LongRun,
@@ -392,7 +393,8 @@ pub fn speeds(
             let here = at.found.as_ref().ok()?;
             let attractor = here.attractors.get(*attractor)?;
             let impacts = over.machine(at.value).ok().and_then(|machine| impacts(&machine, attractor).ok());
-            Some(At::new(over.place(at.value), here, attractor, impacts.unwrap_or_default()))
+            let share = resolution.sample.share(here.count(attractor), here.run());
+            Some(At::new(over.place(at.value), (here, attractor), share, impacts.unwrap_or_default()))
         });
         let at: Vec<At> = at.collect();
         let only = |number: fn((u64, u64)) -> u64| {
@@ -400,9 +402,10 @@ pub fn speeds(
             let first = numbers.next()??;
             numbers.all(|other| other == Some(first)).then_some(first)
         };
+        let most = kinds(&at).into_iter().max_by_key(|(_, count)| *count);
         AttractorRow {
             id: name(index),
-            kind: most(&at).unwrap_or_else(|| family.kind(&grid)),
+            kind: most.map_or_else(|| family.kind(&grid), |(kind, _)| kind),
             revolutions: family.period().map_or_else(|| only(|period| period.0), |period| Some(period.0)),
             impacts: family.period().map_or_else(|| only(|period| period.1), |period| Some(period.1)),
             ends: family.range.map(|end| over.place(end)),
@@ -413,7 +416,7 @@ pub fn speeds(
     };
     let run = || grid.iter().filter(is_inside).filter_map(|at| Some((over.place(at.value), at.found.as_ref().ok()?)));
     let off = run().filter(|(_, here)| here.off_for_good > 0);
-    let off = off.map(|(at, here)| Off { at, share: Estimate::share(here.off_for_good, here.run()) }).collect();
+    let off = off.map(|(at, here)| Off { at, share: resolution.sample.share(here.off_for_good, here.run()) }).collect();
     let failed = |at: &GridValue| {
         let (starts, why) = match &at.found {
             Err(error) => (None, error.to_string()),
@@ -446,11 +449,11 @@ pub fn speeds(
     })
 }
 
-/// Returns the kind of an attractor at most values of the range.
-fn most(at: &[At]) -> Option<Kind> {
+/// Returns the kinds of an attractor over its values, each with the number of values, by kind.
+pub fn kinds(at: &[At]) -> Vec<(Kind, usize)> {
     let mut counts: BTreeMap<Kind, usize> = BTreeMap::new();
     at.iter().for_each(|at| *counts.entry(at.ending.kind()).or_default() += 1);
-    counts.into_iter().max_by_key(|(_, count)| *count).map(|(kind, _)| kind)
+    counts.into_iter().collect()
 }
 
 /// Finds the dangers at corner impacts that attractors pass, begin or end with.
@@ -521,10 +524,14 @@ impl At {
         self.place.across()
     }
 
-    fn new(place: Place, here: &AttractorsAtValue, attractor: &Attractor, impacts: Vec<[f64; 2]>) -> Self {
+    fn new(
+        place: Place,
+        (here, attractor): (&AttractorsAtValue, &Attractor),
+        share: Estimate,
+        impacts: Vec<[f64; 2]>,
+    ) -> Self {
         let impact_speed = impacts.iter().map(|[_, speed]| *speed).reduce(f64::max);
         let impact_angles = impacts.into_iter().map(|[angle, _]| angle).collect();
-        let share = Estimate::share(here.count(attractor), here.run());
         let (ending, followed, wandering) = (attractor.ending.clone(), attractor.followed(), here.wandering);
         Self { place, share, ending, followed, wandering, impact_angles, impact_speed }
     }

@@ -117,7 +117,7 @@ fn a_design_goes_over_a_mass() {
     let limits = vec![(corner_impact::study::design::loads::Load::ImpactSpeed, 0.5 * (low + high))];
     let passed = design(&paper, &Asked { limits, ..asked.clone() }, &Unwatched).unwrap().limits[0].at.unwrap();
     assert!(low < high && passed.rpm == 200.0 && (1.0..1.5).contains(&passed.value.unwrap()), "{passed:?}");
-    assert_eq!(found.rpm(), 200.0);
+    assert_eq!(found.over.rpm, Some(200.0));
     let several = Asked { rpm: Some([100.0, 200.0]), ..asked };
     assert!(design(&paper, &several, &Unwatched).is_err());
 }
@@ -571,4 +571,45 @@ fn a_diagram_says_its_threads_and_whether_it_judges() {
             "{judged}"
         );
     }
+}
+
+/// Given starts are counted: their shares have no error.
+#[test]
+fn shares_of_given_starts_have_no_error() {
+    let words = ["basins", MODEL, "--rpm", "700", "--state", "0.45,0", "--state", "0.5,0"];
+    let (page, _) = told(&words);
+    assert!(page.contains("  1.0000  1 impact in a revolution (2)"), "{page}");
+    let (json, _) = told(&[&words[..], &["--summary"]].concat());
+    assert!(json.contains("\"share_standard_error\": 0.0"), "{json}");
+    let words = ["speeds", MODEL, "--rpm", "700:710", "--step", "10", "--state", "0.45,0", "--json"];
+    let found: serde_json::Value = serde_json::from_str(&told(&words).0).unwrap();
+    let shares = found["attractors"][0]["shares"].as_array().unwrap();
+    assert!(shares.iter().all(|at| at["error"] == 0.0), "{found}");
+    // A sample stands for more starts than itself.
+    let (page, _) = told(&["basins", MODEL, "--rpm", "700", "--grid", "4x4"]);
+    assert!(page.contains(" ± "), "{page}");
+}
+
+/// What a table cannot say of its failures, and a grid below the cam, is told beside it.
+#[test]
+fn what_could_not_be_run_is_told() {
+    let below = ["basins", MODEL, "--rpm", "700", "--grid", "4x4", "--position", "-5:-4", "--velocity", "-1:1"];
+    let (page, _) = told(&below);
+    assert!(page.contains("below the cam: 16 starts: none could be run"), "{page}");
+    let states = ["basins", MODEL, "--rpm", "700", "--state", "0.45,0", "--state", "-5,0", "--out", "-"];
+    assert!(told(&states).1.contains("1 of 2 starts could not be run; the first is "), "{}", told(&states).1);
+    let over = ["basins", MODEL, "--over", "mass=-1:1:2", "--rpm", "700", "--grid", "2x2", "--out", "-"];
+    assert!(told(&over).1.contains("1 of 2 values could not be run; the first is -1 kg: "), "{}", told(&over).1);
+    let axes = ["--x", "mass=-1:1:2", "--y", "restitution=0.5:0.6:2", "--rpm", "700", "--out", "-"];
+    let (_, said) = told(&[&["chart", MODEL][..], &axes].concat());
+    assert!(said.contains("2 of 4 points could not be run; the first is "), "{said}");
+}
+
+/// A table of `design` has the unit of the number that varies, and says what is not of its values.
+#[test]
+fn a_design_over_a_number_has_its_unit() {
+    let (page, _) = told(&["design", MODEL, "--over", "mass=0.5:1:2", "--rpm", "100"]);
+    assert!(page.contains("Over mass at 100 rpm"), "{page}");
+    assert!(page.contains("\n  mass kg  least force N"), "{page}");
+    assert!(page.contains("are with the model's own mass."), "{page}");
 }

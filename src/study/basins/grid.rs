@@ -153,7 +153,7 @@ pub struct Basin {
     /// Number of starts.
     pub starts: usize,
     /// Share of the starts above the cam whose runs did not fail. For starts of a grid, which are spread better than by chance, the error
-    /// is overestimated.
+    /// is overestimated; given starts are counted, and the error is 0.
     pub share: Estimate,
 }
 
@@ -172,6 +172,8 @@ pub struct Basins {
     pub parts: Vec<Basin>,
     /// Totals of the runs that neither rest nor settle on an orbit soon.
     pub wandering: Wandering,
+    /// Number of starts below the cam, which are not run.
+    pub below_cam: usize,
     /// Number of starts that could not be run.
     pub failed: usize,
     /// Reason why the first of these could not be run.
@@ -195,11 +197,15 @@ impl Basins {
         for (index, part) in found.attractors.into_iter().enumerate() {
             part.starts.iter().for_each(|cell| cells[*cell] = Some(index));
             part.starts.iter().zip(&part.followed).for_each(|(cell, turns)| followed[*cell] = Some(*turns));
-            let share = Estimate::share(part.starts.len(), starts);
+            let share = match begun {
+                SectionStarts::Grid(_) => Estimate::share,
+                SectionStarts::Given(_) => Estimate::counted,
+            }(part.starts.len(), starts);
             parts.push(Basin { followed: part.followed(), ending: part.ending, starts: part.starts.len(), share });
         }
         let failure = found.failed.first().map(|(_, error)| error.to_string());
         Self {
+            below_cam: begun.count() - starts - found.failed.len(),
             begun,
             budget,
             starts,

@@ -17,7 +17,7 @@ use crate::model::{CORNER_ROUNDING, Model, Units};
 use crate::orbit::long_run::Budget;
 use crate::progress::{Pieces, Watch};
 use crate::simulate::{Machine, angular_velocity};
-use crate::study::survey::{Attractor, Axis, Over, Place, Spacing, Start, Values};
+use crate::study::survey::{Attractor, Axis, Over, Place, Spacing, Start, Values, VariedNumber};
 use crate::tolerance;
 use contact::{Contact, Separation};
 use loads::{Load, Loads};
@@ -34,10 +34,8 @@ pub struct Design {
     pub separation: Separation,
     /// Quality of the measured cam; none for an exact cam.
     pub measured: Option<Measured>,
-    /// Name of the number that varies in the table; none if it is the speed.
-    pub over: Option<String>,
-    /// Spacing of its values.
-    pub spacing: Spacing,
+    /// The number that varies in the table.
+    pub over: VariedNumber,
     /// Least force at each value, in the internal unit.
     pub forces: Vec<ForceAt>,
     /// Force round the cam, if a single speed is asked for.
@@ -172,7 +170,7 @@ pub struct Trade {
 document!(Design as it {
     schema: "corner-impact/design/1",
     model: it.model,
-    over if_any: it.over.as_ref(),
+    over if_any: it.over.rpm.map(|_| &it.over.name),
     separation: it.separated(),
     separates: it.separation.name(),
     measured if_any: it.measured,
@@ -259,12 +257,6 @@ impl Design {
             }),
             _ => None,
         }
-    }
-
-    /// The fixed speed of a table that varies another number, rpm.
-    pub fn rpm(&self) -> f64 {
-        let places = self.forces.iter().map(|at| at.place).chain(self.loads.iter().map(|loads| loads.place));
-        places.map(|place| place.rpm).next().unwrap_or(f64::NAN)
     }
 
     fn told_round(&self) -> Vec<RoundEntry> {
@@ -448,8 +440,7 @@ pub fn design(model: &Model, asked: &Asked, watch: &dyn Watch) -> Result<Design,
         units,
         separation,
         measured: likely.map(|likely| likely.measured),
-        over: (!over.is_speed()).then(|| over.parameter.name().to_owned()),
-        spacing: asked.over.as_ref().map_or(Spacing::Linear, |axis| axis.spacing),
+        over: over.varied(asked.over.as_ref().map_or(Spacing::Linear, |axis| axis.spacing)),
         forces,
         round,
         loads,

@@ -175,10 +175,26 @@ impl VariedNumber {
         }
     }
 
+    /// Head of a column of its values: `rpm`, `stiffness N/m`.
+    pub fn head(&self) -> String {
+        let unit = if self.is_speed() { "" } else { &self.unit };
+        format!("{} {unit}", self.own_name()).trim_end().to_owned()
+    }
+
+    /// The last part of its path.
+    pub fn own_name(&self) -> &str {
+        self.name.rsplit('.').next().unwrap_or_default()
+    }
+
+    /// Its name at the fixed speed, `restitution at 700 rpm`, or this word if it is the speed.
+    pub fn at_speed(&self, speed: &str) -> String {
+        self.rpm.map_or(speed.to_owned(), |rpm| format!("{} at {rpm} rpm", self.own_name()))
+    }
+
     /// A range in words: `600 to 760 rpm`, `restitution 0.5 to 0.9 at 700 rpm`.
     pub fn range(&self, [low, high]: [f64; 2]) -> String {
         let range = self.words(format!("{low} to {high}"));
-        let name = self.name.rsplit('.').next().unwrap_or_default();
+        let name = self.own_name();
         self.rpm.map_or(range.clone(), |rpm| format!("{name} {range} at {rpm} rpm"))
     }
 }

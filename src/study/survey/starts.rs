@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 
+use crate::estimate::Estimate;
 use crate::flight::State;
 use crate::simulate::{Machine, Motion, SimulateError};
 
@@ -48,6 +49,14 @@ impl Sample {
         match self {
             Self::Spread(count) => *count,
             Self::Given(starts) => starts.len(),
+        }
+    }
+
+    /// Share of `number` of its starts out of the `of` that were run. Only the share of a spread sample has an error.
+    pub fn share(&self, number: usize, of: usize) -> Estimate {
+        match self {
+            Self::Spread(_) => Estimate::share(number, of),
+            Self::Given(_) => Estimate::counted(number, of),
         }
     }
 }
