@@ -5,10 +5,10 @@
 use std::ops::ControlFlow;
 
 use corner_impact::cam::Cam;
-use corner_impact::draw::{Density, Look, svg};
-use corner_impact::figures::{corner_marks, impact_diagram};
 use corner_impact::model::{Model, OSORIO_2008};
 use corner_impact::simulate::{Event, EventKind, Machine, Unobserved, angular_velocity};
+use corner_impact_cli::figures::{corner_marks, impact_diagram};
+use corner_impact_plot::{Density, Look, svg};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let file = std::env::args().nth(1).ok_or("the name of a file to write, such as diagram.svg")?;

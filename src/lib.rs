@@ -30,27 +30,17 @@
 //!  study                 one module per question that a user can ask: verify, locate, speeds, ...; its result is the document
 //!    ▼
 //!  paper                 the paper's statements, one by one, each with a verdict and how that is known
-//!    ▼
-//!  show                  blocks on a terminal, in a browser and as Markdown; JSON, CSV; words and digits, each written once
-//!    ▼
-//!  figures               a file for each figure, or for a family: numbers, plot, title and caption
-//!    ▼
-//!  report                everything about one model in one value
-//!    ▼
-//!  pages                 the page of each command, and that of the report
-//!    ▼
-//!  cli                   parse, one library call, exit code
 //! ```
 //!
 //! Data moves down; no stage uses one below it, and a test holds the code to that. `tolerance` stands above all: every
 //! threshold is a row of its one table; so do `elementary`, sine and exponential with the same bits on every processor, `known`, the
 //! words for how a result is known, `progress`, by which long work
-//! tells how far it has come, `cancel`, by which it is ended, `bracket`, which finds roots, `interval`, which proves that it has found all, `estimate`, a number with its error, `ball`, a number with the radius that is proved, `draw`, which turns a
-//! plot into SVG or PNG and knows no mechanics, `untrusted`, which shows text of somebody else, and `file`, which writes files whole or not at all and reads them up to
+//! tells how far it has come, `cancel`, by which it is ended, `bracket`, which finds roots, `interval`, which proves that it has found all, `estimate`, a number with its error, `ball`, a number with the radius that is proved, `untrusted`, which shows text of somebody else, and `file`, which writes files whole or not at all and reads them up to
 //! a limit.
 //!
-//! Modules and items that this documentation does not show serve the command, the Python package and the tests. They may change in any
-//! release.
+//! What people look at stands in packages beside this one: `crates/program` is the command with its pages, reports and figures, and
+//! `crates/plot` turns a figure into SVG, PNG or PDF. Modules and items that this documentation does not show serve them, the Python package
+//! and the tests. They may change in any release.
 //!
 //! ```
 //! use corner_impact::{model::{Model, OSORIO_2008}, study::verify::{External, verify}};
@@ -89,9 +79,6 @@ pub mod interval;
 
 #[doc(hidden)]
 pub mod ball;
-
-#[doc(hidden)]
-pub mod draw;
 
 #[doc(hidden)]
 pub mod file;
@@ -134,24 +121,6 @@ pub mod study;
 
 #[doc(hidden)]
 pub mod paper;
-
-#[doc(hidden)]
-pub mod show;
-
-#[doc(hidden)]
-pub mod figures;
-
-#[doc(hidden)]
-pub mod report;
-
-#[doc(hidden)]
-pub mod explain;
-
-#[doc(hidden)]
-pub mod pages;
-
-#[doc(hidden)]
-pub mod cli;
 
 /// The program on the page about the theory is a test.
 #[cfg(doctest)]

@@ -1,5 +1,7 @@
 //! How values stand in documents, and that a value is named elsewhere as it is there.
 
+#[doc(hidden)]
+#[macro_export]
 /// Writes values of each type by their names in documents.
 macro_rules! named {
     ($($kind:ty),+) => {$(
@@ -11,6 +13,8 @@ macro_rules! named {
     )+};
 }
 
+#[doc(hidden)]
+#[macro_export]
 /// Writes values of a type into documents: each entry's name, and its value as a formula of the value. An entry that has
 /// `if_any` behind its name is left out where there is none.
 macro_rules! document {
@@ -26,7 +30,7 @@ macro_rules! document {
                 use serde::ser::SerializeMap;
                 let $it = self;
                 let mut map = to.serialize_map(None)?;
-                $(document!(@entry map $name [$($if_any)?] $value);)+
+                $($crate::document!(@entry map $name [$($if_any)?] $value);)+
                 map.end()
             }
         }

@@ -47,7 +47,7 @@ impl Verdict {
     }
 
     /// Whether the statement is wrong: by a slip of its own, or by an earlier one.
-    pub(crate) fn is_wrong(self) -> bool {
+    pub fn is_wrong(self) -> bool {
         matches!(self, Self::Refuted | Self::Misprint)
     }
 }

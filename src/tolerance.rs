@@ -198,9 +198,6 @@ table! {
     JUMP_COEFFICIENT = 1e-6, "of the formula's: six digits, of which a jump of the fourth derivative leaves seven above rounding";
     /// Accuracy of an identity between computed matrices.
     IDENTITY = 1e-12, "of the terms: a few hundred roundings";
-    /// Span above which an axis of a figure shows its values apart.
-    DRAWN_SPAN = 1e-9, "of the values: labels of ticks that differ in the tenth digit cannot be read, and rounding would draw \
-        itself";
     /// Size below which a divisor in a change of coordinates counts as zero.
     DEGENERATE = 1e-10, "of the terms it is made of: the quotient would keep fewer than six digits";
     /// Accuracy with which the two sides of a local map agree on its border.

@@ -36,22 +36,22 @@ fn cut(text: Cow<'_, str>, most: usize) -> Cow<'_, str> {
 }
 
 /// Makes a page, or a part of one, safe to display: lines and tabulators stay.
-pub(crate) fn visible(text: &str) -> Cow<'_, str> {
+pub fn visible(text: &str) -> Cow<'_, str> {
     written_out(text, |letter| matches!(letter, '\n' | '\t'))
 }
 
 /// Makes an error message that contains values safe to display.
-pub(crate) fn sentence(text: &str) -> Cow<'_, str> {
+pub fn sentence(text: &str) -> Cow<'_, str> {
     cut(visible(text), SENTENCE)
 }
 
 /// Makes a value safe to display, in one line.
-pub(crate) fn value(text: &str) -> Cow<'_, str> {
+pub fn value(text: &str) -> Cow<'_, str> {
     cut(written_out(text, |_| false), VALUE)
 }
 
 /// Makes the text of a file safe to display with every letter at its place, in bytes, for a drawing that points into it.
-pub(crate) fn in_place(text: &str) -> String {
+pub fn in_place(text: &str) -> String {
     let mut letters = text.chars().peekable();
     let mut seen = String::with_capacity(text.len());
     while let Some(letter) = letters.next() {

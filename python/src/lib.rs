@@ -12,7 +12,7 @@ mod work;
 mod _native {
     use std::ffi::OsString;
 
-    use corner_impact::cli::{Terminal, run_at};
+    use corner_impact_cli::cli::{Terminal, run_at};
     use pyo3::prelude::*;
 
     #[pymodule_export]

@@ -4,15 +4,12 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use corner_impact::cam::{Cam, within_a_turn};
-use corner_impact::draw::{Look, svg};
-use corner_impact::figures::cam_figure;
 use corner_impact::flight::State;
 use corner_impact::model;
 use corner_impact::orbit::long_run::Budget;
 use corner_impact::orbit::{Parameter, Search};
 use corner_impact::progress::Unwatched;
 use corner_impact::section::{StroboscopicMap, next_impact};
-use corner_impact::show::notes;
 use corner_impact::simulate::{Machine, angular_velocity};
 use corner_impact::study::StudyError;
 use corner_impact::study::attractors::{Resolution, Step};
@@ -27,6 +24,9 @@ use corner_impact::study::survey::{
     Beginning, Growth, Over, Sample, Section, Survey, Sweep, SweepError, SweepStart, growth,
 };
 use corner_impact::study::verify::{External, verify};
+use corner_impact_cli::figures::cam_figure;
+use corner_impact_cli::show::notes;
+use corner_impact_plot::{Look, svg};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::{PyUserWarning, PyValueError};
 use pyo3::prelude::*;

@@ -35,7 +35,7 @@ pub enum Quantity {
 
 impl Quantity {
     /// Its letter in documents, and its side where it has one.
-    pub(crate) fn parts(self) -> (&'static str, Option<Side>) {
+    pub fn parts(self) -> (&'static str, Option<Side>) {
         match self {
             Self::Period => ("T_star", None),
             Self::State => ("x_star", None),
@@ -103,7 +103,7 @@ pub fn compare(routes: [RouteName; 2], quantity: Quantity, entries: [&[f64]; 2],
 }
 
 /// The larger of two; not a number if either is not, which [`f64::max`] would pass over.
-pub(crate) fn worse(one: f64, other: f64) -> f64 {
+pub fn worse(one: f64, other: f64) -> f64 {
     if one.is_nan() || other.is_nan() { f64::NAN } else { one.max(other) }
 }
 
@@ -234,7 +234,7 @@ fn pairs<T>(items: &[T]) -> impl Iterator<Item = (&T, &T)> {
 
 /// The pairs of routes that one quantity was compared by.
 #[derive(Clone, Debug)]
-pub(crate) struct Pairs<'a> {
+pub struct Pairs<'a> {
     pub quantity: Quantity,
     pub all: Vec<&'a Agreement>,
     /// The pair that is nearest to its bound, or beyond; what is not a number disagrees, and comes first.
@@ -252,13 +252,13 @@ document!(Pairs<'_> as pairs {
 
 impl Pairs<'_> {
     /// How many of them follow from A and B.
-    pub(crate) fn following(&self) -> usize {
+    pub fn following(&self) -> usize {
         self.all.iter().filter(|pair| pair.follows).count()
     }
 }
 
 /// Comparisons by quantity, in the order in which quantities come first.
-pub(crate) fn by_quantity(comparisons: &[Agreement]) -> Vec<Pairs<'_>> {
+pub fn by_quantity(comparisons: &[Agreement]) -> Vec<Pairs<'_>> {
     let used = |entry: &Agreement| {
         let used = entry.max_abs_diff / entry.bound.value;
         if used.is_nan() { f64::INFINITY } else { used }

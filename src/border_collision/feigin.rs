@@ -59,7 +59,7 @@ impl Speeds {
 }
 
 /// The name of the speeds at which the period changes by `mu`.
-pub(crate) fn speeds_at(mu: f64) -> String {
+pub fn speeds_at(mu: f64) -> String {
     Speeds::of(mu).map_or("at".into(), |speeds| speeds.to_string())
 }
 

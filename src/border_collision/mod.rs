@@ -17,12 +17,14 @@
 pub mod conditions;
 pub mod danger;
 pub mod directions;
-pub(crate) mod event_curve;
+#[doc(hidden)]
+pub mod event_curve;
 pub mod feigin;
 pub mod local_map;
 pub mod long_run;
 pub mod normal_form;
-pub(crate) mod outcome;
+#[doc(hidden)]
+pub mod outcome;
 pub mod passage;
 pub mod robust_chaos;
 pub mod rounded;
@@ -33,7 +35,7 @@ pub mod word;
 pub use conditions::{Condition, conditions};
 pub(crate) use danger::WithDanger;
 pub use danger::{Danger, DangerKind};
-pub(crate) use event_curve::EventCurve;
+pub use event_curve::EventCurve;
 pub use feigin::{Classification, classify, scenario};
 pub use local_map::LocalMap;
 pub use normal_form::{NormalForm, normal_form};

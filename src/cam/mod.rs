@@ -37,7 +37,7 @@ pub use features::Stray;
 pub(crate) use features::{spread, strays};
 pub(crate) use fit::{Fit, fit, fitted};
 pub use harmonics::Harmonics;
-pub(crate) use jet::Jet;
+pub use jet::Jet;
 pub use law::Law;
 pub use lift::Lift;
 pub use minimum::Least;

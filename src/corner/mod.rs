@@ -28,7 +28,8 @@
 //!
 //! States here are the paper's x: position from the spring's equilibrium, and velocity.
 
-pub(crate) mod candidates;
+#[doc(hidden)]
+pub mod candidates;
 pub mod closed_form;
 pub(crate) mod confirm;
 pub(crate) mod corner_impact;
@@ -43,7 +44,8 @@ pub mod one_sided;
 pub(crate) mod period_equation;
 pub mod range;
 pub mod second_order;
-pub(crate) mod shots;
+#[doc(hidden)]
+pub mod shots;
 pub(crate) mod simulated_orbit;
 pub mod variational;
 pub mod varied;

@@ -65,7 +65,7 @@ impl HSet {
     }
 
     /// The cam's angle, degrees, and the velocity relative to the cam, m/s, at x and y.
-    pub(crate) fn at(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+    pub fn at(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         [0, 1].map(|side| self.centre[side] + x * self.unstable[side] + y * self.stable[side])
     }
 }

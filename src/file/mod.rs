@@ -5,8 +5,8 @@
 //! however the program ends. `-` is standard output, which has no such protection: incomplete output says so in its last line.
 
 mod read;
+mod registry;
 mod scratch;
-mod signals;
 mod unfinished;
 
 use std::collections::BTreeMap;
@@ -15,8 +15,9 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 pub(crate) use read::{text, text_of_any_age};
+pub(crate) use registry::Started;
+pub use registry::clear;
 pub(crate) use scratch::Scratch;
-pub(crate) use signals::Started;
 use unfinished::Unfinished;
 
 /// Reason why a file was not written.
@@ -37,7 +38,7 @@ impl FileError {
     }
 
     /// Whether the error is a closed pipe on standard output.
-    pub(crate) fn is_unread(&self) -> bool {
+    pub fn is_unread(&self) -> bool {
         self.standard && self.kind() == io::ErrorKind::BrokenPipe
     }
 
@@ -86,7 +87,7 @@ impl<'a> Output<'a> {
     }
 
     /// Begins to write a file of that name, even if the name is `-`.
-    pub(crate) fn file(path: &Path) -> Result<Output<'static>, FileError> {
+    pub fn file(path: &Path) -> Result<Output<'static>, FileError> {
         Ok(Output { path: path.to_owned(), sink: begin(path)?, begun: false })
     }
 
@@ -138,14 +139,8 @@ impl Write for Output<'_> {
     }
 }
 
-/// Installs a handler for signals that end the program. Such signals wait while a file gets its name, remove unfinished files and end
-/// started programs. Meant for programs that leave these signals to this library.
-pub fn clear_on_signals() -> io::Result<()> {
-    signals::watch()
-}
-
 /// Refuses results, each with its description, whose names lead to the same file by whatever path: the last would overwrite the others.
-pub(crate) fn distinct<'a>(results: impl IntoIterator<Item = (&'a str, &'a Path)>) -> Result<(), FileError> {
+pub fn distinct<'a>(results: impl IntoIterator<Item = (&'a str, &'a Path)>) -> Result<(), FileError> {
     let mut places = BTreeMap::new();
     results.into_iter().try_for_each(|(what, path)| match places.insert(place(path), what) {
         Some(before) => {

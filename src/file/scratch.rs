@@ -6,7 +6,7 @@ use std::path::Path;
 
 use tempfile::{Builder, TempDir};
 
-use super::signals::{self, Listed};
+use super::registry::{self, Listed};
 
 /// Prefix of the folder's name, and the file in it that the program keeps locked while it runs.
 const NAME: &str = "corner-impact.";
@@ -27,7 +27,7 @@ impl Scratch {
     pub(crate) fn of(files: &[(&str, &str)]) -> io::Result<Self> {
         sweep();
         // Signals wait until the last file is complete: a folder cannot be emptied while it is filled.
-        let mut held = signals::held();
+        let mut held = registry::held();
         let folder = Builder::new().prefix(NAME).tempdir()?;
         // Locked before it is renamed: otherwise another program could find it unlocked in between.
         let unnamed = folder.path().join(UNNAMED);

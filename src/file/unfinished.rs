@@ -4,7 +4,7 @@
 //! nameless file can only get a name that is free; then it is complete at once. If the name is taken, the file first gets a short hidden
 //! name and then replaces the other file. Signals that can be caught wait during these two steps; `kill -9` in that instant leaves the old
 //! file unchanged and the complete new one beside it, as `.XXXXXX.tmp`. File systems without nameless files (NFS, FAT), and other systems,
-//! use `.XXXXXX.tmp` from the beginning; [`signals`](super::signals) remove that file, `kill -9` does not.
+//! use `.XXXXXX.tmp` from the beginning; signals that can be caught remove that file, `kill -9` does not.
 
 #[cfg(target_os = "linux")]
 use std::fs::File;
@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 
 use tempfile::{Builder, NamedTempFile};
 
-use super::signals::{self, Listed};
+use super::registry::{self, Listed};
 
 /// A file that does not have its name yet.
 pub(super) enum Unfinished {
@@ -49,7 +49,7 @@ impl Unfinished {
             // Permissions of any new file, less the umask; a temporary file would otherwise be private to its owner.
             builder.permissions(std::fs::Permissions::from_mode(0o666));
         }
-        let mut held = signals::held();
+        let mut held = registry::held();
         let file = builder.tempfile_in(folder)?;
         held.insert(file.path().to_owned());
         let listed = Listed(file.path().to_owned());
@@ -67,7 +67,7 @@ impl Unfinished {
     /// Gives the file its name and replaces any file of that name.
     pub(super) fn named(self, target: &Path) -> io::Result<()> {
         // No signal ends the program while this lock is held.
-        let held = signals::held();
+        let held = registry::held();
         match self {
             #[cfg(target_os = "linux")]
             Self::Nameless(file, folder) => match linux::link(&file, target) {
@@ -144,13 +144,13 @@ mod tests {
         for words in ["new", "in its place"] {
             let mut file = Unfinished::hidden(folder.path()).unwrap();
             file.write_all(words.as_bytes()).unwrap();
-            let listed = signals::held().iter().any(|path| path.parent() == Some(folder.path()));
+            let listed = registry::held().iter().any(|path| path.parent() == Some(folder.path()));
             assert!(listed, "a signal has to know it");
             file.named(&target).unwrap();
             assert_eq!((names().len(), std::fs::read_to_string(&target).unwrap().as_str()), (1, words));
         }
         drop(Unfinished::hidden(folder.path()).unwrap());
         assert_eq!(names().len(), 1);
-        assert!(signals::held().iter().all(|path| path.parent() != Some(folder.path())));
+        assert!(registry::held().iter().all(|path| path.parent() != Some(folder.path())));
     }
 }

@@ -26,7 +26,7 @@ pub use complaint::ModelError;
 use fields::{Allowed, Fields};
 pub use nearest::nearest;
 pub use numeral::Numeral;
-pub(crate) use profile::CORNER_ROUNDING;
+pub use profile::CORNER_ROUNDING;
 pub(crate) use profile::{
     ArcsProfile, MOST_COEFFICIENTS, MotionSegment, PolynomialSegment, ProgramProfile, RectifiedSineProfile,
 };
@@ -34,7 +34,7 @@ pub use profile::{CamProfile, HarmonicProfile, StandardMotion};
 pub(crate) use rows::TableRow;
 pub use rows::{Separator, TableLayout};
 pub use table::Reading;
-pub(crate) use table::{MOST_PROVED_ROWS, Smoothing, SmoothingTolerance, Spline, TableProfile};
+pub use table::{MOST_PROVED_ROWS, Smoothing, SmoothingTolerance, Spline, TableProfile};
 pub use units::{Converted, Unit, Units};
 
 /// The model whose numbers the paper prints, built in so that the binary needs no other file.
@@ -168,7 +168,7 @@ impl Model {
     }
 
     /// The table of lifts that gives the cam its profile, if there is one.
-    pub(crate) fn table(&self) -> Option<&TableProfile> {
+    pub fn table(&self) -> Option<&TableProfile> {
         let mut sharp = &self.cam;
         while let CamProfile::Rounded { sharp: inside, .. } = sharp {
             sharp = inside;

@@ -14,7 +14,7 @@ use crate::file;
 use crate::tolerance;
 
 /// Most rows of a table in proofs.
-pub(crate) const MOST_PROVED_ROWS: usize = 1000;
+pub const MOST_PROVED_ROWS: usize = 1000;
 
 /// A spline through the rows of a table, or near them.
 #[derive(Clone, Debug, PartialEq)]

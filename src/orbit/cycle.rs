@@ -48,6 +48,7 @@ impl Impact {
 pub struct Cycle {
     /// Turns of the cam in one period.
     pub revolutions: u64,
+    /// The impacts, in order.
     pub impacts: Vec<Impact>,
 }
 
@@ -57,7 +58,9 @@ pub struct Cycle {
     "no periodic orbit near the guess: after {steps} Newton steps the equations are off by {residual:e} of their size"
 )]
 pub struct NotClosed {
+    /// Steps of Newton's method.
     pub steps: usize,
+    /// What the equations are off by, relative to their size.
     pub residual: f64,
 }
 
@@ -298,6 +301,7 @@ impl Cycle {
         }
     }
 
+    /// Its impacts as events of a run.
     pub fn events(&self, machine: &Machine) -> Vec<Event> {
         let event = |(index, impact): (usize, &Impact)| {
             let struck = self.struck(machine, index);

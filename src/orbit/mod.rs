@@ -43,7 +43,7 @@ use crate::known::Evidence;
 use crate::simulate::{Event, EventKind, Machine, Motion, SimulateError};
 use crate::tolerance;
 pub use complete::Undecided;
-pub(crate) use cycle::{Cycle, Impact, NotClosed};
+pub use cycle::{Cycle, Impact, NotClosed};
 pub(crate) use departure::Departure;
 pub use family::Parameter;
 pub(crate) use family::{Family, FamilyError};
@@ -143,7 +143,7 @@ impl PeriodicOrbit {
     }
 
     /// Events at which the follower begins to stick or is released.
-    pub(crate) fn rests(&self) -> impl Iterator<Item = &Event> {
+    pub fn rests(&self) -> impl Iterator<Item = &Event> {
         self.events.iter().filter(|event| event.kind != EventKind::Impact)
     }
 

@@ -158,7 +158,7 @@ impl Check<'_> {
     }
 
     /// Decides the statement. A check that ends with an error leaves it open, with reading as the only evidence.
-    pub(crate) fn run(self, context: &Context<'_>) -> CheckResult {
+    pub fn run(self, context: &Context<'_>) -> CheckResult {
         let (known, decision) = match self {
             _ if self.is_about_the_papers_model() && !context.is_paper => {
                 (Evidence::Read, Err("about the paper's follower and cam; this model has others".into()))

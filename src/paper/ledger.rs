@@ -130,7 +130,7 @@ impl Claims {
     }
 
     /// The statements that make a slip, each with those that are wrong by it, itself in front.
-    pub(crate) fn slips(&self) -> impl Iterator<Item = (&Held, Vec<&Held>)> {
+    pub fn slips(&self) -> impl Iterator<Item = (&Held, Vec<&Held>)> {
         let makers = self.claims.iter().filter(|held| held.makes_a_slip());
         makers.map(|maker| {
             let others = self.claims.iter().filter(|held| held.id != maker.id && held.slips.contains(&maker.id));
@@ -139,14 +139,14 @@ impl Claims {
     }
 
     /// How many of the statements with a verdict make a slip, and how many are only consequences of one.
-    pub(crate) fn slips_and_consequences(&self, verdict: Verdict) -> (usize, usize) {
+    pub fn slips_and_consequences(&self, verdict: Verdict) -> (usize, usize) {
         let with = self.claims.iter().filter(|held| held.verdict == verdict);
         let (makers, followers): (Vec<_>, Vec<_>) = with.partition(|held| held.makes_a_slip());
         (makers.len(), followers.len())
     }
 
     /// The verdicts, the ones to read first in front, each with its statements.
-    pub(crate) fn groups(&self) -> impl Iterator<Item = (Verdict, Vec<&Held>)> {
+    pub fn groups(&self) -> impl Iterator<Item = (Verdict, Vec<&Held>)> {
         Verdict::WORST_FIRST
             .into_iter()
             .map(|verdict| (verdict, self.claims.iter().filter(|held| held.verdict == verdict).collect()))

@@ -91,7 +91,7 @@ fn motions(model: &Model, cam: &Cam) -> Vec<&'static str> {
 
 impl CamSheet {
     /// Whether the cam is a smoothing spline near the rows of a table.
-    pub(crate) fn is_smoothed(&self) -> bool {
+    pub fn is_smoothed(&self) -> bool {
         self.measured.as_ref().is_some_and(|measured| measured.is_smoothed)
     }
 

@@ -4,7 +4,6 @@ use std::time::Instant;
 
 use serde::Serialize;
 
-use crate::draw::{Cloud, Density};
 use crate::orbit::long_run::Budget;
 use crate::progress::Watch;
 use crate::simulate::{Machine, Motion, SimulateError};
@@ -102,41 +101,5 @@ impl Swept {
         let is_judged = sweep.growth.is_some() || matches!(sweep.starts, Beginning::Found(_));
         let (schema, wall_s) = ("corner-impact/diagram/1", clock.elapsed().as_secs_f64());
         Ok(Self { schema, model: model.into(), tally, followed, is_judged, threads, wall_s })
-    }
-}
-
-/// The points that a picture of a sweep shows: impact angles, in degrees, or positions at the section, m, and Lyapunov exponents. The
-/// horizontal axis has the spacing of the values.
-#[derive(Clone, Debug)]
-pub struct Shown {
-    in_degrees: bool,
-    spacing: Spacing,
-    cloud: Cloud,
-    /// Place of each value that has a Lyapunov exponent, and that exponent per revolution.
-    pub exponents: Vec<[f64; 2]>,
-}
-
-impl Shown {
-    /// Builds an empty picture of a sweep.
-    pub fn new(sweep: &Sweep) -> Self {
-        let spacing = sweep.over.axis().spacing;
-        let [low, high] = sweep.over.axis().ends().map(|end| spacing.place(end));
-        let cloud = Cloud::new(if high > low { [low, high] } else { [0.99 * low, 1.01 * low] });
-        Self { in_degrees: sweep.section == Section::Impacts, spacing, cloud, exponents: Vec::new() }
-    }
-
-    /// Adds the results of a block.
-    pub fn take(&mut self, found: &Places) {
-        for [value, place] in &found.places {
-            self.cloud.push(self.spacing.place(*value), if self.in_degrees { place.to_degrees() } else { *place });
-        }
-        let is_new = |new: &[f64; 2]| self.exponents.last().is_none_or(|last| last[0] != new[0]);
-        let placed = |[value, exponent]: [f64; 2]| [self.spacing.place(value), exponent];
-        self.exponents.extend(found.exponent.map(placed).filter(is_new));
-    }
-
-    /// Returns the density of the points, and the exponents.
-    pub fn places(self) -> (Density, Vec<[f64; 2]>) {
-        (self.cloud.finish(), self.exponents)
     }
 }

@@ -130,7 +130,7 @@ document!(LocatedImpact as it {
 
 impl LocatedImpact {
     /// The side whose orbit this is, if the velocity jumps.
-    pub(crate) fn side(&self) -> Option<Side> {
+    pub fn side(&self) -> Option<Side> {
         (self.at.corner.jump_order == 1).then_some(self.at.side)
     }
 
@@ -153,7 +153,7 @@ pub enum Happens {
 
 impl Happens {
     /// Name in documents.
-    pub(crate) fn scenario(&self) -> String {
+    pub fn scenario(&self) -> String {
         match self {
             Self::Gap => "gap".into(),
             Self::BorderCollision(Ok(kind)) => kind.scenario.to_string(),
@@ -164,7 +164,7 @@ impl Happens {
     }
 
     /// Meaning of the event, in words. For a border collision the fixed points give more.
-    pub(crate) fn meaning(&self) -> String {
+    pub fn meaning(&self) -> String {
         match self {
             Self::BorderCollision(Ok(_)) => "two matrices meet on a border".into(),
             Self::BorderCollision(Err(refusal)) => format!("Feigin's classification says nothing: {refusal}"),

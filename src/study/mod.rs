@@ -123,7 +123,7 @@ fn inside(model: &Model, rpm: f64, following: &Following) -> Result<f64, StudyEr
 }
 
 /// Hypotheses on the machine for proofs by intervals of doubles.
-pub(crate) fn hypotheses(cam: &Cam) -> Vec<&'static str> {
+pub fn hypotheses(cam: &Cam) -> Vec<&'static str> {
     let doubles = "the machine is the one whose numbers are the doubles that those of the model file became";
     let meets = "where one law of the lift ends the next goes on with the same lift and the same slope, as the model means it, but at corners \
                  where the velocity jumps";

@@ -5,8 +5,8 @@ mod devtools;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-use corner_impact::figures::through_corner::Moment;
-use corner_impact::report::through::ThroughCorner;
+use corner_impact_cli::figures::through_corner::Moment;
+use corner_impact_cli::report::through::ThroughCorner;
 use devtools::Page;
 use serde_json::Value;
 

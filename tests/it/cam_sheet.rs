@@ -3,8 +3,8 @@
 use std::f64::consts::TAU;
 
 use corner_impact::model::Model;
-use corner_impact::show::Paged;
 use corner_impact::study::cam::CamSheet;
+use corner_impact_cli::show::Paged;
 use serde_json::json;
 
 use crate::common;

@@ -13,11 +13,11 @@ use corner_impact::known::Evidence;
 use corner_impact::model::{Model, Study};
 use corner_impact::progress::Unwatched;
 use corner_impact::section::StroboscopicMap;
-use corner_impact::show::Paged;
 use corner_impact::simulate::Machine;
 use corner_impact::study::attractors::{Resolution, Step};
 use corner_impact::study::locate::locate;
 use corner_impact::study::verify::{External, verify};
+use corner_impact_cli::show::Paged;
 use nalgebra::{Matrix2, Vector2};
 
 /// A follower without spring or damping on a cam of three polynomials, whose corner impact at 60 rpm has the traces -0.3 and -1.7 and the

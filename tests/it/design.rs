@@ -4,11 +4,11 @@ use corner_impact::cam::Cam;
 use corner_impact::known::Evidence;
 use corner_impact::model::Model;
 use corner_impact::progress::Unwatched;
-use corner_impact::show::Paged;
 use corner_impact::study::attractors::detachment;
 use corner_impact::study::design::contact::{Contact, Separation};
 use corner_impact::study::design::needs::{Answer, Lever, Need};
 use corner_impact::study::design::{Asked, Design, design};
+use corner_impact_cli::show::Paged;
 use serde_json::Value;
 
 use crate::common::{self, corner_impact, text};

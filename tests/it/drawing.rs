@@ -3,19 +3,19 @@
 use std::f64::consts::TAU;
 
 use corner_impact::cam::Cam;
-use corner_impact::draw::layout::{Layout, TEXT, Text, WIDTH, width};
-use corner_impact::draw::ticks::{Tick, ticks, unit};
-use corner_impact::draw::{
-    Cloud, Colour, Data, Density, Figure, FigureAxis, Look, Mark, Marker, Panel, Series, Stroke, TickSpacing, png, svg,
-    thin,
-};
-use corner_impact::figures::{
-    CornerMark, TracedRun, cam_figure, corner_marks, impact_diagram, phase_plane, strobe_diagram, time_trace,
-};
 use corner_impact::flight::State;
 use corner_impact::model::{Model, OSORIO_2008};
 use corner_impact::section::TraceSample;
 use corner_impact::simulate::{Event, EventKind};
+use corner_impact_cli::figures::{
+    CornerMark, TracedRun, cam_figure, corner_marks, impact_diagram, phase_plane, strobe_diagram, time_trace,
+};
+use corner_impact_plot::layout::{Layout, TEXT, Text, WIDTH, width};
+use corner_impact_plot::ticks::{Tick, ticks, unit};
+use corner_impact_plot::{
+    Cloud, Colour, Data, Density, Figure, FigureAxis, Look, Mark, Marker, Panel, Series, Stroke, TickSpacing, png, svg,
+    thin,
+};
 use resvg::tiny_skia::Pixmap;
 use resvg::usvg::{Options, Tree, roxmltree::Document};
 

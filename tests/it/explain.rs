@@ -6,12 +6,12 @@ use std::path::{Path, PathBuf};
 use crate::common::{self, corner_impact, text};
 use crate::labels::LABELS;
 use crate::page::papers;
-use corner_impact::explain::{Explanation, Findings, Links};
 use corner_impact::model::Model;
 use corner_impact::progress::Unwatched;
-use corner_impact::show::Paged;
 use corner_impact::study::compare::compare;
 use corner_impact::study::verify::{External, verify};
+use corner_impact_cli::explain::{Explanation, Findings, Links};
+use corner_impact_cli::show::Paged;
 use serde_json::Value;
 
 fn file(name: &str) -> String {

@@ -7,14 +7,14 @@ use std::sync::OnceLock;
 use crate::common;
 use corner_impact::known::Evidence;
 use corner_impact::model::Model;
-use corner_impact::pages;
 use corner_impact::paper::checks::{CHECKS, Check, find};
 use corner_impact::paper::ledger::claims;
 use corner_impact::paper::{Claims, Context};
 use corner_impact::progress::Unwatched;
 use corner_impact::published::Verdict;
-use corner_impact::show::markdown;
 use corner_impact::study::verify::{External, verify};
+use corner_impact_cli::pages;
+use corner_impact_cli::show::markdown;
 
 fn held(model: &Model) -> Claims {
     let findings = verify(model, External::LeftOut).unwrap();

@@ -16,11 +16,11 @@ use corner_impact::flight::State;
 use corner_impact::model::Model;
 use corner_impact::progress::Unwatched;
 use corner_impact::section::StroboscopicMap;
-use corner_impact::show::Paged;
 use corner_impact::simulate::Machine;
 use corner_impact::simulate::growth;
 use corner_impact::study::locate::{Happens, locate};
 use corner_impact::study::verify::{External, Verification, verify};
+use corner_impact_cli::show::Paged;
 use nalgebra::{Matrix2, Vector2};
 use serde_json::json;
 

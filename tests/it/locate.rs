@@ -267,7 +267,7 @@ fn what_one_way_of_looking_misses_the_other_finds() {
     let recaptured = found.looked_at.recaptured();
     assert_eq!((recaptured[&4].branches, recaptured[&4].shots, recaptured[&4].both), (1, 1, 1), "{recaptured:?}");
     assert_eq!((recaptured[&5].branches, recaptured[&5].shots, recaptured[&5].both), (0, 1, 0), "{recaptured:?}");
-    let page = corner_impact::show::Paged::text(&found).unwrap();
+    let page = corner_impact_cli::show::Paged::text(&found).unwrap();
     let words = crate::common::in_one_line(&page);
     assert!(words.contains("By shots alone: 2."), "{page}");
 }
@@ -292,7 +292,7 @@ fn what_two_catches_share_tells_what_is_missing() {
 
 #[test]
 fn a_disagreement_is_said_and_ends_with_1() {
-    use corner_impact::show::Paged;
+    use corner_impact_cli::show::Paged;
     let model = common::osorio();
     let mut found = surveyed(&model, 672.0, 674.0, 1);
     let item = found.found[0].comparisons.iter_mut().find(|item| item.quantity.to_string() == "A_plus").unwrap();

@@ -4,13 +4,11 @@ use std::f64::consts::{PI, TAU};
 
 use approx::assert_abs_diff_eq;
 use corner_impact::cam::{Cam, Corner, Law, Segment, Side, apart};
-use corner_impact::figures::corner_marks;
 use corner_impact::measured::PlausibleCams;
 use corner_impact::model::{Model, Study};
 use corner_impact::orbit::long_run::Budget;
 use corner_impact::orbit::{Parameter, PeriodicOrbit, Search};
 use corner_impact::progress::Unwatched;
-use corner_impact::show::Paged;
 use corner_impact::study::attractors::{Cause, Resolution, Step, Transition};
 use corner_impact::study::design::contact::{Contact, Separation};
 use corner_impact::study::design::needs::Answer;
@@ -20,6 +18,8 @@ use corner_impact::study::orbit::{OrbitQuery, orbits};
 use corner_impact::study::speeds::SpeedSurvey;
 use corner_impact::study::survey::{Axis, Spacing, Values};
 use corner_impact::study::verify::{External, Verification, verify};
+use corner_impact_cli::figures::corner_marks;
+use corner_impact_cli::show::Paged;
 use serde_json::{Value, json};
 
 use crate::common;
@@ -1273,7 +1273,7 @@ fn a_noise_that_is_unknown_is_said_to_be() {
         corner_impact::study::cam::CamSheet::new(&model, &Cam::new(&model).unwrap(), 3).unwrap().text().unwrap();
     let design =
         design(&model, &Asked { rpm: Some([10.0, 10.0]), ..Asked::default() }, &Unwatched).unwrap().text().unwrap();
-    let as_drawn = corner_impact::show::notes::as_drawn(&model).unwrap().unwrap();
+    let as_drawn = corner_impact_cli::show::notes::as_drawn(&model).unwrap().unwrap();
     for page in [sheet, design, as_drawn] {
         let page = crate::common::in_one_line(&page);
         assert!(page.contains("How far the rows are from a smooth motion is unknown"), "{page}");

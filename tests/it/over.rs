@@ -5,7 +5,6 @@ use corner_impact::model::Model;
 use corner_impact::orbit::Parameter;
 use corner_impact::orbit::long_run::{Budget, Kind};
 use corner_impact::progress::Unwatched;
-use corner_impact::show::Paged;
 use corner_impact::study::attractors::{AttractorsError, Cause, Resolution, Step, attractors};
 use corner_impact::study::basins::{Basin, BasinsOver, Begun};
 use corner_impact::study::design::contact::Contact;
@@ -13,6 +12,7 @@ use corner_impact::study::design::{Asked, design};
 use corner_impact::study::diagram::one_row;
 use corner_impact::study::speeds::{SpeedSurvey, speeds};
 use corner_impact::study::survey::{Axis, Over, Placed, RunError, Sample, Spacing, Start, Survey, Values};
+use corner_impact_cli::show::Paged;
 
 use crate::common::{self, corner_impact, text};
 

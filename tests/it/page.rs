@@ -8,16 +8,16 @@ use crate::common;
 use crate::explain::all_are_explained;
 use base64::Engine;
 use corner_impact::border_collision::feigin::Speeds;
-use corner_impact::figures::through_corner::{ImpactSide, Moment, ShownOrbit, through_corner};
 use corner_impact::model::{Model, OSORIO_2008};
 use corner_impact::orbit::eigenvalues;
-use corner_impact::pages::report::html;
 use corner_impact::progress::Unwatched;
-use corner_impact::report::Report;
-use corner_impact::report::through::ThroughCorner;
 use corner_impact::section::StroboscopicMap;
 use corner_impact::simulate::{Machine, angular_velocity};
 use corner_impact::study::verify::{External, verify};
+use corner_impact_cli::figures::through_corner::{ImpactSide, Moment, ShownOrbit, through_corner};
+use corner_impact_cli::pages::report::html;
+use corner_impact_cli::report::Report;
+use corner_impact_cli::report::through::ThroughCorner;
 use serde_json::Value;
 
 /// The paper's report and its page, made once.

@@ -7,17 +7,17 @@ use std::sync::Arc;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use corner_impact::cam::Cam;
-use corner_impact::draw::font::Fonts;
-use corner_impact::draw::layout::{Layout, TEXT, Text, WIDTH, width};
-use corner_impact::draw::{
-    Beside, Colour, Data, Density, Figure, FigureAxis, Label, Look, Marker, Panel, Series, Stroke, Theme, pdf, png, svg,
-};
-use corner_impact::figures::{cam_figure, corner_marks, impact_diagram, speeds_figure};
 use corner_impact::model::{Model, OSORIO_2008};
 use corner_impact::progress::Unwatched;
 use corner_impact::study::attractors::{Resolution, Step};
 use corner_impact::study::speeds::{AttractorRow, SpeedSurvey};
 use corner_impact::study::survey::Place;
+use corner_impact_cli::figures::{cam_figure, corner_marks, impact_diagram, speeds_figure};
+use corner_impact_plot::font::Fonts;
+use corner_impact_plot::layout::{Layout, TEXT, Text, WIDTH, width};
+use corner_impact_plot::{
+    Beside, Colour, Data, Density, Figure, FigureAxis, Label, Look, Marker, Panel, Series, Stroke, Theme, pdf, png, svg,
+};
 use flate2::read::ZlibDecoder;
 use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg::fontdb::Source;

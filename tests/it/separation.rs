@@ -7,13 +7,13 @@ use approx::assert_relative_eq;
 use corner_impact::cam::Cam;
 use corner_impact::model::Model;
 use corner_impact::progress::Unwatched;
-use corner_impact::show::Paged;
 use corner_impact::simulate::{Event, Machine, angular_velocity};
 use corner_impact::study::attractors::{Resolution, detachment};
 use corner_impact::study::design::contact::{Contact, Separation};
 use corner_impact::study::design::needs::Lever;
 use corner_impact::study::design::{Asked, design};
 use corner_impact::study::speeds::SpeedSurvey;
+use corner_impact_cli::show::Paged;
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseResult;
 

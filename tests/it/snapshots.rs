@@ -8,8 +8,8 @@ use crate::common;
 use corner_impact::border_collision::LocalOutcome;
 use corner_impact::border_collision::long_run::LocalLongRun;
 use corner_impact::corner::map::{Eigenvalue, SideMap};
-use corner_impact::show::Paged;
 use corner_impact::study::verify::{External, verify};
+use corner_impact_cli::show::Paged;
 use serde_json::{Value, json};
 
 const DIGITS: i32 = 10;

@@ -3,7 +3,6 @@
 use std::f64::consts::TAU;
 
 use corner_impact::cam::Cam;
-use corner_impact::figures;
 use corner_impact::interval::Interval;
 use corner_impact::known::Evidence;
 use corner_impact::model::Model;
@@ -11,9 +10,10 @@ use corner_impact::orbit::branch::{Branch, Following};
 use corner_impact::orbit::stability::{Rows, multipliers_error, trace};
 use corner_impact::orbit::{Course, Parameter, PeriodicOrbit, Search, Stability, search};
 use corner_impact::progress::Unwatched;
-use corner_impact::show::Paged;
 use corner_impact::simulate::{Machine, angular_velocity};
 use corner_impact::study::orbit::{OrbitQuery, Orbits, orbits};
+use corner_impact_cli::figures;
+use corner_impact_cli::show::Paged;
 use nalgebra::Matrix2;
 use serde_json::Value;
 

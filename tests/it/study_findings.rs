@@ -16,7 +16,7 @@ use corner_impact::progress::Unwatched;
 use corner_impact::simulate::EventKind;
 use corner_impact::study::StudyError;
 use corner_impact::study::continuation::branches;
-use corner_impact::study::diagram::{Shown, loads, on_attractors, one_row};
+use corner_impact::study::diagram::{loads, on_attractors, one_row};
 use corner_impact::study::locate::{Happens, locate};
 use corner_impact::study::simulate::{RunRequest, Sight, Simulation, Until};
 use corner_impact::study::survey::{

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use crate::common::{self, corner_impact};
-use corner_impact::show::Paged;
+use corner_impact_cli::show::Paged;
 use serde_json::Value;
 
 fn model(name: &str) -> String {

@@ -148,7 +148,7 @@ mod unix {
     #[test]
     fn child_that_waits() {
         let Ok(path) = std::env::var("CORNER_IMPACT_TEST_FILE") else { return };
-        corner_impact::file::clear_on_signals().unwrap();
+        corner_impact_cli::cli::clear_on_signals().unwrap();
         let mut output = create(Path::new(&path));
         output.write_all(&[b'x'; 100_000]).unwrap();
         println!("\nready");

@@ -41,11 +41,11 @@ use super::{Family, FamilyError, OrbitError, Parameter, PeriodicOrbit, Stability
 use crate::model::Model;
 use crate::tolerance;
 pub(crate) use doubled::{crossing, doubled};
-pub(crate) use find::{FoundBranches, GRID_RATIO, MetPoints, find_branches, special_points};
+pub use find::{FoundBranches, GRID_RATIO, MetPoints, find_branches, special_points};
 pub use first_touch::{Doubt, FirstTouch, GrazeClass, UndecidedGraze};
 pub(crate) use free::touches;
 pub(crate) use perturbed::Event;
-pub(crate) use special::Special;
+pub use special::Special;
 pub use special::{Bifurcation, SpecialKind};
 
 /// The followed parameter, its range, and the limits of a walk.

@@ -24,7 +24,7 @@ use crate::model::Model;
 use crate::progress::Watch;
 use crate::tolerance;
 use findings::{Findings, differences, numbers, open};
-pub(crate) use findings::{NamedValues, values};
+pub use findings::{NamedValues, values};
 
 /// A value for each of the two models.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]

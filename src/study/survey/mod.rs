@@ -38,6 +38,6 @@ pub use pipeline::{Counted, RecordBlock, SweepTally};
 pub use places::Places;
 pub use point::{Point, growth};
 pub use starts::{Placed, Sample, Start, Starts};
-pub(crate) use sweep::recurrence;
+pub use sweep::recurrence;
 pub use sweep::{Beginning, Find, Growth, RecordRow, Section, Seen, Sweep, SweepStart, settled_impacts};
 pub use threads::{SweepError, threads};

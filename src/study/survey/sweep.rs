@@ -110,7 +110,7 @@ pub fn settled_impacts(machine: &Machine, transient: u64, record: u64) -> Result
 
 /// Number of impacts after which their cam angles, rad, recur to the precision of a picture. `None` if they do not, within half of the
 /// impacts given.
-pub(crate) fn recurrence(angles: &[f64]) -> Option<usize> {
+pub fn recurrence(angles: &[f64]) -> Option<usize> {
     let near = |(one, other): (&f64, &f64)| apart(*one, *other).to_degrees() <= tolerance::DRAWN_DEGREES.value;
     (1..=angles.len() / 2).find(|period| angles.iter().zip(&angles[*period..]).all(near))
 }

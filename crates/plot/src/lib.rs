@@ -1,0 +1,365 @@
+//! A figure as one value, with three renderers: SVG, and PNG and PDF from the SVG.
+//!
+//! A [`Figure`] describes the drawing in the data's own units. The module [`layout`] places it on the page; [`svg`], [`png`] and [`pdf`]
+//! write it down in a given [`Look`]. The only thing computed here from the data is their extent; the figures themselves are built in
+//! [`crate::figures`].
+
+mod density;
+mod element;
+pub mod font;
+mod grid;
+pub mod layout;
+pub mod look;
+pub mod pdf;
+pub mod png;
+mod series;
+mod sheet;
+pub mod svg;
+pub mod thin;
+pub mod ticks;
+mod words;
+
+use serde::Serialize;
+
+pub use density::{Cloud, Density};
+pub use look::{Look, Theme};
+pub use ticks::TickSpacing;
+
+/// A drawing: panels below each other that share the horizontal axis.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Figure {
+    /// Title above the panels; empty for none.
+    pub title: String,
+    /// Horizontal axis of every panel.
+    pub x: FigureAxis,
+    /// Vertical lines through every panel, labelled above the first.
+    pub marks: Vec<Mark>,
+    /// Panels from top to bottom.
+    pub panels: Vec<Panel>,
+    /// Note below the panels; empty for none.
+    pub note: String,
+}
+
+impl Figure {
+    /// A figure without marks on its horizontal axis and without a note.
+    pub fn new(title: &str, x: FigureAxis, panels: Vec<Panel>) -> Self {
+        Self { title: title.into(), x, marks: Vec::new(), panels, note: String::new() }
+    }
+
+    /// Rewrites the unit of each axis.
+    pub fn in_units(mut self, spelled: impl Fn(&str) -> String) -> Self {
+        for axis in self.panels.iter_mut().map(|panel| &mut panel.y).chain([&mut self.x]) {
+            axis.unit = spelled(&axis.unit);
+        }
+        self
+    }
+}
+
+/// An axis: its name, unit and range.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FigureAxis {
+    /// Name of the quantity on the axis.
+    pub label: String,
+    /// Unit; empty for a pure number.
+    pub unit: String,
+    /// Ends of the axis, the lower first; `None` for the extent of the data.
+    pub range: Option<[f64; 2]>,
+    /// Spacing of the ticks.
+    pub spacing: TickSpacing,
+    /// Whether a unit of this vertical axis is as long as one of the horizontal axis, so that circles are round.
+    pub to_scale: bool,
+}
+
+impl FigureAxis {
+    /// An axis over the extent of the data.
+    pub fn new(label: &str, unit: &str) -> Self {
+        Self { label: label.into(), unit: unit.into(), range: None, spacing: TickSpacing::Decimal, to_scale: false }
+    }
+
+    /// An axis of degrees.
+    pub fn degrees(label: &str) -> Self {
+        Self { spacing: TickSpacing::Degrees, ..Self::new(label, "deg") }
+    }
+
+    /// The axis with its ends set.
+    pub fn over(self, range: [f64; 2]) -> Self {
+        Self { range: Some(range), ..self }
+    }
+
+    /// A vertical axis to the scale of the horizontal one, which determines the height of its frame.
+    pub fn scaled(self) -> Self {
+        Self { to_scale: true, ..self }
+    }
+}
+
+/// A frame with its vertical axis.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Panel {
+    /// The vertical axis.
+    pub y: FigureAxis,
+    /// Height of the frame, in units of the figure's width.
+    pub height: f64,
+    /// Series of data; the first is drawn first.
+    pub series: Vec<Series>,
+    /// Horizontal lines, labelled at the right.
+    pub marks: Vec<Mark>,
+}
+
+impl Panel {
+    /// A panel without marks.
+    pub fn new(y: FigureAxis, height: f64, series: Vec<Series>) -> Self {
+        Self { y, height, series, marks: Vec::new() }
+    }
+
+    /// Adds the plain line at zero.
+    pub fn with_zero(self) -> Self {
+        Self { marks: vec![Mark::zero()], ..self }
+    }
+}
+
+/// A reference line.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Mark {
+    /// Position on its axis.
+    pub at: f64,
+    /// Label; empty for a plain thin line, such as the one at zero.
+    pub label: String,
+}
+
+impl Mark {
+    /// The plain line at zero.
+    pub fn zero() -> Self {
+        Self { at: 0.0, label: String::new() }
+    }
+}
+
+/// Point that breaks a line.
+pub const BREAK: [f64; 2] = [f64::NAN; 2];
+
+/// Minimum and maximum of some values; in reverse order if there are no values.
+pub fn extent(values: impl IntoIterator<Item = f64>) -> [f64; 2] {
+    let none = [f64::INFINITY, f64::NEG_INFINITY];
+    values.into_iter().fold(none, |[low, high], value| [low.min(value), high.max(value)])
+}
+
+/// Points `[x, y]` in the data's units, in order.
+pub trait Points: IntoIterator<Item = [f64; 2]> {}
+
+impl<P: IntoIterator<Item = [f64; 2]>> Points for P {}
+
+/// Data drawn in one style.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Series {
+    /// Name in the legend; empty for none.
+    pub label: String,
+    /// Name in tables for a series without a legend entry; otherwise empty.
+    pub name: String,
+    /// Colour of the series.
+    pub colour: Colour,
+    /// Values of the series.
+    pub data: Data,
+}
+
+impl Series {
+    /// A series with this label in the legend; an empty label has no entry.
+    pub fn new(label: &str, colour: Colour, data: Data) -> Self {
+        Self { label: label.into(), name: String::new(), colour, data }
+    }
+
+    /// Sets the name for tables.
+    pub fn called(self, name: &str) -> Self {
+        Self { name: name.into(), ..self }
+    }
+
+    /// A line through points.
+    pub fn line(label: &str, colour: Colour, stroke: Stroke, points: impl Points) -> Self {
+        Self::new(label, colour, Data::Line { points: points.into_iter().collect(), stroke })
+    }
+
+    /// The area inside a closed line.
+    pub fn area(label: &str, colour: Colour, stroke: Stroke, points: impl Points) -> Self {
+        Self::new(label, colour, Data::Area { points: points.into_iter().collect(), stroke })
+    }
+
+    /// A line with an arrow at its end.
+    pub fn arrow(label: &str, colour: Colour, stroke: Stroke, points: impl Points) -> Self {
+        Self::new(label, colour, Data::Arrow { points: points.into_iter().collect(), stroke })
+    }
+
+    /// A marker at each point.
+    pub fn points(label: &str, colour: Colour, marker: Marker, points: impl Points) -> Self {
+        Self::new(label, colour, Data::Points { points: points.into_iter().collect(), marker })
+    }
+
+    /// A series of words, in the colour of the text and without a legend entry.
+    pub fn words(words: impl IntoIterator<Item = Label>) -> Self {
+        Self::new("", Colour::Ink, Data::Words(words.into_iter().collect()))
+    }
+
+    /// Returns the series unless it is empty, so that the legend has no empty entries.
+    pub fn if_any(self) -> Option<Self> {
+        let none = match &self.data {
+            Data::Words(words) => words.is_empty(),
+            data => data.points().is_some_and(<[_]>::is_empty),
+        };
+        (!none).then_some(self)
+    }
+}
+
+/// Values of a series, `[x, y]` each, and the way they are joined.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+#[expect(missing_docs, reason = "points, stroke and marker are what their types say")]
+pub enum Data {
+    /// Points joined in order; NaN breaks the line.
+    Line {
+        points: Vec<[f64; 2]>,
+        stroke: Stroke,
+    },
+    /// Points joined in order, with the area below them filled down to the frame.
+    Area {
+        points: Vec<[f64; 2]>,
+        stroke: Stroke,
+    },
+    /// A line with an arrowhead at the end of each of its runs.
+    Arrow {
+        points: Vec<[f64; 2]>,
+        stroke: Stroke,
+    },
+    Points {
+        points: Vec<[f64; 2]>,
+        marker: Marker,
+    },
+    /// Words at points, above all other data.
+    Words(Vec<Label>),
+    /// Points counted on a grid, when there are too many to draw one by one.
+    Density(Density),
+    /// Regions of the plane, as the cells of a grid.
+    Region {
+        cells: Density,
+        /// Strength of the colour, up to 1; it distinguishes regions in grey print.
+        strength: f64,
+    },
+}
+
+impl Data {
+    /// Points that are drawn one by one or joined.
+    pub fn points(&self) -> Option<&[[f64; 2]]> {
+        match self {
+            Self::Line { points, .. }
+            | Self::Area { points, .. }
+            | Self::Arrow { points, .. }
+            | Self::Points { points, .. } => Some(points),
+            Self::Words(_) | Self::Density(_) | Self::Region { .. } => None,
+        }
+    }
+}
+
+/// A word at a point.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Label {
+    /// Position `[x, y]`.
+    pub at: [f64; 2],
+    /// Text; `_` lowers and `^` raises the letter after it, or the letters in braces.
+    pub text: String,
+    /// Side of the point on which the word is written.
+    pub beside: Beside,
+}
+
+impl Label {
+    /// A label beside a point, which is given in data values.
+    pub fn new(at: [f64; 2], text: &str, beside: Beside) -> Self {
+        Self { at, text: text.into(), beside }
+    }
+}
+
+/// A side of a point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+#[expect(missing_docs, reason = "a side is what its name says")]
+pub enum Beside {
+    Right,
+    Left,
+    Above,
+    Below,
+    AboveRight,
+    AboveLeft,
+    BelowRight,
+    BelowLeft,
+}
+
+/// Stroke of a line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Stroke {
+    /// A thin solid stroke.
+    Thin,
+    /// A solid stroke.
+    Solid,
+    /// A dashed stroke.
+    Dashed,
+    /// A dotted stroke.
+    Dotted,
+    /// A solid stroke, three times as wide.
+    Thick,
+}
+
+/// Marker at a point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Marker {
+    /// A small disc.
+    Dot,
+    /// A disc.
+    Disc,
+    /// An open circle; this marker and the next ones are small if there are many.
+    Ring,
+    /// An open square.
+    Square,
+    /// An open square on its tip.
+    Diamond,
+    /// An open triangle.
+    Triangle,
+    /// Two diagonal strokes.
+    Cross,
+    /// A horizontal and a vertical stroke.
+    Plus,
+    /// A triangle below the point, with its tip at the point.
+    Below,
+}
+
+/// Colours that remain distinct for the colour-blind (Okabe and Ito), and in grey by their strokes and markers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+#[expect(missing_docs, reason = "a colour is what its name says; ink is that of the text")]
+pub enum Colour {
+    Ink,
+    Grey,
+    Blue,
+    Vermilion,
+    Green,
+    Purple,
+}
+
+impl Colour {
+    /// All colours, in the order in which series take them.
+    pub const ALL: [Self; 6] = [Self::Ink, Self::Grey, Self::Blue, Self::Vermilion, Self::Green, Self::Purple];
+
+    /// Class of the colour in the SVG, its hex value on white paper, and its hex value on a dark screen.
+    pub const fn shades(self) -> (&'static str, &'static str, &'static str) {
+        match self {
+            Self::Ink => ("ink", "#1a1a1a", "#e8e8e8"),
+            Self::Grey => ("grey", "#8a8a8a", "#8f8f8f"),
+            Self::Blue => ("blue", "#0072b2", "#56b4e9"),
+            Self::Vermilion => ("vermilion", "#d55e00", "#f0903c"),
+            Self::Green => ("green", "#009e73", "#35cfa2"),
+            Self::Purple => ("purple", "#b0588a", "#dd9cc2"),
+        }
+    }
+
+    /// Red, green and blue on white paper.
+    pub fn rgb(self) -> [u8; 3] {
+        let hex = self.shades().1.trim_start_matches('#');
+        [0, 2, 4].map(|at| u8::from_str_radix(&hex[at..at + 2], 16).unwrap_or(0))
+    }
+}

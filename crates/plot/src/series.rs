@@ -1,0 +1,165 @@
+//! The inside of a frame: each series as SVG, with no more bytes than print can show.
+
+use std::fmt::{self, Write};
+
+use super::density::{Density, SHADES, Shades};
+use super::element::{FAR, fill, markers, number, stroked};
+use super::grid::Grid;
+use super::layout::share;
+use super::sheet::Sheet;
+use super::{Colour, Data, Marker, Series, Stroke, thin, words};
+
+/// Most points of a line; a longer line is counted on a grid instead.
+const MOST_POINTS: usize = 40_000;
+/// Most cells, in all, along a line counted on a grid: a second of work.
+const MOST_STEPS: usize = 100_000_000;
+/// Most occupied cells that are drawn as dots; with more, an image is embedded.
+const MOST_DOTS: usize = 25_000;
+
+/// Inside of a frame, with its upper left corner at the origin.
+pub(super) struct Page {
+    pub(super) width: f64,
+    pub(super) height: f64,
+    pub(super) x: [f64; 2],
+    pub(super) y: [f64; 2],
+}
+
+impl Page {
+    fn at(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        let at = [self.width * share(x, self.x), self.height * (1.0 - share(y, self.y))];
+        if at.iter().all(|part| part.is_finite()) { at.map(|part| part.clamp(-FAR, FAR)) } else { [f64::NAN; 2] }
+    }
+
+    pub(super) fn series(&self, out: &mut Sheet, series: &Series) -> fmt::Result {
+        let colour = series.colour;
+        match &series.data {
+            Data::Line { points, stroke } => self.line(out, points, *stroke, colour, false),
+            Data::Area { points, stroke } => self.line(out, points, *stroke, colour, true),
+            Data::Arrow { points, stroke } => {
+                self.line(out, points, *stroke, colour, false)?;
+                self.heads(out, points, colour)
+            }
+            Data::Points { points, marker } => self.points(out, points, *marker, colour),
+            Data::Words(words) => {
+                words.iter().try_for_each(|word| words::write(out, word, self.at(word.at), self.height, colour))
+            }
+            Data::Density(density) => self.density(out, density, colour),
+            Data::Region { cells, .. } if cells.occupied() == 0 => Ok(()),
+            Data::Region { cells, strength } => {
+                out.grid(self.cells(cells, cells.shades(true).solid(), *strength), colour)
+            }
+        }
+    }
+
+    fn line(&self, out: &mut Sheet, points: &[[f64; 2]], how: Stroke, colour: Colour, filled: bool) -> fmt::Result {
+        let strokes = thin::strokes(points.iter().map(|point| self.at(*point)), MOST_POINTS);
+        if strokes.iter().map(Vec::len).sum::<usize>() > MOST_POINTS {
+            let mut grid = Density::new(self.x, self.y);
+            let most = MOST_STEPS / points.len();
+            for pair in points.windows(2).filter(|pair| pair.iter().all(|point| !self.at(*point)[0].is_nan())) {
+                grid.join(pair[0], pair[1], most);
+            }
+            return self.density(out, &grid, colour);
+        }
+        let (mut edge, mut area) = (String::new(), String::new());
+        for stroke in strokes {
+            let mut path = String::new();
+            for (index, [x, y]) in stroke.iter().enumerate() {
+                write!(path, "{}{} {}", if index == 0 { 'M' } else { 'L' }, number(*x), number(*y))?;
+            }
+            if let (true, Some(first), Some(last)) = (filled, stroke.first(), stroke.last()) {
+                let floor = number(self.height + 2.0);
+                write!(area, "{path}L{} {floor}L{} {floor}z", number(last[0]), number(first[0]))?;
+            }
+            // A single point has no length to stroke.
+            edge.push_str(&path);
+            if stroke.len() == 1 {
+                edge.push_str("h0.01");
+            }
+        }
+        if !area.is_empty() {
+            writeln!(out, r#"<path d="{area}" fill-opacity="0.22" {}/>"#, fill(colour))?;
+        }
+        if edge.is_empty() { Ok(()) } else { stroked(out, &edge, how, colour) }
+    }
+
+    /// Draws an arrowhead at the end of each run of a line.
+    fn heads(&self, out: &mut Sheet, points: &[[f64; 2]], colour: Colour) -> fmt::Result {
+        const LENGTH: f64 = 9.0;
+        const HALF: f64 = 3.2;
+        let mut path = String::new();
+        let places: Vec<[f64; 2]> = points.iter().map(|point| self.at(*point)).collect();
+        for run in places.split(|place| place[0].is_nan()) {
+            let Some(tip) = run.last() else { continue };
+            let away = |place: &[f64; 2]| [tip[0] - place[0], tip[1] - place[1]];
+            // Direction of the last part that is about as long as the head.
+            let along = run.iter().rev().map(away).find(|[x, y]| libm::hypot(*x, *y) >= 0.7 * LENGTH);
+            let Some([x, y]) = along.or_else(|| run.first().map(away)) else { continue };
+            let length = libm::hypot(x, y);
+            if length > 0.0 {
+                let ([x, y], [back, side]) = ([x / length, y / length], [LENGTH, HALF]);
+                let foot = [tip[0] - back * x, tip[1] - back * y];
+                let (one, other) = ([foot[0] - side * y, foot[1] + side * x], [foot[0] + side * y, foot[1] - side * x]);
+                let [tip, one, other] = [*tip, one, other].map(|place| place.map(number).join(" "));
+                write!(path, "M{tip}L{one}L{other}z")?;
+            }
+        }
+        if path.is_empty() { Ok(()) } else { writeln!(out, r#"<path d="{path}" {}/>"#, fill(colour)) }
+    }
+
+    fn points(&self, out: &mut Sheet, points: &[[f64; 2]], marker: Marker, colour: Colour) -> fmt::Result {
+        let mut places: Vec<[f64; 2]> = Vec::new();
+        let on_page = |at: &[f64; 2]| at[0].abs() <= 2.0 * self.width && at[1].abs() <= 2.0 * self.height;
+        for at in points.iter().map(|point| self.at(*point)).filter(on_page) {
+            let at = at.map(|part| (2.0 * part).round() / 2.0);
+            // Markers at the same point are drawn once.
+            if places.last() != Some(&at) {
+                places.push(at);
+            }
+            if places.len() > MOST_POINTS {
+                let mut grid = Density::new(self.x, self.y);
+                points.iter().for_each(|[x, y]| grid.push(*x, *y));
+                return self.density(out, &grid, colour);
+            }
+        }
+        if places.is_empty() { Ok(()) } else { markers(out, &places, marker, colour) }
+    }
+
+    fn density(&self, out: &mut Sheet, density: &Density, colour: Colour) -> fmt::Result {
+        match density.occupied() {
+            0 => Ok(()),
+            cells if cells <= MOST_DOTS => out.grid(self.dots(density, cells), colour),
+            _ => out.grid(self.cells(density, density.shades(true), 1.0), colour),
+        }
+    }
+
+    /// Few cells: a dot each, larger if there are fewer.
+    fn dots(&self, density: &Density, cells: usize) -> Grid {
+        let [x, y] = density.ranges();
+        let [columns, rows] = density.cells();
+        let mut at = [const { Vec::new() }; SHADES as usize];
+        let shades = density.shades(false);
+        let all = shades.rows().flat_map(|row| shades.cells(row)).enumerate();
+        for (cell, shade) in all.filter(|(_, shade)| *shade > 0) {
+            let middle = |index: usize, count: usize, [low, high]: [f64; 2]| {
+                low + (high - low) * (index as f64 + 0.5) / count as f64
+            };
+            let dot = self.at([middle(cell % columns, columns, x), middle(cell / columns, rows, y)]);
+            at[usize::from(shade - 1)].push(dot.map(|part| (10.0 * part).round() as i64));
+        }
+        let size = match cells {
+            ..40 => 5.0,
+            40..4000 => 1.7,
+            _ => 1.25,
+        };
+        Grid::Dots { at, size }
+    }
+
+    /// Many cells: the grid itself, stretched over the frame.
+    fn cells(&self, density: &Density, shades: Shades, strength: f64) -> Grid {
+        let [x, y] = density.ranges();
+        let ([left, top], [right, bottom]) = (self.at([x[0], y[1]]), self.at([x[1], y[0]]));
+        let place = [left, top, right - left, bottom - top];
+        Grid::Cells { shades, place, strength }
+    }
+}

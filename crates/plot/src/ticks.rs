@@ -1,0 +1,156 @@
+//! Ticks: at 1, 2 or 5 times a power of ten, at the usual parts of a circle, or at powers of ten and their multiples.
+
+use serde::Serialize;
+
+/// Spacing of ticks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum TickSpacing {
+    /// Multiples of 1, 2 or 5 times a power of ten.
+    Decimal,
+    /// Degrees: multiples of 15, 30, 45, 60, 90, …; decimal below 10.
+    Degrees,
+    /// Powers of ten and their multiples, for data that are decimal logarithms.
+    Logarithmic,
+    /// No ticks: the axis has no numbers.
+    Nothing,
+}
+
+/// Steps of degrees, from ten on.
+const PARTS_OF_A_CIRCLE: [f64; 8] = [10.0, 15.0, 30.0, 45.0, 60.0, 90.0, 180.0, 360.0];
+
+/// Tolerance for ticks outside the range, as a share of a step; it allows for rounding.
+const ROUNDING: f64 = 1e-6;
+
+/// Values above this, or all below [`SMALL`], are shown with a power of ten beside the unit.
+const LARGE: f64 = 1e5;
+const SMALL: f64 = 1e-2;
+
+/// A labelled position on an axis.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tick {
+    /// Position in the axis's unit.
+    pub at: f64,
+    /// Text of the label.
+    pub label: String,
+}
+
+/// The ticks of one axis.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Ticks {
+    /// Ticks from low to high.
+    pub ticks: Vec<Tick>,
+    /// Power of ten by which labels are multiplied.
+    pub exponent: i32,
+}
+
+/// The finest ticks, at most `most`, for which `fits` says that the labels do not touch.
+pub fn ticks(range: [f64; 2], spacing: TickSpacing, most: usize, fits: impl Fn(&[Tick]) -> bool) -> Ticks {
+    let [low, high] = range;
+    let span = high - low;
+    if spacing == TickSpacing::Nothing || !(span > 0.0 && span.is_finite()) {
+        return Ticks::default();
+    }
+    if spacing == TickSpacing::Logarithmic {
+        return Ticks { ticks: powers([low, high], most.max(2), fits), exponent: 0 };
+    }
+    let exponent = exponent(low.abs().max(high.abs()));
+    let (most, mut step) = (most.max(2) as f64, first_step(span / most.max(2) as f64, spacing));
+    loop {
+        let ticks = multiples(low, high, step, exponent);
+        // A step above twice the span gives at most one tick, so no labels can overlap.
+        if (ticks.len() as f64 <= most && fits(&ticks)) || step > 2.0 * span {
+            return Ticks { ticks, exponent };
+        }
+        step = next_step(step, spacing);
+    }
+}
+
+/// The finest powers of ten and their multiples that fit, in a range of exponents.
+fn powers([low, high]: [f64; 2], most: usize, fits: impl Fn(&[Tick]) -> bool) -> Vec<Tick> {
+    const MULTIPLES: [&[i32]; 3] = [&[1, 2, 3, 4, 5, 6, 7, 8, 9], &[1, 2, 5], &[1]];
+    /// Exponents of powers of ten that are written in full.
+    const PLAIN: std::ops::Range<i32> = -4..5;
+    let decades = (low.floor() as i32)..=(high.ceil() as i32);
+    let label = |digit: i32, power: i32| match digit {
+        _ if PLAIN.contains(&power) => format!("{}", f64::from(digit) * 10_f64.powi(power)),
+        1 => unit("", power),
+        digit => format!("{digit}·{}", unit("", power)),
+    };
+    let of = |multiples: &[i32], every: usize| -> Vec<Tick> {
+        let powers = decades.clone().filter(|power| power.rem_euclid(every as i32) == 0);
+        let all = powers.flat_map(|power| multiples.iter().map(move |digit| (*digit, power)));
+        let tick = |(digit, power): (i32, i32)| {
+            let at = f64::from(power) + libm::log10(f64::from(digit));
+            Tick { at: at.clamp(low, high), label: label(digit, power) }
+        };
+        let is_inside = |(digit, power): &(i32, i32)| {
+            let at = f64::from(*power) + libm::log10(f64::from(*digit));
+            (low - ROUNDING..=high + ROUNDING).contains(&at)
+        };
+        all.filter(is_inside).map(tick).collect()
+    };
+    let finest = MULTIPLES.iter().map(|multiples| of(multiples, 1));
+    let coarser = (2..=decades.clone().count().max(2)).map(|every| of(&[1], every));
+    finest.chain(coarser).find(|ticks| ticks.len() <= most && fits(ticks)).unwrap_or_default()
+}
+
+fn exponent(largest: f64) -> i32 {
+    let plain = (SMALL..LARGE).contains(&largest) || largest == 0.0;
+    if plain { 0 } else { (libm::log10(largest) / 3.0).floor() as i32 * 3 }
+}
+
+fn first_step(least: f64, spacing: TickSpacing) -> f64 {
+    let power = libm::pow(10_f64, libm::log10(least).floor());
+    let decimal = [1.0, 2.0, 5.0, 10.0].into_iter().map(|part| part * power).find(|step| *step >= least);
+    let step = decimal.unwrap_or(10.0 * power);
+    match spacing {
+        TickSpacing::Degrees if step >= 10.0 => {
+            let part = PARTS_OF_A_CIRCLE.into_iter().find(|part| *part >= least);
+            part.unwrap_or_else(|| 360.0 * first_step(least / 360.0, TickSpacing::Decimal))
+        }
+        _ => step,
+    }
+}
+
+fn next_step(step: f64, spacing: TickSpacing) -> f64 {
+    // Slightly above the step, to find the next one of the series.
+    first_step(step * 1.01, spacing)
+}
+
+fn multiples(low: f64, high: f64, step: f64, exponent: i32) -> Vec<Tick> {
+    let (first, last) = ((low / step - ROUNDING).ceil(), (high / step + ROUNDING).floor());
+    let count = (last - first + 1.0).clamp(0.0, 1000.0) as usize;
+    let scale = 10_f64.powi(exponent);
+    let places = decimals(step / scale);
+    let tick = |index: usize| {
+        let at = (first + index as f64) * step;
+        let text = format!("{:.places$}", at / scale);
+        let zero = text.chars().all(|letter| "-0.".contains(letter));
+        let label = if zero { text.replace('-', "") } else { text.replace('-', "−") };
+        Tick { at: at.clamp(low, high), label }
+    };
+    (0..count).map(tick).collect()
+}
+
+/// Decimals that show a step of 1, 2 or 5 times a power of ten, or of whole degrees.
+fn decimals(step: f64) -> usize {
+    (-(libm::log10(step) + ROUNDING).floor()).clamp(0.0, 17.0) as usize
+}
+
+/// Text in brackets beside an axis name: ten with `exponent` in raised digits, and the unit.
+pub fn unit(unit: &str, exponent: i32) -> String {
+    if exponent == 0 {
+        return unit.to_owned();
+    }
+    let digits = exponent.to_string();
+    let raised = digits.chars().map(|letter| match letter {
+        '-' => '⁻',
+        '1' => '¹',
+        '2' => '²',
+        '3' => '³',
+        digit => digit.to_digit(10).and_then(|digit| char::from_u32(0x2070 + digit)).unwrap_or(digit),
+    });
+    let power: String = "10".chars().chain(raised).collect();
+    if unit.is_empty() { power } else { format!("{power} {unit}") }
+}

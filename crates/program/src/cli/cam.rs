@@ -1,0 +1,46 @@
+//! `corner-impact cam [MODEL]`.
+
+use std::path::PathBuf;
+
+use super::{CommandError, Exit, ModelArgument, Session, picture, progress::Progress};
+use crate::figures::cam_figure;
+use corner_impact::cam::{Cam, Jet};
+use corner_impact::study::cam::CamSheet;
+
+/// Lists the segments of a model's cam and the corners where they meet.
+#[derive(clap::Args)]
+#[command(after_help = "Examples:\n\
+    \x20 corner-impact cam\n\
+    \x20 corner-impact cam models/laws/program.toml --out cam.svg\n\
+    \n\
+    Exit code: 0 done, 2 bad model file, usage or file.")]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    model: ModelArgument,
+    /// Print one JSON document instead of the page.
+    #[arg(long)]
+    json: bool,
+    /// Leave out corners where only a derivative above this order jumps.
+    #[arg(long, value_name = "N", default_value_t = Jet::HIGHEST_JUMP)]
+    order: usize,
+    /// Draw lift, velocity and acceleration against the cam angle (.svg, .png or .pdf).
+    #[arg(long, value_name = "FILE", value_parser = picture::picture, group = "picture")]
+    out: Option<PathBuf>,
+    #[command(flatten)]
+    picture: picture::PictureArguments,
+}
+
+pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
+    let model = arguments.model.read(session)?;
+    let progress = Progress::spinner("laying out the cam");
+    let cam = Cam::new(&model)?;
+    if let Some(path) = &arguments.out {
+        super::commit(vec![
+            picture::Canvas::create(path, arguments.picture.look()?)?
+                .draw(cam_figure(&cam, &model.name), &model.units)?,
+        ])?;
+    }
+    drop(progress);
+    let sheet = CamSheet::new(&model, &cam, arguments.order)?;
+    session.answer(&sheet, arguments.json)
+}

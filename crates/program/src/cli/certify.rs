@@ -1,0 +1,75 @@
+//! `corner-impact certify [MODEL]`.
+
+use super::start::rpm_or_range;
+use super::{CommandError, Exit, ModelArgument, Session, progress::watched};
+use corner_impact::model::Study;
+use corner_impact::orbit::Search;
+use corner_impact::study::certify::{BITS, CertifyError, certify, proved_counts, proved_orbits, proved_resting};
+
+/// Proves that corner impacts exist, with their maps and verdicts, in ball arithmetic.
+#[derive(clap::Args)]
+#[command(after_help = "Examples:\n\
+    \x20 corner-impact certify\n\
+    \x20 corner-impact certify models/osorio-2008.toml --rpm 600:760 --bits 400 --json\n\
+    \x20 corner-impact certify --orbits --rpm 700\n\
+    \x20 corner-impact certify --orbits --rpm 600:760\n\
+    \x20 corner-impact certify --resting --rpm 450\n\
+    \n\
+    Needs Python with the packages that `make verify` sets up.\n\
+    Exit code: 0 every border collision that `locate` finds is proved, 1 one is not, 2 bad model file or usage, or no Python.")]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    model: ModelArgument,
+    /// Range of speeds, rpm; with --orbits also one speed, with --resting only one [default: the model's [study]].
+    #[arg(long, value_name = "LO:HI", value_parser = rpm_or_range)]
+    rpm: Option<[f64; 2]>,
+    /// Turns of the cam after which the orbits repeat, and no fewer.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=Search::MOST_REVOLUTIONS))]
+    revolutions: u64,
+    /// Bits that the balls are computed with.
+    #[arg(long, value_name = "N", default_value_t = BITS, value_parser = clap::value_parser!(u32).range(16..=16384))]
+    bits: u32,
+    /// Prove all periodic orbits of one impact and of two in one revolution at the speed of --rpm, instead of corner impacts; at every speed of a range, how many there are of one impact.
+    #[arg(long, requires = "rpm", conflicts_with = "revolutions")]
+    orbits: bool,
+    /// Prove what becomes of a follower that rests on the cam at the speed of --rpm, with twice as many bits as often as it takes.
+    #[arg(long, requires = "rpm", conflicts_with_all = ["revolutions", "orbits"])]
+    resting: bool,
+    /// Print one JSON document instead of the page.
+    #[arg(long)]
+    json: bool,
+}
+
+pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
+    let model = arguments.model.read_as_drawn(session)?;
+    if let (true, Some([low, high])) = (arguments.orbits, arguments.rpm) {
+        if low < high {
+            let found = watched("proving orbits", |_| proved_counts(&model, [low, high], arguments.bits))?;
+            session.answer(&found, arguments.json)?;
+        } else {
+            let found = watched("proving orbits", |_| proved_orbits(&model, low, arguments.bits))?;
+            session.answer(&found, arguments.json)?;
+        }
+        return Ok(Exit::Agrees);
+    }
+    if let (true, Some([low, high])) = (arguments.resting, arguments.rpm) {
+        if low < high {
+            return Err(CommandError::Words("--resting is for one speed: --rpm R".into()));
+        }
+        let found = watched("proving motions that rest", |_| proved_resting(&model, low, arguments.bits))?;
+        session.answer(&found, arguments.json)?;
+        return Ok(Exit::Agrees);
+    }
+    let range = match arguments.rpm {
+        Some([rpm_min, rpm_max]) => Study { rpm_min, rpm_max },
+        None => model.study()?,
+    };
+    let found = watched("proving corner impacts", |watch| {
+        certify(&model, range, arguments.revolutions, arguments.bits, watch).map_err(|error| match error {
+            CertifyError::Range(error) => CommandError::Words(format!("{}: {error}", model.file())),
+            error => error.into(),
+        })
+    })?;
+    session.answer(&found, arguments.json)?;
+    Ok(if found.agrees() { Exit::Agrees } else { Exit::Disagrees })
+}

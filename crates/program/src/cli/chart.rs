@@ -1,0 +1,191 @@
+//! `corner-impact chart [MODEL] --x NAME=LO:HI:N --y NAME=LO:HI:N`.
+
+use std::path::{Path, PathBuf};
+
+use clap::ValueEnum;
+
+use super::curve::{LONGEST_STEP, MOST_POINTS};
+use super::start::{BudgetArguments, StartArguments, axis, rpm};
+use super::threads::threads;
+use super::{CommandError, Exit, ModelArgument, Session, picture, picture::Target, progress::watched};
+use crate::figures::{Coloured, chart_figure};
+use crate::show::csv;
+use corner_impact::orbit::branch::{Bifurcation, Following};
+use corner_impact::orbit::long_run::Budget;
+use corner_impact::orbit::{Parameter, Search};
+use corner_impact::study::chart::Chart;
+use corner_impact::study::chart::store::{SIDES, Shard, Store, status};
+use corner_impact::study::curve::curves;
+use corner_impact::study::survey::{Axis, Values};
+
+/// Charts over two numbers what a run comes to: its period, its growth, how hard it hits.
+#[derive(clap::Args)]
+#[command(after_help = "Examples:\n\
+    \x20 corner-impact chart --x rpm=600:760:80 --y restitution=0.5:0.95:60 --out periods.svg\n\
+    \x20 corner-impact chart --x mass=1:2:30 --y stiffness=1000:2000:30 --rpm 700 --show impact-speed --out speeds.png\n\
+    \x20 corner-impact chart --x rpm=600:760:80 --y restitution=0.5:0.95:60 --with-curves --out curves.svg\n\
+    \x20 corner-impact chart models/damped-light.toml --x rpm=600:760:40 --y damping=0:20:20 --out chart.csv\n\
+    \n\
+    Exit code: 0 done, 2 bad model file, usage or file.")]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    model: ModelArgument,
+    /// The horizontal axis: rpm or a number of the model, its lowest and highest value, and how many; with :log spaced by their logarithm.
+    #[arg(long, value_name = "NAME=LO:HI:N[:log]", value_parser = axis, required_unless_present = "status")]
+    x: Option<(String, Values)>,
+    /// The vertical axis, in the same form.
+    #[arg(long, value_name = "NAME=LO:HI:N[:log]", value_parser = axis, required_unless_present = "status")]
+    y: Option<(String, Values)>,
+    /// Speed of the cam, rpm, where neither --x nor --y is it.
+    #[arg(long, value_name = "RPM", value_parser = rpm, allow_hyphen_values = true)]
+    rpm: Option<f64>,
+    #[command(flatten)]
+    budget: BudgetArguments,
+    #[command(flatten)]
+    start: StartArguments,
+    /// Quantity that the colours of a picture show; a table and a store hold all of them.
+    #[arg(long, value_enum, default_value = "period")]
+    show: ShowName,
+    /// Draw over a picture the curves of corner impacts, folds, flips, grazes, detachment and the onset of resting of motions
+    /// that repeat after one revolution, as `curve` follows them; one axis must be rpm.
+    #[arg(long, requires = "out", conflicts_with = "status")]
+    with_curves: bool,
+    /// Threads [default: RAYON_NUM_THREADS, or one for each core].
+    #[arg(long, value_name = "N", value_parser = threads, allow_hyphen_values = true)]
+    threads: Option<u16>,
+    /// A table (.csv, or - for standard output), a picture (.svg, .png, .pdf), or a zarr store (.zarr): a folder of blocks of 100 x 100
+    /// points, of which those that are there already are not run again.
+    #[arg(long, value_name = "FILE", value_parser = out, group = "picture")]
+    out: Option<PathBuf>,
+    #[command(flatten)]
+    look: picture::LookArguments,
+    /// Run the part I of N of a store's blocks; the others are for other processes, at the same time or later.
+    #[arg(long, value_name = "I/N", value_parser = shard, requires = "out")]
+    shard: Option<Shard>,
+    /// Say how much of a store is done, instead; with --summary as JSON.
+    #[arg(long, value_name = "STORE", conflicts_with_all = ["x", "y", "out"])]
+    status: Option<PathBuf>,
+    /// Print a summary as one JSON document.
+    #[arg(long)]
+    summary: bool,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum ShowName {
+    Period,
+    Growth,
+    Regime,
+    Impacts,
+    ImpactSpeed,
+}
+
+/// `I/N`.
+fn shard(text: &str) -> Result<Shard, String> {
+    let number = |text: &str| text.trim().parse::<usize>().ok();
+    let parts = text.split_once('/').and_then(|(index, of)| Some((number(index)?, number(of)?)));
+    match parts {
+        Some((index, of)) if (1..=of).contains(&index) => Ok(Shard { index, of }),
+        _ => Err("must be I/N: the part I, from 1 to N, of N".into()),
+    }
+}
+
+/// A file name of a picture, a table or a store, for clap.
+fn out(text: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    if is_store(&path) {
+        return Ok(path);
+    }
+    picture::picture_or_table(text).map_err(|_| "must end in .csv, .zarr, .svg, .png or .pdf, or be -".into())
+}
+
+fn is_store(path: &Path) -> bool {
+    picture::ends_in(path, &["zarr"])
+}
+
+impl ShowName {
+    fn coloured(self) -> Coloured {
+        match self {
+            Self::Period => Coloured::Period,
+            Self::Growth => Coloured::Growth,
+            Self::Regime => Coloured::Regime,
+            Self::Impacts => Coloured::Impacts,
+            Self::ImpactSpeed => Coloured::ImpactSpeed,
+        }
+    }
+}
+
+pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
+    if let Some(folder) = &arguments.status {
+        session.answer(&status(folder)?, arguments.summary)?;
+        return Ok(Exit::Agrees);
+    }
+    let to_standard = picture::out_is_standard(arguments.out.as_ref(), arguments.summary)?;
+    let model = arguments.model.read_as_drawn(session)?;
+    let named = |(name, values): &(String, Values), option| -> Result<Axis, CommandError> {
+        Ok(Axis::new(arguments.model.varied(&model, name, option)?, values))
+    };
+    // Neither is missing where it is not the state of a store that is asked for.
+    let (Some(x), Some(y)) = (&arguments.x, &arguments.y) else { return Ok(Exit::BadInput) };
+    let (x, y) = (named(x, "--x")?, named(y, "--y")?);
+    arguments.start.doubt(session);
+    let budget = arguments.budget.budget(Budget::CHART)?;
+    let chart = Chart::new(&model, arguments.rpm, [x, y], arguments.start.start()?, budget)?;
+    let drawn = arguments.out.as_deref().is_some_and(|path| picture::kind(path).is_some());
+    if arguments.with_curves && !drawn {
+        return Err(CommandError::Words("--with-curves is for a picture: --out must end in .svg, .png or .pdf".into()));
+    }
+    let threads = arguments.threads.map(usize::from);
+    let folder = arguments.out.as_deref().filter(|path| is_store(path));
+    if let (Some(_), None) = (arguments.shard, folder) {
+        return Err(CommandError::Words("--shard is for a store: --out must end in .zarr".into()));
+    }
+    if let Some(folder) = folder {
+        let store = Store::open(folder, &chart, SIDES)?;
+        let filled = watched("", |watch| store.fill(arguments.shard.unwrap_or(Shard::ALL), threads, watch))?;
+        session.answer(&filled, arguments.summary)?;
+        return Ok(Exit::Agrees);
+    }
+    // What is refused is so before the work, and found after it: the points are what most of the time goes into.
+    let ground = if arguments.with_curves { Some(ground(&chart)?) } else { None };
+    let run = || watched("", |watch| chart.run(threads, watch));
+    let found = match &arguments.out {
+        None => run()?,
+        Some(path) => {
+            // Begun before the work: a name that cannot be is told at once.
+            let target = Target::create(path, &mut *session.out, arguments.look.look()?)?;
+            let found = run()?;
+            let model = &found.chart.model;
+            let wanted = Search { revolutions: 1, impacts: None };
+            let events = |(rpm, following): ([f64; 2], Following)| {
+                watched("", |watch| curves(model, rpm, &wanted, &Bifurcation::ALL, &following, watch))
+            };
+            let over = ground.map(events).transpose()?.map(|found| found.curves).unwrap_or_default();
+            let table = || csv::chart(&found);
+            target.fill(&model.units, table, || {
+                Ok(chart_figure(&found, arguments.show.coloured(), &over, &model.units))
+            })?;
+            found
+        }
+    };
+    if !to_standard {
+        session.answer(&found, arguments.summary)?;
+    } else if let Some(why) = found.failure() {
+        let failed = found.points.iter().filter(|point| point.is_err()).count();
+        session.failures("points", [failed, found.points.len()], why);
+    }
+    Ok(Exit::Agrees)
+}
+
+/// The speeds of a chart, and how curves are followed through its other number.
+fn ground(chart: &Chart) -> Result<([f64; 2], Following), CommandError> {
+    let (speeds, other) = match [&chart.x, &chart.y] {
+        [speeds, other] | [other, speeds] if speeds.parameter == Parameter::Speed => (speeds.ends(), other),
+        _ => {
+            return Err(CommandError::Words(
+                "--with-curves follows events through speeds: --x or --y must be rpm".into(),
+            ));
+        }
+    };
+    let (parameter, range) = (other.parameter.clone(), other.ends());
+    Ok((speeds, Following { parameter, range, longest_step: LONGEST_STEP, most_points: MOST_POINTS }))
+}

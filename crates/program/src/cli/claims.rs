@@ -1,0 +1,65 @@
+//! `corner-impact claims [MODEL]`.
+
+use super::{CommandError, Exit, ModelArgument, Session, progress::Progress};
+use crate::pages;
+use crate::show::{Page, json, markdown};
+use corner_impact::cam::Cam;
+use corner_impact::known::Evidence;
+use corner_impact::paper::{Claims, Context};
+use corner_impact::published::Verdict;
+use corner_impact::study::verify::{External, verify_watched};
+
+/// Prints what the paper's source on arXiv states, statement by statement, with a verdict and its evidence.
+#[derive(clap::Args)]
+#[command(after_help = "Examples:\n\
+    \x20 corner-impact claims\n\
+    \x20 corner-impact claims models/damped-light.toml --json\n\
+    \x20 corner-impact claims --verdict refuted --known computed\n\
+    \n\
+    For another model than the paper's, statements about the paper's own numbers are open.\n\
+    Exit code: 0 every check comes to the ledger's verdict, 1 one does not, 2 bad model file.")]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    model: ModelArgument,
+    /// Print one JSON document instead of the page.
+    #[arg(long, conflicts_with = "markdown")]
+    json: bool,
+    /// Only statements of this verdict: holds, in-part, misprint, refuted, open, definition.
+    #[arg(long, value_parser = named::<Verdict>, conflicts_with = "markdown")]
+    verdict: Option<Verdict>,
+    /// Only statements whose verdict is known so: proved, computed, sampled, read.
+    #[arg(long, value_parser = named::<Evidence>, conflicts_with = "markdown")]
+    known: Option<Evidence>,
+    /// Print the page of docs/claims.md.
+    #[arg(long)]
+    markdown: bool,
+}
+
+/// A value by the name that documents have for it.
+fn named<T: serde::de::DeserializeOwned>(name: &str) -> Result<T, String> {
+    serde_json::from_value(name.into()).map_err(|_| "there is none of that name".into())
+}
+
+pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
+    let model = arguments.model.read(session)?;
+    let progress = Progress::spinner("verifying the model");
+    let findings = verify_watched(&model, External::LeftOut, &progress)?;
+    let cam = Cam::new(&model)?;
+    let context = Context::new(&model, &cam, &findings)?;
+    let mut claims = Claims::hold(&context, &progress)?;
+    drop(progress);
+    claims.claims.retain(|claim| {
+        arguments.verdict.is_none_or(|verdict| claim.verdict == verdict)
+            && arguments.known.is_none_or(|known| claim.known == known)
+    });
+    let page = match (arguments.json, arguments.markdown) {
+        (true, _) => json::render(&claims, &model.units)?,
+        (_, true) => {
+            let (lead, sections) = pages::claims::document(&claims)?;
+            markdown::page(&lead, &sections)?
+        }
+        _ => session.shown(&Page::of(session.width(), &pages::claims::terminal(&claims))?),
+    };
+    session.print(&page)?;
+    Ok(if claims.agrees { Exit::Agrees } else { Exit::Disagrees })
+}

@@ -1,0 +1,48 @@
+//! `corner-impact compare [A] [B]`.
+
+use std::path::PathBuf;
+
+use super::model::Changes;
+use super::{CommandError, Exit, ModelArgument, Session, progress::watched};
+use corner_impact::study::compare::compare;
+use corner_impact::study::verify::External;
+
+/// Tells what moved from one model to another: the verdict, then each number that changed, and by how much more than its error.
+#[derive(clap::Args)]
+#[command(after_help = "Examples:\n\
+    \x20 corner-impact compare --set restitution=0.7\n\
+    \x20 corner-impact compare models/damped-light.toml models/damped-heavy.toml\n\
+    \x20 corner-impact compare models/osorio-2008.toml --set mass=1.3 --json\n\
+    \n\
+    The answer is in the units of A; the lengths of B must be in the same. A model without a corner impact is an answer, too.\n\
+    Exit code: 0 done, whatever moved; 1 routes disagree about one of the two; 2 bad usage or model file.")]
+pub(super) struct Arguments {
+    /// Model file (TOML) [default: the paper's model, osorio-2008, which is built in].
+    #[arg(value_name = "A")]
+    first: Option<PathBuf>,
+    /// The model file that it is compared with [default: A, with the numbers of --set].
+    #[arg(value_name = "B", required_unless_present = "numbers")]
+    second: Option<PathBuf>,
+    /// Changes of the second model.
+    #[command(flatten)]
+    changes: Changes,
+    /// Run the routes that need Python, too.
+    #[arg(long)]
+    external: bool,
+    /// Print one JSON document instead of the page.
+    #[arg(long)]
+    json: bool,
+}
+
+pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
+    let a = ModelArgument::of(arguments.first.as_deref(), &Changes::default()).read_as_drawn(session)?;
+    let b = match &arguments.second {
+        Some(file) => ModelArgument::of(Some(file), &arguments.changes).read_as_drawn(session)?,
+        None => a.changed(&arguments.changes.numbers)?,
+    };
+    session.units = a.units.clone();
+    let external = if arguments.external { External::Run } else { External::LeftOut };
+    let found = watched("", |watch| compare(&a, &b, external, watch))?;
+    session.answer(&found, arguments.json)?;
+    Ok(if found.agrees() { Exit::Agrees } else { Exit::Disagrees })
+}

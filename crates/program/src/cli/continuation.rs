@@ -1,0 +1,93 @@
+//! `corner-impact continue [MODEL] --from-rpm R --parameter NAME=LO:HI`.
+
+use std::path::PathBuf;
+
+use super::picture::{PictureArguments, Target, picture_or_table};
+use super::start::{parameter, positive, rpm};
+use super::{CommandError, Exit, ModelArgument, Session, progress::watched};
+use crate::figures::{branches_figure, corner_marks};
+use crate::pages;
+use crate::show::csv;
+use corner_impact::cam::Cam;
+use corner_impact::orbit::branch::Following;
+use corner_impact::orbit::{Parameter, Search};
+use corner_impact::study::continuation::branches;
+
+/// Follows the orbits of one speed through a parameter, round folds and through corners.
+#[derive(clap::Args)]
+#[command(
+    name = "continue",
+    after_help = "Examples:\n\
+    \x20 corner-impact continue --from-rpm 700 --parameter rpm=660:760\n\
+    \x20 corner-impact continue --from-rpm 700 --parameter restitution=0.5:0.95 --out branches.svg\n\
+    \x20 corner-impact continue --from-rpm 738 --parameter rpm=735:745 --all\n\
+    \n\
+    Prints the table; what each branch passes and where it ends goes to standard error.\n\
+    Exit code: 0 done, 2 bad model file, usage or file, or nothing to follow."
+)]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    model: ModelArgument,
+    /// Speed at which the orbits are looked for.
+    #[arg(long, value_name = "R", value_parser = rpm, allow_hyphen_values = true)]
+    from_rpm: f64,
+    /// The number to vary, with its lowest and highest value: rpm, or a number of the model file, such as restitution.
+    #[arg(long, value_name = "NAME=LO:HI", value_parser = parameter)]
+    parameter: (String, [f64; 2]),
+    /// Turns of the cam in one period.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=Search::MOST_REVOLUTIONS))]
+    revolutions: u64,
+    /// Only orbits that start with this many impacts.
+    #[arg(long, value_name = "M")]
+    impacts: Option<usize>,
+    /// The longest step, of the range and of a radian.
+    #[arg(long, value_name = "STEP", default_value_t = 0.02, value_parser = positive)]
+    step: f64,
+    /// Orbits after which a branch is given up, in either direction.
+    #[arg(long, value_name = "N", default_value_t = 2000, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    points: u32,
+    /// Follow also what branches off with twice the period at flips, grazes and corner impacts, and branches that cross, and from
+    /// these again, so many times in all.
+    #[arg(long, value_name = "DOUBLINGS", num_args = 0..=1, require_equals = true, default_value_t = 0, default_missing_value = "3", value_parser = clap::value_parser!(u32).range(0..=10))]
+    all: u32,
+    /// A table (.csv, or - for standard output) or a picture (.svg, .png, .pdf).
+    #[arg(long, value_name = "FILE", default_value = "-", value_parser = picture_or_table, group = "picture")]
+    out: PathBuf,
+    #[command(flatten)]
+    picture: PictureArguments,
+    /// Values of the parameter at which a picture shows what runs settle on; 0 for none.
+    #[arg(long, value_name = "N", default_value_t = 400, value_parser = clap::value_parser!(u32).range(0..=100_000))]
+    runs: u32,
+}
+
+pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
+    let model = arguments.model.read_as_drawn(session)?;
+    let corners = corner_marks(&Cam::new(&model)?);
+    let (name, range) = &arguments.parameter;
+    let following = Following {
+        parameter: Parameter::named(&model, name)?,
+        range: *range,
+        longest_step: arguments.step,
+        most_points: arguments.points as usize,
+    };
+    let target = Target::create(&arguments.out, &mut *session.out, arguments.picture.look()?)?;
+    let wanted = Search { revolutions: arguments.revolutions, impacts: arguments.impacts };
+    let found = watched("", |watch| branches(&model, arguments.from_rpm, &wanted, following, arguments.all, watch))?;
+    let name = found.following.parameter.name();
+    for (index, branch) in found.branches.iter().enumerate() {
+        // Nobody is left to tell where standard error is closed.
+        let _ = session.err.write_all(pages::branches::branch(branch, name, index + 1).as_bytes());
+    }
+    let table = || csv::branches(name, &found.branches);
+    target.fill(&model.units, table, || {
+        let settled = watched("", |watch| found.settled(arguments.runs, watch))?;
+        Ok(branches_figure(
+            &found.title(),
+            (name, &model.units.of_number(name), *range),
+            &found.branches,
+            &settled,
+            &corners,
+        ))
+    })?;
+    Ok(Exit::Agrees)
+}

@@ -1,0 +1,52 @@
+//! `corner-impact explain WHAT [MODEL]`.
+
+use super::{CommandError, Exit, ModelArgument, Session, progress::watched};
+use crate::explain::{Findings, Links};
+use corner_impact::study::verify::{External, verify_watched};
+
+/// Says what a name stands for: formula, inputs, value by every route, how it is known, and what evaluates, proves and tests it.
+#[derive(clap::Args)]
+#[command(after_help = "Examples:\n\
+    \x20 corner-impact explain B_minus\n\
+    \x20 corner-impact explain eq:PT models/damped-light.toml --no-external\n\
+    \x20 corner-impact explain CAM_JUMP --json\n\
+    \x20 corner-impact explain --list\n\
+    \n\
+    WHAT is a number as `verify` names it, a label or a claim of the paper, a tolerance, a field of the model, or a column of \
+    a file.\n\
+    Exit code: 0 it is known, 2 bad model file or nothing of that name.")]
+pub(super) struct Arguments {
+    /// The name: B_minus, eq:PT, feigin, CAM_JUMP, growth_rate, follower.mass.
+    #[arg(required_unless_present = "list")]
+    what: Option<String>,
+    #[command(flatten)]
+    model: ModelArgument,
+    /// List every name with what it stands for.
+    #[arg(long, conflicts_with_all = ["what", "json"])]
+    list: bool,
+    /// Print one JSON document instead of the page.
+    #[arg(long)]
+    json: bool,
+    /// Leave out the routes that need Python.
+    #[arg(long)]
+    no_external: bool,
+}
+
+pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
+    let links = Links::read()?;
+    let Some(what) = arguments.what.as_ref().filter(|_| !arguments.list) else {
+        let lines = links.names().into_iter().map(|(name, sentence)| format!("{name}: {sentence}\n"));
+        session.print(&lines.collect::<String>())?;
+        return Ok(Exit::Agrees);
+    };
+    let model = arguments.model.read_as_drawn(session)?;
+    let needed = links.needs(what, &model)?;
+    let verified = needed
+        .map(|external| if arguments.no_external { External::LeftOut } else { external })
+        .map(|external| watched("", |watch| verify_watched(&model, external, watch)))
+        .transpose()
+        .map_err(|error| session.note(&format!("no values: {error}")));
+    let found = verified.ok().flatten();
+    let explanation = links.explain(what, &Findings::new(&model, found.as_ref())?)?;
+    session.answer(&explanation, arguments.json)
+}

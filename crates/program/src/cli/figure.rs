@@ -1,0 +1,140 @@
+//! `corner-impact figure [MODEL] [ID]`.
+
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+
+use super::model::Changes;
+use super::progress::{Progress, watched};
+use super::start::rpm_range;
+use super::{CommandError, Exit, ModelArgument, Session, picture};
+use crate::figures::{FIGURES, FigureContext, Listed, RenderedFigure, listed};
+use crate::show::json;
+use corner_impact::model::Model;
+use corner_impact::untrusted;
+
+/// Lists the figures of the report, or draws one of them.
+#[derive(clap::Args)]
+#[command(after_help = "Examples:\n\
+    \x20 corner-impact figure\n\
+    \x20 corner-impact figure fast-impacts --out fast-impacts.svg\n\
+    \x20 corner-impact figure models/damped-heavy.toml composition --out composition.png\n\
+    \n\
+    Exit code: 0 done, 2 bad model file, usage or file, or a figure that the model has not.")]
+pub(super) struct Arguments {
+    /// Model file (TOML) [default: the paper's], then the figure to draw, from the list; a name with a dot or a slash is a file.
+    #[arg(value_name = "MODEL] [ID", num_args = 0..=2)]
+    words: Vec<String>,
+    #[command(flatten)]
+    changes: Changes,
+    /// Speeds of the figures that are of no corner impact [default: the machine's own].
+    #[arg(long, value_name = "LO:HI", value_parser = rpm_range, allow_hyphen_values = true)]
+    rpm: Option<[f64; 2]>,
+    /// The picture (.svg, .png or .pdf).
+    #[arg(long, value_name = "FILE", value_parser = picture::picture, group = "picture")]
+    out: Option<PathBuf>,
+    #[command(flatten)]
+    picture: picture::PictureArguments,
+    /// Print one JSON document: the list, or the figure with every number that it shows.
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Serialize)]
+struct List {
+    schema: &'static str,
+    model: String,
+    figures: Vec<Listed>,
+}
+
+#[derive(Serialize)]
+struct One {
+    schema: &'static str,
+    model: String,
+    #[serde(flatten)]
+    plate: RenderedFigure,
+}
+
+const SCHEMA: &str = "corner-impact/figure/1";
+
+/// A model file, and a figure's name, from one or two words.
+fn named(words: &[String]) -> Result<(Option<&str>, Option<&str>), CommandError> {
+    let is_file = |word: &str| word.contains(['.', '/', '\\']);
+    match words {
+        [] => Ok((None, None)),
+        [word] if is_file(word) => Ok((Some(word), None)),
+        [word] => Ok((None, Some(word))),
+        [model, id] => Ok((Some(model), Some(id))),
+        _ => Err(CommandError::Words("at most a model file and a figure".into())),
+    }
+}
+
+pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
+    let (file, id) = named(&arguments.words)?;
+    let model = ModelArgument::of(file.map(Path::new), &arguments.changes).read_as_drawn(session)?;
+    if id.is_none() && arguments.out.is_some() {
+        return Err(CommandError::Words("--out is for one figure: name it, from the list without --out".into()));
+    }
+    let subject = watched("verifying the model", |_| FigureContext::new(&model, arguments.rpm))?;
+    let page = match id {
+        None => list(&model, &subject, arguments.json)?,
+        Some(id) => {
+            let Some(entry) = FIGURES.iter().find(|entry| entry.id == id) else {
+                let there = FIGURES.map(|entry| entry.id).join(", ");
+                let id = untrusted::value(id);
+                return Err(CommandError::Words(format!("no figure called \"{id}\"; there are: {there}")));
+            };
+            // Opened before the work: a name that cannot be is told at once.
+            let canvas = arguments
+                .out
+                .as_deref()
+                .map(|path| picture::Canvas::create(path, arguments.picture.look()?))
+                .transpose()?;
+            let progress = Progress::spinner("computing the figure");
+            let plate = entry.plate(&subject);
+            drop(progress);
+            match (&plate.drawn, canvas) {
+                (Ok(drawn), Some(canvas)) => super::commit(vec![canvas.draw(drawn.figure.clone(), &model.units)?])?,
+                // A document says why there is none; a file cannot.
+                (Err(_), None) if arguments.json => {}
+                (Err(why), _) => return Err(CommandError::Words(format!("{}: no figure {id}: {why}", model.file()))),
+                (Ok(_), None) => {}
+            }
+            one(&subject, plate, arguments)?
+        }
+    };
+    session.print(&page)?;
+    Ok(Exit::Agrees)
+}
+
+fn list(model: &Model, subject: &FigureContext, as_json: bool) -> Result<String, CommandError> {
+    let figures = listed(subject);
+    if as_json {
+        return Ok(json::render(&List { schema: SCHEMA, model: model.name.clone(), figures }, &model.units)?);
+    }
+    let wide = |part: fn(&Listed) -> &str| figures.iter().map(|figure| part(figure).len()).max().unwrap_or(0);
+    let (ids, places) = (wide(|figure| figure.id), wide(|figure| figure.place));
+    let mut page = String::new();
+    for Listed { id, place, title } in &figures {
+        writeln!(page, "{id:ids$}  {place:places$}  {title}")?;
+    }
+    Ok(page)
+}
+
+fn one(subject: &FigureContext, plate: RenderedFigure, arguments: &Arguments) -> Result<String, CommandError> {
+    if arguments.json {
+        return Ok(json::render(
+            &One { schema: SCHEMA, model: subject.model.name.clone(), plate },
+            &subject.model.units,
+        )?);
+    }
+    let of = match (plate.place, subject.is_paper) {
+        ("", _) => String::new(),
+        (place, true) => format!(" ({place} of the paper)"),
+        (place, false) => format!(" (as {place} of the paper)"),
+    };
+    let how = if arguments.out.is_some() { String::new() } else { format!("Draw it: {}\n", plate.command) };
+    let caption = plate.drawn.map(|drawn| drawn.caption).unwrap_or_default();
+    Ok(format!("{}{of}\n{caption}\n{how}", plate.title))
+}

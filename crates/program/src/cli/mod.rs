@@ -1,0 +1,227 @@
+//! The command line: parse, one library call, exit code. Results to standard output, complaints to standard error.
+
+mod basins;
+mod cam;
+mod certify;
+mod chaos;
+mod chart;
+mod claims;
+mod compare;
+mod complaint;
+mod completions;
+mod continuation;
+mod curve;
+mod design;
+mod diagram;
+mod explain;
+mod figure;
+mod help;
+mod locate;
+mod man;
+mod model;
+mod new;
+mod orbit;
+mod over;
+mod picture;
+mod progress;
+mod report;
+mod session;
+mod signals;
+mod simulate;
+mod speeds;
+mod standard;
+mod start;
+mod threads;
+mod verify;
+
+use std::error::Error;
+use std::ffi::OsString;
+use std::io::Write;
+
+use clap::{ColorChoice, FromArgMatches, Parser, Subcommand};
+
+use model::ModelArgument;
+use session::Session;
+pub use session::Terminal;
+pub use signals::watch as clear_on_signals;
+
+use corner_impact::cancel;
+use corner_impact::file::{self, FileError, Output};
+use corner_impact::model::{ModelError, Units};
+use corner_impact::simulate::SimulateError;
+
+/// How a command ended; the process's exit code.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Exit {
+    /// Done, and everything checked agrees.
+    Agrees = 0,
+    /// Done, and a check disagrees.
+    Disagrees = 1,
+    /// Bad usage, model file or data.
+    BadInput = 2,
+}
+
+/// Re-proves the corner-impact bifurcation of a cam-follower system: closed forms against simulation.
+#[derive(Parser)]
+#[command(name = "corner-impact", bin_name = "corner-impact", version)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+    /// Whether pages, complaints and help are coloured.
+    #[arg(long, global = true, value_enum, value_name = "WHEN", default_value = "auto")]
+    color: ColorChoice,
+}
+
+/// The subcommands: one line each, under the heading that `--help` lists it by. A module has `Arguments` and `run`.
+macro_rules! subcommands {
+    ($($heading:literal: $($name:ident = $module:ident,)+)+) => {
+        #[derive(Subcommand)]
+        enum Command {
+            $($($name($module::Arguments),)+)+
+        }
+
+        impl Command {
+            fn run(&self, session: &mut Session<'_>) -> Result<Exit, CommandError> {
+                match self {
+                    $($(Self::$name(arguments) => $module::run(arguments, session),)+)+
+                }
+            }
+        }
+
+        /// The headings of `--help`, and what is under each.
+        const GROUPS: &[(&str, &[&str])] = &[$(($heading, &[$(stringify!($name)),+])),+];
+    };
+}
+
+subcommands! {
+    "The paper's result, on its model or yours":
+        Verify = verify,
+        Report = report,
+        Claims = claims,
+        Explain = explain,
+        Locate = locate,
+        Certify = certify,
+        Compare = compare,
+    "What a machine does":
+        Cam = cam,
+        Simulate = simulate,
+        Speeds = speeds,
+        Design = design,
+        Diagram = diagram,
+        Chart = chart,
+        Figure = figure,
+    "Periodic orbits and what lies between them":
+        Orbit = orbit,
+        Continue = continuation,
+        Curve = curve,
+        Basins = basins,
+        Chaos = chaos,
+    "Getting started, and the shell":
+        New = new,
+        Completions = completions,
+        Man = man,
+}
+
+/// Why a command has no result.
+#[derive(Debug)]
+enum CommandError {
+    Words(String),
+    /// Something that points into a model file.
+    Model {
+        words: String,
+        at: Box<ModelError>,
+    },
+    /// The program found a fault of its own, which depends on the model.
+    Fault(String),
+    /// Whoever read standard output has had enough.
+    Unread,
+}
+
+/// Every error of the library; with its place where a model file has it.
+impl<E: Error + 'static> From<E> for CommandError {
+    fn from(error: E) -> Self {
+        let words = error.to_string();
+        let mut cause: Option<&(dyn Error + 'static)> = Some(&error);
+        while let Some(error) = cause {
+            if let Some(at) = error.downcast_ref::<ModelError>() {
+                return Self::Model { words, at: Box::new(at.clone()) };
+            }
+            if let Some(SimulateError::PassedThrough { .. }) = error.downcast_ref() {
+                return Self::Fault(words);
+            }
+            // What a stream's error holds is not its source.
+            let held = error.downcast_ref::<std::io::Error>().and_then(|error| error.get_ref());
+            let file = error.downcast_ref().or_else(|| held.and_then(|held| held.downcast_ref::<FileError>()));
+            if file.is_some_and(FileError::is_unread) {
+                return Self::Unread;
+            }
+            cause = error.source();
+        }
+        Self::Words(words)
+    }
+}
+
+/// Gives files their names, when every one of them is on the disk as far as can be told.
+fn commit(mut files: Vec<Output<'_>>) -> Result<(), CommandError> {
+    files.iter_mut().try_for_each(Write::flush)?;
+    Ok(files.into_iter().try_for_each(Output::commit)?)
+}
+
+/// Runs one command line, program name first; neither stream is a terminal.
+pub fn run(arguments: impl IntoIterator<Item = OsString>, out: &mut dyn Write, err: &mut dyn Write) -> Exit {
+    run_at(Terminal::default(), arguments, out, err)
+}
+
+/// Runs a command, as long as somebody reads it, where its results are nowhere else.
+fn begun(arguments: &Arguments, only_prints: bool, session: &mut Session<'_>) -> Result<Exit, CommandError> {
+    session.color = arguments.color;
+    let is_watched = session.terminal.is_process && only_prints;
+    signals::watch().map_err(|error| CommandError::Words(format!("signals: {error}")))?;
+    let mut work = || {
+        threads::start()?;
+        arguments.command.run(session)
+    };
+    if !is_watched {
+        return work();
+    }
+    standard::takes_more()?;
+    cancel::run(standard::is_unread(), work).unwrap_or(Err(CommandError::Unread))
+}
+
+/// Runs one command line, program name first, with streams that `terminal` describes.
+pub fn run_at(
+    terminal: Terminal,
+    arguments: impl IntoIterator<Item = OsString>,
+    out: &mut dyn Write,
+    err: &mut dyn Write,
+) -> Exit {
+    let words: Vec<OsString> = arguments.into_iter().collect();
+    // What is wrong with a command line is coloured as it says itself.
+    let mut session = Session {
+        out,
+        err,
+        terminal,
+        color: session::said(&words),
+        rpm: None,
+        units: Units::default(),
+        model: String::new(),
+    };
+    let mut command = help::command(session.width());
+    let matches = command.try_get_matches_from_mut(words);
+    session.rpm = matches.as_ref().ok().and_then(session::speeds);
+    let only_prints = matches.as_ref().is_ok_and(|matches| session::only_prints(&command, matches));
+    let run = match matches.and_then(|matches| Arguments::from_arg_matches(&matches)) {
+        Ok(arguments) => begun(&arguments, only_prints, &mut session),
+        Err(error) => session.refuse(error),
+    };
+    run.unwrap_or_else(|error| {
+        // Whoever closes a pipe early, as `head` does, wants no more, nor a complaint.
+        match &error {
+            CommandError::Unread => {}
+            CommandError::Model { words, at } => session.complain_at(words, at),
+            CommandError::Words(words) => session.complain(words),
+            CommandError::Fault(words) => session.complain(&format!("{words}; the model is {}", session.model)),
+        }
+        Exit::BadInput
+    })
+}

@@ -1,0 +1,106 @@
+//! `corner-impact new [FILE]`.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use clap::ValueEnum;
+
+use super::{CommandError, Exit, Session};
+use corner_impact::file::{self, Output};
+
+/// Writes a commented model file to start from: every field with its unit and what it may be.
+#[derive(clap::Args)]
+#[command(after_help = "Examples:\n\
+    \x20 corner-impact new my-machine.toml\n\
+    \x20 corner-impact new --law program\n\
+    \n\
+    Every file that it writes loads as it stands; `verify` takes those of arcs, program and polynomial.\n\
+    Exit code: 0 done, 2 bad usage, or a file that is there already or cannot be written.")]
+pub(super) struct Arguments {
+    /// The file to write; - is standard output.
+    #[arg(value_name = "FILE", default_value = "-")]
+    file: PathBuf,
+    /// How the cam's lift is written down.
+    #[arg(long, value_enum, default_value = "arcs")]
+    law: Law,
+    /// Write over a file that is there.
+    #[arg(long)]
+    force: bool,
+}
+
+/// The lift laws, each with a template.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Law {
+    Arcs,
+    Harmonic,
+    RectifiedSine,
+    Program,
+    Polynomial,
+    Table,
+}
+
+const FOLLOWER: &str = include_str!("templates/follower.toml");
+const STUDY: &str = include_str!("templates/study.toml");
+const LIFTS: &str = include_str!("templates/lifts.csv");
+/// Names of the machine and of its table in the templates.
+const NAME: &str = "my-machine";
+const TABLE: &str = "lifts.csv";
+
+impl Law {
+    fn cam(self) -> &'static str {
+        match self {
+            Self::Arcs => include_str!("templates/arcs.toml"),
+            Self::Harmonic => include_str!("templates/harmonic.toml"),
+            Self::RectifiedSine => include_str!("templates/rectified-sine.toml"),
+            Self::Program => include_str!("templates/program.toml"),
+            Self::Polynomial => include_str!("templates/polynomial.toml"),
+            Self::Table => include_str!("templates/table.toml"),
+        }
+    }
+
+    /// The model file; `verify` has something to look for where the cam has corners of order 2.
+    fn template(self) -> String {
+        // A measured cam comes with a follower of its size.
+        let follower = if self == Self::Table { "" } else { FOLLOWER };
+        let study = if matches!(self, Self::Arcs | Self::Program | Self::Polynomial) { STUDY } else { "" };
+        let text = [follower, self.cam(), study].concat();
+        text.trim_end().to_owned() + "\n"
+    }
+}
+
+pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
+    let (path, law) = (&arguments.file, arguments.law);
+    if path.as_os_str() == "-" {
+        session.print(&law.template())?;
+        if law == Law::Table {
+            session.note(&format!("{TABLE} is not written: give a FILE to have it beside the model"));
+        }
+        return Ok(Exit::Agrees);
+    }
+    // A name that TOML takes between quotes as it is names the machine and its table.
+    let is_plain = |stem: &&str| stem.chars().all(|letter| letter.is_alphanumeric() || "-_. ".contains(letter));
+    let stem = path.file_stem().and_then(|stem| stem.to_str()).filter(is_plain);
+    let table = stem.map_or(TABLE.to_owned(), |stem| format!("{stem}.csv"));
+    let text = law.template().replace(NAME, stem.unwrap_or(NAME)).replace(TABLE, &table);
+    let beside = path.with_file_name(&table);
+    let mut files: Vec<(&Path, &str)> = vec![(path, &text)];
+    if law == Law::Table {
+        files.push((&beside, LIFTS));
+    }
+    if let Some((there, _)) = files.iter().find(|(path, _)| path.is_file()).filter(|_| !arguments.force) {
+        let words = format!("{}: is there already; --force writes over it", there.display());
+        return Err(CommandError::Words(words));
+    }
+    file::distinct(["the model", "its table"].into_iter().zip(files.iter().map(|(path, _)| *path)))?;
+    let mut outputs = Vec::new();
+    for (path, text) in &files {
+        let mut output = Output::file(path)?;
+        output.write_all(text.as_bytes())?;
+        outputs.push(output);
+    }
+    super::commit(outputs)?;
+    for (path, _) in &files {
+        session.note(&format!("wrote {}", path.display()));
+    }
+    Ok(Exit::Agrees)
+}

@@ -1,0 +1,100 @@
+//! A progress bar on standard error, for work that takes longer than a second in front of a person.
+
+use std::io::IsTerminal;
+use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
+use std::sync::{Mutex, PoisonError};
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+use corner_impact::progress::Watch;
+
+/// Does some work, which may tell how far it has come; it begins at `what`.
+pub(super) fn watched<T>(what: &str, work: impl FnOnce(&dyn Watch) -> T) -> T {
+    work(&Progress::spinner(what))
+}
+
+/// Progress of a command: a bar if the total is known, otherwise a spinner, and the current step.
+pub(super) struct Progress {
+    bar: ProgressBar,
+    /// State that the bar was styled for: whether something is done, and the total.
+    looks: Mutex<(bool, u64)>,
+    /// Ends when this does.
+    shows: Option<(Sender<()>, JoinHandle<()>)>,
+}
+
+impl Progress {
+    /// Work done before the bar appears.
+    const PATIENCE: Duration = Duration::from_secs(1);
+    /// Between two looks of a bar that nobody moves.
+    const TICK: Duration = Duration::from_millis(120);
+
+    const BAR: &'static str = "{bar:30} {percent:>3} %  {elapsed} of about {duration}  {wide_msg}";
+    /// How long nothing takes says nothing of the rest.
+    const BEGUN: &'static str = "{bar:30} {percent:>3} %  {elapsed}  {wide_msg}";
+    const SPINNER: &'static str = "{spinner} {elapsed}  {wide_msg}";
+
+    /// At something that takes as long as it takes, until it says more.
+    pub(super) fn spinner(what: &str) -> Self {
+        let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden());
+        look(&bar, (false, 0));
+        bar.set_message(what.to_owned());
+        // Appears by itself: what is watched may have nothing to tell for longer than patience lasts.
+        let shows = std::io::stderr().is_terminal().then(|| {
+            let (ended, end) = channel::<()>();
+            let shown = bar.clone();
+            let thread = std::thread::spawn(move || {
+                if end.recv_timeout(Self::PATIENCE) == Err(RecvTimeoutError::Timeout) {
+                    shown.set_draw_target(ProgressDrawTarget::stderr());
+                    shown.enable_steady_tick(Self::TICK);
+                }
+            });
+            (ended, thread)
+        });
+        Self { bar, looks: Mutex::new((false, 0)), shows }
+    }
+}
+
+fn look(bar: &ProgressBar, (begun, total): (bool, u64)) {
+    let template = match (begun, total) {
+        (_, 0) => Progress::SPINNER,
+        (false, _) => Progress::BEGUN,
+        (true, _) => Progress::BAR,
+    };
+    if let Ok(style) = ProgressStyle::with_template(template) {
+        bar.set_style(style);
+    }
+    if total > 0 {
+        bar.set_length(total);
+    }
+}
+
+impl Watch for Progress {
+    fn at(&self, what: &str, done: u64, total: u64) {
+        let mut known = self.looks.lock().unwrap_or_else(PoisonError::into_inner);
+        if known.1 != total {
+            // Each kind of work has its own pace.
+            self.bar.reset_eta();
+        }
+        if *known != (done > 0, total) {
+            *known = (done > 0, total);
+            look(&self.bar, *known);
+        }
+        if self.bar.message() != what {
+            self.bar.set_message(what.to_owned());
+        }
+        self.bar.set_position(done);
+    }
+}
+
+impl Drop for Progress {
+    fn drop(&mut self) {
+        if let Some((ended, thread)) = self.shows.take() {
+            drop(ended);
+            // It only waits, and then for nothing any more.
+            let _ = thread.join();
+        }
+        self.bar.finish_and_clear();
+    }
+}

@@ -1,0 +1,95 @@
+//! `corner-impact report [MODEL]`.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use super::picture::ends_in;
+use super::progress::watched;
+use super::start::rpm_range;
+use super::{CommandError, Exit, ModelArgument, Session};
+use crate::pages::report::html;
+use crate::report::Report;
+use crate::show::json;
+use corner_impact::file::Output;
+use corner_impact::model::{Model, ModelError};
+use corner_impact::study::verify::External;
+
+/// Writes everything about a model as one HTML page that opens from disk.
+#[derive(clap::Args)]
+#[command(after_help = "Examples:\n\
+    \x20 corner-impact report\n\
+    \x20 corner-impact report models/sharp-nose.toml --rpm 200:300 --out page.html\n\
+    \n\
+    The page needs no network and no other file; its name is printed. It opens with the answer: where the follower\n\
+    separates from the cam, how hard it hits, where motions coexist, what is proved.\n\
+    Exit code: 0 everything checked agrees, 1 something disagrees, 2 bad model file, usage or file.")]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    model: ModelArgument,
+    /// The page [default: the model file's name with -report.html, in this folder]; - for standard output.
+    #[arg(long, value_name = "FILE", value_parser = page)]
+    out: Option<PathBuf>,
+    /// Print one JSON document instead; the page only where --out names it.
+    #[arg(long)]
+    json: bool,
+    /// Lowest and highest speed that the answer is about [default: from below where the follower first leaves the cam up to the end of
+    /// the model's [study], or to twice that speed, or twice that of its spring where it stays on the cam].
+    #[arg(long, value_name = "LO:HI", value_parser = rpm_range, allow_hyphen_values = true)]
+    rpm: Option<[f64; 2]>,
+    /// Leave out the routes that need Python (symbolic, scipy, certificate), and say so.
+    #[arg(long)]
+    no_external: bool,
+}
+
+/// A file name of a page, for clap.
+fn page(text: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    let is_page = path.extension().is_none() || ends_in(&path, &["html", "htm"]);
+    if is_page { Ok(path) } else { Err("must end in .html, or be -".into()) }
+}
+
+pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
+    if arguments.json && arguments.out.as_deref() == Some(Path::new("-")) {
+        return Err(CommandError::Words("--json and --out - both want standard output".into()));
+    }
+    let model = arguments.model.read(session)?;
+    let path = match (&arguments.out, arguments.json) {
+        (Some(path), _) => Some(path.clone()),
+        (None, true) => None,
+        (None, false) => Some(default_name(&model)?),
+    };
+    // The file is begun before the work: a name that cannot be is told at once.
+    let file = match &path {
+        Some(path) => Some(Output::create(path, &mut *session.out)?),
+        None => None,
+    };
+    let external = if arguments.no_external { External::LeftOut } else { External::Run };
+    let report = watched("", |watch| Report::of(&model, external, arguments.rpm, watch))?;
+    let write = |mut file: Output<'_>| {
+        let page = html::render(&report)?;
+        file.write_all(page.as_bytes())?;
+        super::commit(vec![file])
+    };
+    file.map(write).transpose()?;
+    for route in report.failed() {
+        session.complain(&format!("{route} did not run; the page says why"));
+    }
+    match (arguments.json, &path) {
+        (true, _) => session.print(&json::render(&report, &model.units)?)?,
+        (false, Some(path)) if path.as_path() != Path::new("-") => session.print(&format!("{}\n", path.display()))?,
+        _ => {}
+    }
+    Ok(if report.agrees { Exit::Agrees } else { Exit::Disagrees })
+}
+
+/// Named after the model file and the numbers that are changed, where the command is run.
+fn default_name(model: &Model) -> Result<PathBuf, ModelError> {
+    let mut name = match model.path().and_then(Path::file_stem) {
+        Some(stem) => stem.to_string_lossy().into_owned(),
+        None => Model::built_in()?.name,
+    };
+    for (path, number) in model.changes() {
+        name = format!("{name}-{path}-{number}");
+    }
+    Ok(PathBuf::from(format!("{name}-report.html")))
+}

@@ -1,0 +1,223 @@
+//! What a command talks to: the two streams, and what is known about the terminal that they may be.
+
+use std::ffi::OsString;
+use std::io::{ErrorKind, IsTerminal, Write};
+
+use clap::builder::Str;
+use clap::error::{ContextKind, ContextValue};
+use clap::{ColorChoice, ValueEnum};
+use serde::Serialize;
+
+use super::{CommandError, Exit, complaint};
+use crate::show::block::in_units;
+use crate::show::{Page, Paged, json};
+use corner_impact::model::{ModelError, Units};
+use corner_impact::untrusted;
+
+/// The colours that a command line asks for before it is known to be one.
+pub(super) fn said(words: &[OsString]) -> ColorChoice {
+    let mut said = ColorChoice::Auto;
+    let mut words = words.iter().skip(1).filter_map(|word| word.to_str()).take_while(|word| *word != "--");
+    while let Some(word) = words.next() {
+        let value = if word == "--color" { words.next() } else { word.strip_prefix("--color=") };
+        said = value.and_then(|value| ColorChoice::from_str(value, false).ok()).unwrap_or(said);
+    }
+    said
+}
+
+/// The lowest and the highest of the speeds that a command line asks for by `--rpm`, as far as they can be read.
+pub(super) fn speeds(matches: &clap::ArgMatches) -> Option<[f64; 2]> {
+    let (_, of_command) = matches.subcommand()?;
+    let text = of_command.try_get_raw("rpm").ok().flatten()?.next()?.to_str()?;
+    let mut parts = text.split(':').map(|part| part.trim().parse::<f64>().ok());
+    let low = parts.next()??;
+    Some([low, parts.next().flatten().unwrap_or(low)])
+}
+
+/// Words of a command line as a complaint shows them.
+fn shown(value: &ContextValue) -> ContextValue {
+    match value {
+        ContextValue::String(text) => ContextValue::String(untrusted::value(text).into_owned()),
+        ContextValue::Strings(texts) => {
+            ContextValue::Strings(texts.iter().map(|text| untrusted::value(text).into_owned()).collect())
+        }
+        other => other.clone(),
+    }
+}
+
+/// Whether nothing that a command line asks for goes to a file.
+pub(super) fn only_prints(command: &clap::Command, matches: &clap::ArgMatches) -> bool {
+    let Some((name, given)) = matches.subcommand() else { return false };
+    let arguments = command.find_subcommand(name).map(clap::Command::get_arguments).into_iter().flatten();
+    // A report has a file if none is named.
+    let of_files = |names: &[Str]| names.iter().any(|name| ["FILE", "DIR"].contains(&name.as_str()));
+    let mut files = arguments.filter(|argument| argument.get_value_names().is_some_and(of_files));
+    name != "report"
+        && files.all(|file| given.get_raw(file.get_id().as_str()).is_none_or(|mut names| names.all(|name| name == "-")))
+}
+
+/// Terminals behind the streams of a process, and the settings of its environment.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Terminal {
+    /// Whether standard output is a terminal.
+    pub out: bool,
+    /// Whether standard error is.
+    pub err: bool,
+    /// Columns of the page, where something says how many there are.
+    pub columns: Option<usize>,
+    /// The environment wants no colour: NO_COLOR.
+    pub plain: bool,
+    /// The environment wants colour everywhere: CLICOLOR_FORCE.
+    pub forced: bool,
+    /// The terminal has none, or is not to be asked for it: TERM=dumb, CLICOLOR=0.
+    pub dumb: bool,
+    /// Results go to standard output of this process, and not into the hands of a program that calls the library.
+    pub is_process: bool,
+}
+
+impl Terminal {
+    /// The fewest that a page is laid out for, and the most that can be read with ease.
+    const ALLOWED: [usize; 2] = [40, 120];
+
+    /// That of this process. COLUMNS goes before what the terminal says.
+    pub fn of_process() -> Self {
+        let set = |name: &str| std::env::var(name).ok().filter(|value| !value.is_empty());
+        let (out, err) = (std::io::stdout().is_terminal(), std::io::stderr().is_terminal());
+        let asked = set("COLUMNS").and_then(|columns| columns.trim().parse().ok()).filter(|columns| *columns > 0);
+        let measured = || terminal_size::terminal_size().filter(|_| out).map(|(width, _)| usize::from(width.0));
+        let is = |name: &str, wanted: &str| set(name).is_some_and(|value| value == wanted);
+        Self {
+            out,
+            err,
+            columns: asked.or_else(measured),
+            plain: set("NO_COLOR").is_some(),
+            forced: set("CLICOLOR_FORCE").is_some_and(|value| value != "0"),
+            dumb: is("TERM", "dumb") || is("CLICOLOR", "0"),
+            is_process: true,
+        }
+    }
+
+    /// Columns of a page.
+    pub(super) fn width(&self) -> usize {
+        let [fewest, most] = Self::ALLOWED;
+        self.columns.unwrap_or(crate::show::page::WIDTH).clamp(fewest, most)
+    }
+
+    fn coloured(&self, choice: ColorChoice, is_terminal: bool) -> bool {
+        match choice {
+            ColorChoice::Always => true,
+            ColorChoice::Never => false,
+            // https://no-color.org and https://bixense.com/clicolors
+            ColorChoice::Auto => !self.plain && (self.forced || (is_terminal && !self.dumb)),
+        }
+    }
+}
+
+/// The streams of one command line.
+pub(super) struct Session<'a> {
+    /// Results.
+    pub(super) out: &'a mut dyn Write,
+    /// Complaints, notes and accounts.
+    pub(super) err: &'a mut dyn Write,
+    /// Terminals behind both streams.
+    pub(super) terminal: Terminal,
+    /// Value of `--color`.
+    pub(super) color: ColorChoice,
+    /// The speeds that the command line asks for, rpm.
+    pub(super) rpm: Option<[f64; 2]>,
+    /// Units of the model that the command is about.
+    pub(super) units: Units,
+    /// Its name.
+    pub(super) model: String,
+}
+
+impl Session<'_> {
+    /// Columns of a page.
+    pub(super) fn width(&self) -> usize {
+        self.terminal.width()
+    }
+
+    /// Whether results are coloured.
+    pub(super) fn colours_out(&self) -> bool {
+        self.terminal.coloured(self.color, self.terminal.out)
+    }
+
+    /// Whether complaints are.
+    pub(super) fn colours_err(&self) -> bool {
+        self.terminal.coloured(self.color, self.terminal.err)
+    }
+
+    /// Says something on standard error.
+    pub(super) fn note(&mut self, words: &str) {
+        // A closed pipe leaves nobody to tell.
+        let _ = writeln!(self.err, "note: {}", untrusted::sentence(words));
+    }
+
+    /// Notes that some of the parts of a survey failed, and the first of them: tables do not say why.
+    pub(super) fn failures(&mut self, what: &str, [count, all]: [usize; 2], first: &str) {
+        self.note(&format!("{count} of {all} {what} could not be run; the first is {first}"));
+    }
+
+    /// Complains on standard error, in the words that every complaint begins with.
+    pub(super) fn complain(&mut self, words: &str) {
+        // A closed pipe leaves nobody to tell.
+        let _ = writeln!(self.err, "{} {}", complaint::word(self.colours_err()), untrusted::sentence(words));
+    }
+
+    /// Prints a complaint with the line of the model file that it is about.
+    pub(super) fn complain_at(&mut self, words: &str, at: &ModelError) {
+        self.complain(words);
+        let shown = complaint::shown(words, at, self.colours_err(), self.terminal.err, self.width());
+        let _ = self.err.write_all(shown.as_bytes());
+    }
+
+    /// Says what is wrong with a command line, or what help was asked for.
+    pub(super) fn refuse(&mut self, mut error: clap::Error) -> Result<Exit, CommandError> {
+        // Advice that repeats what nobody can read is none.
+        let is_odd =
+            |value: &ContextValue| matches!(value, ContextValue::String(text) if untrusted::value(text) != *text);
+        if error.context().any(|(_, value)| is_odd(value)) {
+            error.remove(ContextKind::Suggested);
+        }
+        let foreign: Vec<_> = error.context().map(|(kind, value)| (kind, shown(value))).collect();
+        for (kind, value) in foreign {
+            error.insert(kind, value);
+        }
+        let text = error.render();
+        let shown = |colours: bool| if colours { text.ansi().to_string() } else { text.to_string() };
+        if error.use_stderr() {
+            let text = shown(self.colours_err());
+            // A closed pipe leaves nobody to tell.
+            let _ = self.err.write_all(text.as_bytes());
+            Ok(Exit::BadInput)
+        } else {
+            let text = shown(self.colours_out());
+            self.print(&text)?;
+            Ok(Exit::Agrees)
+        }
+    }
+
+    /// A page as it is printed.
+    pub(super) fn shown(&self, page: &Page) -> String {
+        if self.colours_out() { page.coloured().to_owned() } else { page.plain() }
+    }
+
+    /// Prints a result whole.
+    pub(super) fn print(&mut self, text: &str) -> Result<(), CommandError> {
+        self.out.write_all(text.as_bytes()).and_then(|()| self.out.flush()).map_err(|error| match error.kind() {
+            ErrorKind::BrokenPipe => CommandError::Unread,
+            _ => CommandError::Words(format!("standard output: {error}")),
+        })
+    }
+
+    /// Prints what was found: one document for a program, or the page for people, in as many columns as there are.
+    pub(super) fn answer(&mut self, found: &(impl Serialize + Paged), as_json: bool) -> Result<Exit, CommandError> {
+        let text = if as_json {
+            json::render(found, &self.units)?
+        } else {
+            self.shown(&Page::of(self.width(), &in_units(found.blocks(), &self.units))?)
+        };
+        self.print(&text)?;
+        Ok(Exit::Agrees)
+    }
+}

@@ -1,0 +1,171 @@
+//! `corner-impact simulate [MODEL] --rpm R`.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use clap::ArgGroup;
+
+use super::picture::{self, Canvas, PictureArguments, is_standard, picture as drawn_only, picture_or_table};
+use super::start::{BudgetArguments, StartArguments, angle, cam_angle, count, rpm};
+use super::{CommandError, Exit, ModelArgument, Session, progress::watched};
+use crate::figures::{self, phase_plane as phase_plane_figure, time_trace, with_force};
+use crate::show::csv;
+use corner_impact::file::{self, Output};
+use corner_impact::orbit::long_run::Budget;
+use corner_impact::study::simulate::{RunRequest, Sight, Simulation, Until};
+
+/// Runs one motion of a model and says what happened.
+#[derive(clap::Args)]
+#[command(group = ArgGroup::new("picture").multiple(true))]
+#[command(after_help = "Examples:\n\
+    \x20 corner-impact simulate --rpm 183 --revolutions 10 --events -\n\
+    \x20 corner-impact simulate models/osorio-2008.toml --rpm 183 --trace trace.svg\n\
+    \n\
+    Exit code: 0 done, 2 bad model file, usage or file, or a run that cannot go on.")]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    model: ModelArgument,
+    /// Speed of the cam.
+    #[arg(long, value_name = "R", value_parser = rpm, allow_hyphen_values = true)]
+    rpm: f64,
+    /// Turns of the cam.
+    #[arg(long, value_name = "N", default_value_t = 100, value_parser = count, allow_hyphen_values = true,
+        conflicts_with = "impacts")]
+    revolutions: u64,
+    /// Run up to this many impacts instead.
+    #[arg(long, value_name = "N", value_parser = count, allow_hyphen_values = true)]
+    impacts: Option<u64>,
+    #[command(flatten)]
+    start: StartArguments,
+    /// Write impacts, sticks and releases as CSV; - is standard output.
+    #[arg(long, value_name = "FILE")]
+    events: Option<PathBuf>,
+    /// Write the state each time the cam passes this angle, rad or as 90deg, to the file of --strobe-out.
+    #[arg(long, value_name = "RAD", value_parser = angle, requires = "strobe_out", allow_hyphen_values = true)]
+    strobe: Option<f64>,
+    /// Where the states go, as CSV; - is standard output.
+    #[arg(long, value_name = "FILE", requires = "strobe")]
+    strobe_out: Option<PathBuf>,
+    /// Print the summary as one JSON document.
+    #[arg(long)]
+    summary: bool,
+    /// Add to the summary what the run comes to in the long run, and how fast a small deviation grows there per revolution: a natural logarithm,
+    /// of a motion that repeats by its multipliers, -inf (null in JSON) where the follower comes to rest on the cam, else a mean with its
+    /// standard error. However short the run is: --transient, --record, --longest and --patience say for how long it is followed for that.
+    #[arg(long)]
+    lyapunov: bool,
+    #[command(flatten)]
+    budget: BudgetArguments,
+    /// Draw follower, cam, gap and contact force over the last revolutions (.svg, .png or .pdf), or write them as CSV (.csv).
+    #[arg(long, value_name = "FILE", value_parser = picture_or_table, conflicts_with = "impacts", group = "picture")]
+    trace: Option<PathBuf>,
+    /// Draw the gap against its velocity over the last revolutions (.svg, .png or .pdf).
+    #[arg(long, value_name = "FILE", value_parser = drawn_only, conflicts_with = "impacts", group = "picture")]
+    phase_plane: Option<PathBuf>,
+    /// Moments of each revolution that --trace shows, beside the events [default: 3600 in a picture, 360 in a table].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000), requires = "trace")]
+    points_per_revolution: Option<u32>,
+    /// How many revolutions are drawn [default: 2].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1000))]
+    drawn: Option<u64>,
+    #[command(flatten)]
+    picture: PictureArguments,
+}
+
+/// Revolutions that are drawn where nothing else is asked for.
+const DRAWN: u64 = 2;
+
+pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
+    let streams = [&arguments.events, &arguments.strobe_out, &arguments.trace].map(|path| is_standard(path.as_ref()));
+    let streams = streams.into_iter().chain([arguments.summary]).filter(|to_standard| *to_standard).count();
+    if streams > 1 {
+        let words =
+            "--events -, --strobe-out -, --trace - and --summary all print to standard output: give the tables files";
+        return Err(CommandError::Words(words.into()));
+    }
+    let Arguments { events, strobe_out, trace, phase_plane, .. } = arguments;
+    let results =
+        [("--events", events), ("--strobe-out", strobe_out), ("--trace", trace), ("--phase-plane", phase_plane)];
+    let files = results.iter().filter_map(|(option, path)| Some((*option, path.as_deref()?)));
+    file::distinct(files.filter(|(_, path)| path.as_os_str() != "-"))?;
+    if arguments.drawn.is_some() && trace.is_none() && phase_plane.is_none() {
+        return Err(CommandError::Words(
+            "--drawn says how much --trace and --phase-plane draw: neither is there".into(),
+        ));
+    }
+    let model = arguments.model.read_as_drawn(session)?;
+    arguments.start.doubt(session);
+    let simulation = Simulation::new(&model, arguments.rpm, arguments.start.start()?)?;
+    let (machine, first) = (&simulation.machine, &simulation.first);
+    let shown = trace.is_some() || phase_plane.is_some();
+    let drawn = if shown { arguments.drawn.unwrap_or(DRAWN) } else { 0 };
+    let wanted = RunRequest {
+        until: arguments.impacts.map_or(Until::Revolutions(arguments.revolutions), Until::Impacts),
+        events: events.is_some(),
+        strobe: arguments.strobe.map(|angle| cam_angle("--strobe", angle, session)),
+        drawn,
+        long_run: arguments.lyapunov.then(|| arguments.budget.budget(Budget::SURVEY)).transpose()?,
+    };
+
+    let look = arguments.picture.look()?;
+    // Every file is begun before the run: a name that cannot be is told at once.
+    let plane = phase_plane.as_deref().map(|path| Canvas::create(path, look.clone())).transpose()?;
+    // At most one of the tables is standard output.
+    let mut out = Some(&mut *session.out);
+    let mut open = |path: &Path, columns: &str| -> Result<Output<'_>, CommandError> {
+        let standard = if path.as_os_str() == "-" { out.take() } else { None };
+        let mut file = standard.map_or_else(|| Output::file(path), |out| Output::create(path, out))?;
+        file.write_all(columns.as_bytes())?;
+        Ok(file)
+    };
+    let mut events = events.as_deref().map(|path| open(path, &model.units.columns(csv::EVENTS))).transpose()?;
+    let mut states = strobe_out.as_deref().map(|path| open(path, &model.units.columns(csv::STROBE))).transpose()?;
+    let is_drawn = |path: &&Path| picture::kind(path).is_some();
+    let trace = trace.as_deref();
+    let written =
+        trace.filter(|path| !is_drawn(path)).map(|path| open(path, &model.units.columns(csv::TRACE))).transpose()?;
+    let trace = trace.filter(is_drawn).map(|path| Canvas::create(path, look)).transpose()?;
+    let mut lines = String::new();
+    let see = |sight: Sight<'_>| -> Result<(), CommandError> {
+        lines.clear();
+        let (file, columns) = match sight {
+            Sight::Events(seen) => {
+                let omega = machine.angular_velocity();
+                seen.iter().for_each(|event| csv::event(&mut lines, event, first.cam_angle, omega));
+                (&mut events, csv::EVENTS)
+            }
+            Sight::State(motion) => {
+                csv::strobe(&mut lines, machine, motion);
+                (&mut states, csv::STROBE)
+            }
+        };
+        let lines = csv::in_units(&lines, columns, &model.units);
+        Ok(file.as_mut().map_or(Ok(()), |file| file.write_all(lines.as_bytes()))?)
+    };
+    let run = watched("", |watch| simulation.run(wanted, watch, see))?;
+    let seen = |points: u32| {
+        let points = arguments.points_per_revolution.unwrap_or(points);
+        figures::TracedRun::new(machine, run.before_drawn, drawn.min(arguments.revolutions), points)
+    };
+    let written = written.map(|mut file| -> Result<_, CommandError> {
+        let (omega, mass) = (machine.angular_velocity(), model.follower.mass);
+        let lines = csv::trace(&seen(figures::TracedRun::WRITTEN)?.samples, first.cam_angle, omega, mass);
+        file.write_all(csv::in_units(&lines, csv::TRACE, &model.units).as_bytes())?;
+        Ok(file)
+    });
+    let mut files: Vec<Output<'_>> = [events, states, written.transpose()?].into_iter().flatten().collect();
+    let title = format!("{} at {} rpm", model.name, arguments.rpm);
+    if let Some(canvas) = trace {
+        let run = seen(figures::TracedRun::DRAWN)?;
+        let figure = with_force(time_trace(&title, &run), &run, model.follower.mass, &model.units.force);
+        files.push(canvas.draw(figure, &model.units)?);
+    }
+    if let Some(canvas) = plane {
+        files.push(canvas.draw(phase_plane_figure(&title, &seen(figures::TracedRun::DRAWN)?), &model.units)?);
+    }
+    super::commit(files)?;
+    if arguments.summary || streams == 0 {
+        session.answer(&run, arguments.summary)?;
+    }
+    Ok(Exit::Agrees)
+}

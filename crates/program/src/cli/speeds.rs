@@ -1,0 +1,101 @@
+//! `corner-impact speeds [MODEL]`.
+
+use std::path::PathBuf;
+
+use super::picture::{PictureArguments, Target, is_standard, picture_or_table};
+use super::start::{BudgetArguments, RangeAxis, StartArguments, positive, range_axis, rpm_or_range};
+use super::{CommandError, Exit, ModelArgument, Session, progress::watched};
+use crate::figures::{corner_marks, speeds_figure};
+use crate::show::csv;
+use corner_impact::cam::Cam;
+use corner_impact::orbit::Parameter;
+use corner_impact::orbit::long_run::Budget;
+use corner_impact::study::StudyError;
+use corner_impact::study::attractors::{Resolution, Step};
+use corner_impact::study::speeds::{speeds, usual_range};
+use corner_impact::study::survey::{Over, Spacing};
+use corner_impact_plot::Look;
+use corner_impact_plot::layout::WIDTH;
+
+/// Tells which motions a machine ends on at which speeds, or values of another number, where each of them begins and ends, and how many starts end on each.
+#[derive(clap::Args)]
+#[command(after_help = "Examples:\n\
+    \x20 corner-impact speeds\n\
+    \x20 corner-impact speeds models/osorio-2008.toml --rpm 600:800 --speeds 100 --out speeds.svg\n\
+    \x20 corner-impact speeds --over restitution=0.5:0.9:100 --rpm 700\n\
+    \n\
+    The values that are run are multiples of a step, whatever the range: a part of a range has the answer of that part, if --step is the same.\n\
+    Exit code: 0 done, 2 bad model file, usage, or a run that cannot go on.")]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    model: ModelArgument,
+    /// Lowest and highest speed, and with --over the one speed [default: from below where the follower first leaves the cam up to the end of the model's [study], or to twice that speed, or twice that of its spring where it stays on the cam].
+    #[arg(long, value_name = "LO:HI|R", value_parser = rpm_or_range, allow_hyphen_values = true)]
+    rpm: Option<[f64; 2]>,
+    /// A number of the model to go over in place of the speed: from where to where, at how many values at least, and whether these are spaced by their logarithm.
+    #[arg(long, value_name = "NAME=LO:HI[:N][:log]", value_parser = range_axis, allow_hyphen_values = true)]
+    over: Option<RangeAxis>,
+    /// The least number of values that are run.
+    #[arg(long, value_name = "N", default_value_t = 300, value_parser = clap::value_parser!(u32).range(2..=100_000))]
+    speeds: u32,
+    /// From one value to the next, at most, of a logarithmic axis in decades: 1, 2, 3 or 5 times a power of ten is taken [default: what puts as many values into the range as asked for].
+    #[arg(long, value_name = "STEP", value_parser = positive, allow_hyphen_values = true, conflicts_with = "speeds")]
+    step: Option<f64>,
+    /// Starts that are run at each value.
+    #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=1_000_000),
+        conflicts_with_all = ["state", "relative_velocity"])]
+    starts: u32,
+    #[command(flatten)]
+    start: StartArguments,
+    #[command(flatten)]
+    budget: BudgetArguments,
+    /// Begin at each value on the stable orbits of two impacts in one revolution, too: a search by intervals finds all of them but next to a fold, a graze or a corner, in up to some seconds a value.
+    #[arg(long, conflicts_with_all = ["state", "relative_velocity"])]
+    two_impacts: bool,
+    /// Print one JSON document instead of the page.
+    #[arg(long)]
+    json: bool,
+    /// A picture (.svg, .png, .pdf) of impacts, attractors and shares over the speeds, or a table (.csv, or - for standard output).
+    #[arg(long, value_name = "FILE", value_parser = picture_or_table, group = "picture")]
+    out: Option<PathBuf>,
+    #[command(flatten)]
+    picture: PictureArguments,
+}
+
+pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
+    let model = arguments.model.read(session)?;
+    let corners = corner_marks(&Cam::new(&model)?);
+    let (parameter, rpm, range, count, spacing) = match (&arguments.over, arguments.rpm) {
+        (Some(_), Some([low, high])) if low < high => return Err(StudyError::RangeAndNumber { low, high }.into()),
+        (Some((name, range, count, spacing)), rpm) => {
+            let parameter = arguments.model.varied(&model, name, "--over")?;
+            (parameter, rpm.map(|[rpm, _]| rpm), *range, *count, *spacing)
+        }
+        (None, Some([rpm, other])) if rpm == other => {
+            let words =
+                format!("--rpm {rpm} is one speed: LO:HI is from where to where, or --over NAME=LO:HI is what varies");
+            return Err(CommandError::Words(words));
+        }
+        (None, rpm) => {
+            let range = rpm.map_or_else(|| usual_range(&model), Ok)?;
+            (Parameter::Speed, None, range, None, Spacing::Linear)
+        }
+    };
+    let count = count.unwrap_or(arguments.speeds);
+    let step =
+        arguments.step.map_or_else(|| Step::for_values(range, count, spacing), |step| Step::at_most(step, spacing));
+    arguments.start.doubt(session);
+    let (sample, budget) =
+        (arguments.start.sample(arguments.starts as usize), arguments.budget.budget(Budget::SURVEY)?);
+    let resolution = Resolution { step, sample, budget, two_impacts: arguments.two_impacts };
+    let over = Over::new(&model, parameter, rpm)?;
+    let found = watched("", |watch| speeds(&over, range, &resolution, watch))?;
+    if let Some(path) = &arguments.out {
+        let table = || csv::speeds(&found);
+        let look = arguments.picture.look()?;
+        let across = look.as_ref().map_or(WIDTH, Look::across);
+        Target::create(path, &mut *session.out, look)?
+            .fill(&model.units, table, || Ok(speeds_figure(&found, &corners, across)))?;
+    }
+    if is_standard(arguments.out.as_ref()) { Ok(Exit::Agrees) } else { session.answer(&found, arguments.json) }
+}

@@ -1,0 +1,44 @@
+//! How many threads the work is shared by: as many as `--threads` says, or else RAYON_NUM_THREADS, or else one for each core.
+
+use std::error::Error;
+
+use super::CommandError;
+use corner_impact::cancel;
+use corner_impact::untrusted;
+
+/// A thread without work looks through all others for some, so that what is lost grows with the square of how many there are: a tenth
+/// of a second of one core with these, before anything is done, and more than a second with four times as many.
+const MOST: u16 = 256;
+/// Environment variable with the number of threads for all programs that use rayon.
+const VARIABLE: &str = "RAYON_NUM_THREADS";
+
+/// How many, for clap.
+pub(super) fn threads(text: &str) -> Result<u16, String> {
+    // What a machine has cores for it may use.
+    let cores = std::thread::available_parallelism().map_or(1, |cores| cores.get().try_into().unwrap_or(u16::MAX));
+    let most = MOST.max(cores);
+    let number = text.trim().parse().ok().filter(|number| (1..=most).contains(number));
+    number.ok_or_else(|| format!("must be a whole number of threads from 1 to {most}"))
+}
+
+/// Starts those that are there for everything. The variable may also be empty or 0, which says nothing.
+pub(super) fn start() -> Result<(), CommandError> {
+    let said = std::env::var_os(VARIABLE).unwrap_or_default();
+    let said = said.to_string_lossy();
+    let asked = match said.as_ref() {
+        "" | "0" => 0,
+        text => threads(text)
+            .map_err(|words| CommandError::Words(format!("{VARIABLE} = {}: {words}", untrusted::value(text))))?,
+    };
+    // Where a program runs several commands, the first has started them.
+    let builder = rayon::ThreadPoolBuilder::new().num_threads(asked.into());
+    let builder = builder
+        .spawn_handler(|thread| std::thread::Builder::new().spawn(cancel::carry(move || thread.run())).map(drop));
+    match builder.build_global() {
+        Err(error) if error.source().is_some() => {
+            let words = format!("threads cannot be started: {error}; {VARIABLE} says how many there are to be");
+            Err(CommandError::Words(words))
+        }
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,215 @@
+//! Shape of the cam seen along its axis at angle 0, with the follower straight above the axis.
+//!
+//! The paper's follower touches the cam on the ray from the axis along which it moves, so the outline is the lift as a
+//! radius. At cam angle `theta` the point `c(theta) (sin theta, cos theta)` is on top; the cam turns to the left.
+
+use std::f64::consts::TAU;
+
+use crate::figures::cam::{corner_marks, corners_in_words, of_circles};
+use crate::figures::{Entry, drawn};
+use corner_impact::cam::{Arc, Cam, Corner, Law, Segment};
+use corner_impact::elementary;
+use corner_impact_plot::{BREAK, Beside, Colour, Figure, FigureAxis, Label, Marker, Panel, Series, Stroke, extent};
+
+/// The report's figure of the cam's shape.
+pub(crate) const CAM_SHAPE: Entry = Entry {
+    id: "cam-shape",
+    place: "Figures 3(a) and 9",
+    title: |subject| format!("{}: the cam, its segments and corners", subject.model.name),
+    draw: |subject, title| {
+        let outline = Outline::new(&subject.cam);
+        let how = if outline.added == 0.0 {
+            "Its outline is the lift as a distance from the axis O: the follower stands on the point straight above O"
+                .to_owned()
+        } else {
+            format!(
+                "The model gives the lift alone; it is drawn around O with {:.4} {} added, so this is the path of the \
+                 follower's foot seen from the cam and not the cut of the metal",
+                outline.added,
+                subject.model.units.length.name()
+            )
+        };
+        drawn(
+            figure(title, &subject.cam, &outline),
+            format!("The cam at angle 0. {how}. {}", corners_in_words(&subject.cam, "Dots on the outline")),
+        )
+    },
+};
+
+/// Samples of a whole turn.
+const SAMPLES: f64 = 1440.0;
+/// The circles and the top of a cam of three circles, from angle 0 to half a turn, with their colour and stroke.
+const CIRCLES: [(&str, Colour, Stroke); 4] = [
+    ("base circle", Colour::Ink, Stroke::Solid),
+    ("flank", Colour::Blue, Stroke::Dashed),
+    ("nose", Colour::Vermilion, Stroke::Thick),
+    ("top", Colour::Green, Stroke::Dotted),
+];
+/// Colours and strokes of other cams' segments, used in rotation.
+const OTHERS: [(Colour, Stroke); 3] =
+    [(Colour::Blue, Stroke::Solid), (Colour::Vermilion, Stroke::Dashed), (Colour::Green, Stroke::Thick)];
+/// Corners nearer to one another than this share of the largest radius get one label.
+const NEAR: f64 = 0.12;
+/// Most segments that are drawn separately; with more, the outline is one line.
+const MOST: usize = 24;
+
+/// The cam as a shape; lengths in m from the axis, with the follower's direction up.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outline {
+    /// Radius added to the lift, m; used where the lift is not a distance from the axis.
+    pub added: f64,
+    /// The outline, segment by segment.
+    pub pieces: Vec<Piece>,
+    /// Cam angle, rad, and place of each corner.
+    pub corners: Vec<(f64, [f64; 2])>,
+}
+
+/// A segment of the outline.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Piece {
+    /// Points `[x, y]` in order.
+    pub points: Vec<[f64; 2]>,
+    /// Centre of the segment's circle; `None` unless it is on a circle that is not about the axis.
+    pub centre: Option<[f64; 2]>,
+}
+
+/// The point at a radius and a cam angle, rad.
+fn place(angle: f64, radius: f64) -> [f64; 2] {
+    [radius * elementary::sin(angle), radius * elementary::cos(angle)]
+}
+
+impl Outline {
+    /// Computes the outline of a cam.
+    pub fn new(cam: &Cam) -> Self {
+        let [low, high] = extent(cam.segments().iter().flat_map(|segment| segment.bounds.lift));
+        let stroke = high - low;
+        // If the lift would turn the outline inside out, or make it a needle, add a radius.
+        let added = if low >= stroke { 0.0 } else { 2.0 * stroke - low };
+        let piece = |segment: &Segment| {
+            let steps = ((segment.end - segment.start) / TAU * SAMPLES).ceil().max(2.0);
+            let angle = |step: f64| segment.start + (segment.end - segment.start) * step / steps;
+            let points = (0..=steps as usize).map(|step| angle(step as f64));
+            let radius = |angle: f64| added + segment.law.lift(angle).value;
+            let centre = match &segment.law {
+                Law::Arc(Arc { distance, direction, .. }) if added == 0.0 => Some(place(*direction, *distance)),
+                _ => None,
+            };
+            Piece { points: points.map(|angle| place(angle, radius(angle))).collect(), centre }
+        };
+        let corner = |corner: &Corner| (corner.angle, place(corner.angle, added + corner.plus.value));
+        Self {
+            added,
+            pieces: cam.segments().iter().map(piece).collect(),
+            corners: cam.corners().iter().map(corner).collect(),
+        }
+    }
+
+    /// Largest distance of the outline from the axis.
+    fn farthest(&self) -> f64 {
+        self.pieces
+            .iter()
+            .flat_map(|piece| &piece.points)
+            .fold(0.0_f64, |far, [x, y]| far.max(elementary::hypot(*x, *y)))
+    }
+}
+
+/// Draws the outline, the corners, the axis and the follower's direction.
+fn figure(title: &str, cam: &Cam, outline: &Outline) -> Figure {
+    let farthest = outline.farthest();
+    let mut series = if of_circles(cam) { circles(&outline.pieces) } else { segments(&outline.pieces) };
+    let letters = letters(cam, outline, farthest);
+    series.push(Series::points("", Colour::Ink, Marker::Dot, letters.iter().map(|word| word.at)));
+    // Of labels that would overlap, keep the first.
+    let mut apart: Vec<Label> = Vec::new();
+    for word in letters {
+        let near =
+            |other: &Label| elementary::hypot(other.at[0] - word.at[0], other.at[1] - word.at[1]) < NEAR * farthest;
+        if !apart.iter().any(near) {
+            apart.push(word);
+        }
+    }
+    series.push(Series::words(apart));
+    // The axis, the follower above it, and a stretch of a circle for the way that the cam turns.
+    let first = outline.pieces.first().and_then(|piece| piece.points.first()).map_or(0.0, |[_, y]| *y);
+    let follower = [[0.0, first], [0.0, first + 0.45 * farthest]];
+    let turn = (0..=24).map(|step| {
+        let angle = -0.5 + f64::from(step) / 24.0;
+        [-0.25 * farthest * elementary::sin(angle), 0.25 * farthest * elementary::cos(angle)]
+    });
+    series.extend([
+        Series::points("", Colour::Ink, Marker::Disc, [[0.0, 0.0]]),
+        Series::arrow("follower, and the way the cam turns", Colour::Purple, Stroke::Thin, follower),
+        Series::arrow("", Colour::Purple, Stroke::Thin, turn),
+        Series::words([
+            Label::new([0.0, 0.0], "O", Beside::BelowRight),
+            Label::new(follower[1], "q", Beside::Right),
+            Label::new([0.0, 0.25 * farthest], "ω", Beside::Above),
+        ]),
+    ]);
+    let reach = 1.7 * farthest;
+    let x = FigureAxis::new("from the axis, across", "m").over([-reach, reach]);
+    let y = FigureAxis::new("from the axis, along the follower", "m").over([-1.12 * farthest, 1.3 * farthest]).scaled();
+    Figure::new(title, x, vec![Panel::new(y, 0.6, series)])
+}
+
+/// Draws a cam of three circles as the paper does.
+fn circles(pieces: &[Piece]) -> Vec<Series> {
+    let mut series = construction(pieces);
+    for (index, (label, colour, stroke)) in CIRCLES.into_iter().enumerate() {
+        // Base circle, flank, nose, top, nose, flank, base circle.
+        let here = pieces.iter().enumerate().filter(|(at, _)| *at == index || at + index == 6);
+        let points = here.flat_map(|(_, piece)| piece.points.iter().copied().chain([BREAK]));
+        series.push(Series::line(label, colour, stroke, points));
+    }
+    series
+}
+
+fn segments(pieces: &[Piece]) -> Vec<Series> {
+    if pieces.len() > MOST {
+        let points = pieces.iter().flat_map(|piece| piece.points.iter().copied());
+        return vec![Series::line("", Colour::Blue, Stroke::Solid, points)];
+    }
+    let ways = OTHERS.into_iter().cycle();
+    let line = |(piece, (colour, stroke)): (&Piece, _)| Series::line("", colour, stroke, piece.points.iter().copied());
+    pieces.iter().zip(ways).map(line).collect()
+}
+
+/// Names of the corners, placed on the outer side of the outline.
+fn letters(cam: &Cam, outline: &Outline, farthest: f64) -> Vec<Label> {
+    let letter = |mark: &super::CornerMark| {
+        let (_, at) = outline.corners.iter().find(|(angle, _)| *angle == mark.angle_rad)?;
+        let steep = at[1].abs() > 2.0 * at[0].abs();
+        // Moved up where the corner is beside the axis, because the line of centres may be there.
+        let low = at[1] < -0.1 * farthest;
+        let beside = match (steep, at[0] > 0.0, low) {
+            // Beside the follower's own line.
+            (true, _, false) if at[0].abs() < NEAR * farthest => Beside::AboveLeft,
+            (true, _, false) => Beside::Above,
+            (true, _, true) => Beside::Below,
+            (false, true, false) => Beside::AboveRight,
+            (false, true, true) => Beside::BelowRight,
+            (false, false, false) => Beside::AboveLeft,
+            (false, false, true) => Beside::BelowLeft,
+        };
+        Some(Label::new(*at, &mark.label(), beside))
+    };
+    corner_marks(cam).iter().filter_map(letter).collect()
+}
+
+/// Centres and radii of flank and nose on the rising side, as the paper constructs them.
+fn construction(pieces: &[Piece]) -> Vec<Series> {
+    let (mut lines, mut centres, mut words) = (Vec::new(), Vec::new(), Vec::new());
+    for (piece, (text, beside)) in pieces.iter().skip(1).zip([("O_1", Beside::BelowLeft), ("O_2", Beside::Left)]) {
+        let (Some(centre), Some(first), Some(last)) = (piece.centre, piece.points.first(), piece.points.last()) else {
+            continue;
+        };
+        lines.extend([*first, centre, *last, BREAK]);
+        centres.push(centre);
+        words.push(Label::new(centre, text, beside));
+    }
+    vec![
+        Series::line("", Colour::Grey, Stroke::Thin, lines),
+        Series::points("", Colour::Grey, Marker::Dot, centres),
+        Series::words(words),
+    ]
+}

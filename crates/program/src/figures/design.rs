@@ -1,0 +1,150 @@
+//! Figures for design: the contact force round the cam, forces and loads against the speed, or one number against another.
+
+use crate::figures::Across;
+use crate::figures::impacts::WHOLE_CAM;
+use crate::show::digits::with_error;
+use corner_impact::measured::Measured;
+use corner_impact::model::Units;
+use corner_impact::study::design::contact::Separation;
+use corner_impact::study::design::loads::{Load, Loads};
+use corner_impact::study::design::{Design, RequiredPair, Trade};
+use corner_impact::study::survey::Place;
+use corner_impact_plot::{BREAK, Colour, Figure, FigureAxis, Mark, Marker, Panel, Series, Stroke, extent};
+
+/// Draws trades if there are any, else the force round the cam at one speed, else forces and loads against the speed.
+pub fn design_figure(found: &Design) -> Figure {
+    if !found.trades.is_empty() {
+        return trades(found);
+    }
+    if !found.round.is_empty() { round(found) } else { speeds(found) }
+}
+
+fn force_axis(found: &Design, name: &str) -> FigureAxis {
+    FigureAxis::new(name, found.units.force.name())
+}
+
+fn round(found: &Design) -> Figure {
+    let points = found.round.iter().map(|[angle, force]| [angle.to_degrees(), found.force(*force)]);
+    let line = Series::line("", Colour::Blue, Stroke::Solid, points);
+    let panel = Panel::new(force_axis(found, "contact force"), 0.5, vec![line]).with_zero();
+    let rpm = found.forces.first().map_or(f64::NAN, |at| at.place.rpm);
+    let title = format!("{} at {rpm} rpm: contact force round the cam", found.model.name);
+    let figure = Figure::new(&title, FigureAxis::degrees("cam angle").over(WHOLE_CAM), vec![panel]);
+    // A negative force would pull, which a cam cannot do.
+    let pulls = found.round.iter().any(|[_, force]| *force < 0.0);
+    Figure {
+        note: if pulls { "below 0 the cam would have to pull: they part".into() } else { String::new() },
+        ..figure
+    }
+}
+
+fn speeds(found: &Design) -> Figure {
+    type Quantity = (&'static str, &'static str, f64);
+    let all = found.forces.iter().map(|at| at.place).chain(found.loads.iter().map(|loads| loads.place));
+    let range = extent(all.map(|place| place.across()));
+    let across = Across::named(&found.over.name, &found.over.unit, found.over.spacing, range);
+    let x = |place: Place| across.place(place.across());
+    let forces = found.forces.iter().map(|at| [x(at.place), found.force(at.least.value)]);
+    let mut panels = Vec::new();
+    if !found.forces.is_empty() {
+        let line = Series::line("", Colour::Blue, Stroke::Solid, forces);
+        let open = found
+            .forces
+            .iter()
+            .map(|at| (x(at.place), found.force(at.least.value), at.error.map(|error| found.force(error))));
+        let series = open_by_cam(OPEN, open.collect()).into_iter().chain([line]).collect();
+        panels.push(Panel::new(force_axis(found, "least contact force"), 0.24, series).with_zero());
+    }
+    let quantities: [Quantity; 4] = [
+        ("impact speed", "m/s", 1.0),
+        ("largest gap", "m", 1.0),
+        ("time off the cam", "%", 100.0),
+        ("energy lost a revolution", "J", 1.0),
+    ];
+    if !found.loads.is_empty() {
+        // In the order of `Loads::numbers`.
+        panels.extend(quantities.into_iter().enumerate().map(|(index, (name, unit, scale))| {
+            let value = |loads: &Loads| scale * loads.numbers()[index];
+            let points = found.loads.iter().map(|loads| [x(loads.place), value(loads)]);
+            let line = Series::line("", Colour::Vermilion, Stroke::Solid, points);
+            let error = |loads: &Loads| loads.errors.map(|errors| scale * errors[index]);
+            let open =
+                open_by_cam("", found.loads.iter().map(|loads| (x(loads.place), value(loads), error(loads))).collect());
+            Panel::new(FigureAxis::new(name, unit), 0.15, open.into_iter().chain([line]).collect()).with_zero()
+        }));
+    }
+    let at = found.separation.speed();
+    let label = || match found.separation {
+        Separation::At { rpm, error, .. } if Measured::noisy(&found.measured).is_some() => {
+            let (digits, error) = with_error(error);
+            format!("separation, {} ± {} rpm", digits.text(rpm), digits.text(error))
+        }
+        _ => format!("separation, {at:.1} rpm"),
+    };
+    let marks = (found.over.is_speed() && range[0] <= at && at <= range[1]).then(|| Mark { at, label: label() });
+    let at = found.over.rpm.map_or(String::new(), |rpm| format!(" at {rpm} rpm"));
+    let title = format!("{}: contact force and loads{at}", found.model.name);
+    Figure { marks: marks.into_iter().collect(), ..Figure::new(&title, across.axis(), panels) }
+}
+
+/// One load in each revolution of a sweep against the varied number.
+pub fn loads_diagram(title: &str, across: &Across, sweep: &[Vec<Loads>], load: Load, units: &Units) -> Figure {
+    let told = |value: f64| if load == Load::Force { units.force.told(value) } else { value };
+    let points = sweep.iter().flatten().map(|loads| [across.place(loads.place.across()), told(loads.of(load))]);
+    let (name, unit) = match load {
+        Load::ImpactSpeed => ("fastest impact of a revolution", "m/s"),
+        Load::Gap => ("largest gap of a revolution", "m"),
+        Load::Energy => ("energy lost in a revolution", "J"),
+        Load::Force => ("largest contact force of a revolution", units.force.name()),
+    };
+    let series = Series::points("", Colour::Blue, Marker::Dot, points);
+    Figure::new(title, across.axis(), vec![Panel::new(FigureAxis::new(name, unit), 0.5, vec![series])])
+}
+
+fn trades(found: &Design) -> Figure {
+    // A trade that no value satisfies, or that every value satisfies, has no line.
+    let does = |pair: &RequiredPair| pair.found.is_some_and(|value| value > 0.0) || pair.other.is_some();
+    let has_line = |trade: &&Trade| trade.pairs.windows(2).any(|pairs| pairs.iter().all(does));
+    let mut shown: Vec<&Trade> = found.trades.iter().filter(has_line).collect();
+    if shown.is_empty() {
+        shown = found.trades.iter().collect();
+    }
+    let panels = shown.into_iter().map(|trade| {
+        let line = |name: &str, stroke: Stroke, end: fn(&RequiredPair) -> Option<f64>| {
+            let points = trade.pairs.iter().map(|pair| [pair.given, end(pair).unwrap_or(f64::NAN)]);
+            Series::line(name, Colour::Blue, stroke, points)
+        };
+        let is_range = trade.pairs.iter().any(|pair| pair.other.is_some());
+        let [bound, beyond] = if trade.parameter.is_upper_bound() { ["most", "least"] } else { ["least", "most"] };
+        let error = |pair: &RequiredPair| Some((pair.given, pair.found?, pair.error));
+        let mut series: Vec<Series> =
+            open_by_cam(OPEN, trade.pairs.iter().filter_map(error).collect()).into_iter().collect();
+        series.push(line(if is_range { bound } else { "" }, Stroke::Solid, |pair| pair.found));
+        if is_range {
+            let error = |pair: &RequiredPair| Some((pair.given, pair.other?, pair.other_error));
+            series.extend(open_by_cam("", trade.pairs.iter().filter_map(error).collect()));
+            series.push(line(beyond, Stroke::Dashed, |pair| pair.other));
+        }
+        let name = if is_range { trade.parameter.to_string() } else { format!("{bound} {}", trade.parameter) };
+        Panel::new(FigureAxis::new(&name, &trade.unit), 0.22, series)
+    });
+    let (against, unit) = found
+        .trades
+        .first()
+        .map_or((String::new(), ""), |trade| (trade.against.to_string(), trade.against_unit.as_str()));
+    let range = extent(found.trades.iter().flat_map(|trade| trade.pairs.iter().map(|pair| pair.given)));
+    let needs: Vec<&str> = found.trades.iter().map(|trade| trade.need.as_str()).collect();
+    let title = format!("{}: {}", found.model.name, needs.first().unwrap_or(&""));
+    Figure::new(&title, FigureAxis::new(&against, unit).over(range), panels.collect())
+}
+
+/// Label, once in a panel, of the lines that show the uncertainty due to a measured cam.
+const OPEN: &str = "what the cam leaves open";
+
+/// Lines on both sides of values `(x, y, error)` at the uncertainty due to the cam; `None` where there is no uncertainty.
+fn open_by_cam(label: &str, values: Vec<(f64, f64, Option<f64>)>) -> Option<Series> {
+    let side = |sign: f64| values.iter().map(move |(x, y, error)| [*x, y + sign * error.unwrap_or(0.0)]);
+    let points = side(-1.0).chain([BREAK]).chain(side(1.0));
+    let is_open = values.iter().any(|(.., error)| error.is_some_and(|error| error > 0.0));
+    is_open.then(|| Series::line(label, Colour::Grey, Stroke::Thin, points))
+}

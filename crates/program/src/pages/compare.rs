@@ -1,0 +1,157 @@
+//! The page of `compare`: the verdict, the fields that differ, then the numbers that changed, the largest change first.
+
+use serde_json::Value;
+
+use crate::show::Paged;
+use crate::show::block::{Block, Column, Span, Table, TextMark, Words, words};
+use crate::show::digits::Digits;
+use corner_impact::study::compare::{Change, ModelComparison};
+
+/// Ratio of a difference to its error above which only a bound is shown.
+const MANY: f64 = 1e6;
+/// Most names in a list.
+const LONGEST: usize = 40;
+
+impl Paged for ModelComparison {
+    fn blocks(&self) -> Vec<Block> {
+        let [a, b] = [&self.verdict.a, &self.verdict.b].map(ToString::to_string);
+        let is_word = |change: &&Change| change.difference.is_none() && change.a.is_some() && change.b.is_some();
+        let others = self.changes.iter().filter(is_word).count();
+        let verdict = match self.verdict_changed() {
+            false if others > 0 => words!["the same: ", a, format!("; but {others} findings are of another kind")],
+            false => words!["the same: ", (TextMark::Good, a.as_str())],
+            true => {
+                words![(TextMark::Bad, "changed"), Span::Break, "first:  ", a, Span::Break, "second: ", b]
+            }
+        };
+        let entries =
+            [("verdict", verdict), ("first", (&self.models.a.name).into()), ("second", (&self.models.b.name).into())];
+        let entries = entries.into_iter().map(|(name, words)| (name.into(), words)).collect();
+        let mut page =
+            vec![Block::Title("What moved from the first model to the second".into()), Block::Entries(9, entries)];
+        page.extend(fields(self));
+        let (alone, both): (Vec<&Change>, Vec<_>) =
+            self.changes.iter().partition(|change| change.a.is_none() || change.b.is_none());
+        let (numbers, words): (Vec<&Change>, Vec<_>) = both.into_iter().partition(|change| change.difference.is_some());
+        page.extend(kinds(&words));
+        let (known, unknown): (Vec<&Change>, Vec<_>) = numbers.into_iter().partition(|change| change.error.is_some());
+        page.extend(moved("Numbers that moved", &known));
+        page.extend(moved("Numbers that moved, and whose error is not known", &unknown));
+        if known.is_empty() && unknown.is_empty() {
+            page.extend([Block::Gap, Block::paragraph("No number that both have moved by more than its error.")]);
+        } else {
+            // The column appears only if it has informative values.
+            let is_told = known.iter().filter_map(|change| change.times_error).any(|times| times <= MANY);
+            let times = if is_told { "times error: the difference over how far it may be off. " } else { "" };
+            let note = format!(
+                "The speeds of the corner impact and of separation stand first, then what moved most. moved: the difference over \
+                 the size of the first. {times}Errors are how far routes differ, or an estimate's own, and what a measured cam \
+                 leaves open, of both models. What has the same digits in both stands in one line. All computed."
+            );
+            page.push(Block::Note(note.into()));
+        }
+        page.extend(named("The first alone has", alone.iter().copied().filter(|change| change.b.is_none())));
+        page.extend(named("The second alone has", alone.iter().copied().filter(|change| change.a.is_none())));
+        let (same, within): (Vec<&Change>, Vec<_>) =
+            self.unchanged.iter().partition(|change| change.difference.is_none_or(|difference| difference == 0.0));
+        page.extend(named("Different, but by no more than their errors", within.into_iter()));
+        let same = format!("Numbers and words alike in all digits: {}; --json lists them.", same.len());
+        page.extend([Block::Gap, Block::paragraph(same)]);
+        page
+    }
+}
+
+fn told(value: Option<&Value>) -> Words {
+    match value {
+        None => "none".into(),
+        Some(Value::String(word)) => word.into(),
+        Some(Value::Bool(is)) => (if *is { "yes" } else { "no" }).into(),
+        Some(value) => {
+            value.as_f64().map_or_else(|| value.to_string().into(), |number| words![(number, Digits::Short)])
+        }
+    }
+}
+
+fn fields(found: &ModelComparison) -> Vec<Block> {
+    if found.fields.is_empty() {
+        return vec![Block::Gap, Block::paragraph("The fields of both models are the same.")];
+    }
+    let columns = [Column::words("field"), Column::words("first"), Column::words("second")];
+    let mut table = Table::new("Fields that differ", columns);
+    for field in &found.fields {
+        table.row([field.field.as_str().into(), told(field.a.as_ref()), told(field.b.as_ref())]);
+    }
+    vec![Block::Heading("What differs in the files".into()), Block::Table(table)]
+}
+
+/// Fields with changed words.
+fn kinds(changes: &[&Change]) -> Vec<Block> {
+    if changes.is_empty() {
+        return Vec::new();
+    }
+    let mut table = Table::new("Words", [Column::words("quantity"), Column::words("first"), Column::words("second")]);
+    for change in changes {
+        table.row([change.quantity.as_str().into(), told(change.a.as_ref()), told(change.b.as_ref())]);
+    }
+    vec![Block::Heading("What is of another kind".into()), Block::Table(table)]
+}
+
+/// Groups changes whose two numbers look alike in the displayed digits, ordered by the first change of each group.
+fn alike<'a>(changes: &[&'a Change]) -> Vec<Vec<&'a Change>> {
+    let short = |value: &Option<Value>| value.as_ref().and_then(Value::as_f64).map(|number| Digits::Short.text(number));
+    let digits = |change: &Change| [&change.a, &change.b].map(short);
+    let mut all: Vec<([Option<String>; 2], Vec<&Change>)> = Vec::new();
+    for change in changes {
+        let digits = digits(change);
+        match all.iter_mut().find(|(known, _)| *known == digits) {
+            Some((_, alike)) => alike.push(change),
+            None => all.push((digits, vec![change])),
+        }
+    }
+    all.into_iter().map(|(_, alike)| alike).collect()
+}
+
+/// Ratio of a difference to its error, or a bound if it is very large.
+fn times(error: f64) -> Words {
+    if error > MANY { "> 1e6".into() } else { words![(error, Digits::Size)] }
+}
+
+fn moved(title: &str, changes: &[&Change]) -> Vec<Block> {
+    if changes.is_empty() {
+        return Vec::new();
+    }
+    let number = |head: &str| Column { gap: 2, ..Column::number(head) };
+    let mut columns = vec![number("first"), number("second"), number("moved %")];
+    // If every change is many times its error, the column has no information.
+    let errors = || changes.iter().filter_map(|change| change.times_error);
+    let has_errors = errors().any(|times| times <= MANY);
+    let many =
+        if errors().next().is_some() && !has_errors { ", each by more than a million times its error" } else { "" };
+    columns.extend(has_errors.then(|| number("times error")));
+    columns.push(Column { gap: 2, ..Column::words("quantity") });
+    let mut table = Table::new(title, columns);
+    for alike in alike(changes) {
+        let change = alike[0];
+        let percent = change.relative.map_or("".into(), |part| {
+            // Fewer digits than the column has places for would show 0.
+            let digits = if part.abs() < 0.001 { Digits::Size } else { Digits::Significant(3) };
+            words![(100.0 * part, digits)]
+        });
+        let mut cells = vec![told(change.a.as_ref()), told(change.b.as_ref()), percent];
+        cells.extend(has_errors.then(|| change.times_error.map_or("".into(), times)));
+        let names: Vec<&str> = alike.iter().map(|change| change.quantity.as_str()).collect();
+        cells.push(names.join(", ").into());
+        table.row(cells);
+    }
+    vec![Block::Heading(format!("{title}{many} ({})", changes.len()).into()), Block::Table(table)]
+}
+
+fn named<'a>(title: &str, changes: impl Iterator<Item = &'a Change>) -> Vec<Block> {
+    let names: Vec<&str> = changes.map(|change| change.quantity.as_str()).collect();
+    if names.is_empty() {
+        return Vec::new();
+    }
+    let title = format!("{title} ({})", names.len());
+    let shown = if names.len() > LONGEST { "--json lists them".to_owned() } else { names.join(", ") };
+    vec![Block::Heading(title.into()), Block::paragraph(shown)]
+}

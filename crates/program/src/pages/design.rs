@@ -1,0 +1,336 @@
+//! The page of `design`: the answer in sentences first, then speeds, limits and required changes.
+
+use crate::pages::source;
+use crate::pages::speeds::measured_speed;
+use crate::show::Paged;
+use crate::show::block::{Block, Column, Span, Table, TextMark, Words, words};
+use crate::show::digits::{Digits, with_error};
+use crate::show::page::text;
+use crate::show::words::noise_unknown;
+use corner_impact::known::Evidence;
+use corner_impact::measured::Measured;
+use corner_impact::study::design::contact::Separation;
+use corner_impact::study::design::needs::Answer;
+use corner_impact::study::design::{Design, RequiredPair, Trade};
+
+/// A column of numbers with a gap before it.
+fn number(head: impl Into<Words>) -> Column {
+    Column { gap: 2, ..Column::number(head) }
+}
+
+const SIX: Digits = Digits::Significant(6);
+
+impl Paged for Design {
+    fn blocks(&self) -> Vec<Block> {
+        let title = Block::Title(words!["Design of ", &self.model.name]);
+        let mut page = vec![title];
+        page.extend(source(&self.model.source));
+        page.extend([Block::Gap, Block::paragraph(separation(self))]);
+        if !self.over.is_speed() {
+            let name = self.over.own_name();
+            page.push(Block::paragraph(format!(
+                "This speed, and those of rounded corners, are with the model's own {name}."
+            )));
+        }
+        let unknown = self.measured.as_ref().and_then(|measured| measured.noise_unknown.as_deref());
+        page.extend(unknown.map(|why| Block::paragraph(noise_unknown(why))));
+        if let Some(words) = margin(self) {
+            page.push(Block::paragraph(words));
+        }
+        page.extend(speeds(self));
+        page.extend(limits(self));
+        page.extend(needs(self));
+        page.extend(rounded(self));
+        page.extend(self.trades.iter().flat_map(trade));
+        page
+    }
+}
+
+/// States in a sentence where the follower leaves the cam.
+pub(crate) fn separation(found: &Design) -> Words {
+    let degrees = |angle: f64| (angle.to_degrees(), Digits::Fixed(3));
+    match found.separation {
+        Separation::At { rpm, error, cam_angle, angle_error } => match Measured::noisy(&found.measured) {
+            None => words![
+                "The follower leaves the cam first at ",
+                (rpm, Digits::Fixed(6)),
+                " rpm, at ",
+                degrees(cam_angle),
+                " deg (computed from the contact force)."
+            ],
+            Some(cam) => words![
+                "The follower leaves the cam at ",
+                with_open(
+                    cam_angle.to_degrees(),
+                    angle_error.map(f64::to_degrees).filter(|error| error.is_finite()),
+                    Digits::Fixed(3)
+                ),
+                " deg first (computed from the contact force), at ",
+                measured_speed(rpm, Digits::Fixed(6), error.is_finite().then_some(error), Some(cam)),
+                "."
+            ],
+        },
+        Separation::NotPressed { cam_angle } => {
+            words![
+                "The follower leaves the cam however slow that turns: nothing presses it on at ",
+                degrees(cam_angle),
+                " deg."
+            ]
+        }
+        Separation::Kink { cam_angle } => words![
+            "The follower leaves the cam at every speed: the cam's velocity jumps at ",
+            degrees(cam_angle),
+            " deg."
+        ],
+        Separation::Never => {
+            "The follower leaves the cam at no speed: the cam nowhere accelerates away from it.".into()
+        }
+    }
+}
+
+/// Least force at the highest tabulated speed below separation.
+pub(crate) fn margin(found: &Design) -> Option<Words> {
+    /// Share of the separation speed above which rounding dominates the force.
+    const BELOW: f64 = 0.999;
+    // For a survey over another number, each value has its own separation speed.
+    if !found.over.is_speed() {
+        return None;
+    }
+    let below = BELOW * found.separation.speed();
+    let last = found.forces.iter().rfind(|at| at.place.rpm < below)?;
+    let force = with_open(found.force(last.least.value), last.error.map(|error| found.force(error)), SIX);
+    let (rpm, angle) = ((last.place.rpm, SIX), (last.least.angle.to_degrees(), Digits::Fixed(3)));
+    let unit = found.units.force.name();
+    Some(words!["At ", rpm, " rpm the cam presses with ", force, format!(" {unit} at least, at "), angle, " deg."])
+}
+
+pub(crate) fn speeds(found: &Design) -> Vec<Block> {
+    let is_open = Measured::noisy(&found.measured).is_some();
+    let force = found.units.force.name();
+    let mut columns = vec![number(found.over.head()), number(format!("least force {force}")), number("at deg")];
+    let head = |name: &str, unit: &'static str| number(words![name, Span::Unit(unit)]);
+    if !found.loads.is_empty() {
+        columns.extend([
+            head("impact ", "m/s"),
+            head("gap ", "m"),
+            number("off cam %"),
+            number("lost J/rev"),
+            number(format!("most force {force}")),
+        ]);
+    }
+    let by = found.over.at_speed("speed");
+    let mut table = Table::new(&format!("Contact force and loads by {by}"), columns);
+    let mut values: Vec<f64> = found.forces.iter().map(|at| at.place.across()).collect();
+    values.extend(found.loads.iter().map(|loads| loads.place.across()));
+    values.sort_by(f64::total_cmp);
+    values.dedup();
+    for value in values {
+        let mut cells = vec![words![(value, SIX)]];
+        match found.forces.iter().find(|at| at.place.across() == value) {
+            Some(at) => cells.extend([
+                with_open(found.force(at.least.value), at.error.map(|error| found.force(error)), SIX),
+                words![(at.least.angle.to_degrees(), Digits::Fixed(2))],
+            ]),
+            None => cells.extend([Words::default(), Words::default()]),
+        }
+        if !found.loads.is_empty() {
+            let three = |value: f64| words![(value, Digits::Aligned(3))];
+            match found.loads.iter().find(|loads| loads.place.across() == value) {
+                Some(loads) => {
+                    let error = |index: usize| loads.errors.map(|errors| errors[index]);
+                    // In per cent, which no document field has.
+                    let off_cam = error(2).map(|error| 100.0 * error);
+                    let force = error(4).map(|error| found.force(error));
+                    let unknown = if is_open && loads.errors.is_none() { " ± ?" } else { "" };
+                    cells.extend([
+                        words![load(loads.impact_speed, error(0), Digits::Aligned(3), true), unknown],
+                        load(loads.gap, error(1), Digits::Aligned(3), true),
+                        text(&load(100.0 * loads.off_cam, off_cam, Digits::Fixed(1), false)).into(),
+                        load(loads.energy, error(3), Digits::Aligned(3), false),
+                        load(found.force(loads.force), force, Digits::Aligned(3), false),
+                    ]);
+                }
+                None => {
+                    cells.extend((0..4).map(|_| "".into()));
+                    let on_cam = found.forces.iter().find(|at| at.place.across() == value);
+                    cells.push(on_cam.map_or("".into(), |at| three(found.force(at.largest))));
+                }
+            }
+        }
+        table.row(cells);
+    }
+    let heading = if found.over.is_speed() { "Speeds".into() } else { format!("Over {}", found.over.at_speed("")) };
+    let mut blocks = vec![Block::Heading(heading.as_str().into()), Block::Table(table)];
+    blocks.push(Block::Note(
+        "least force: between follower and cam as long as they touch, where it is below 0 they part; computed.".into(),
+    ));
+    if !found.loads.is_empty() {
+        let transient = found.budget.transient;
+        let words = format!(
+            "The other columns are the most of what the starts come to, four unless they are given: over 8 revolutions after up to {transient}; \
+             sampled: another start may come to more. Energy is what impacts take, force that between them."
+        );
+        blocks.push(Block::Note(words.as_str().into()));
+        if found.loads.iter().any(|loads| loads.errors.is_some()) {
+            let words = "± is what the cam leaves open, by what cams that are as likely come to. A load that may be as little as none is told \
+                         as what it is less than; the last three columns have no more digits than are left them, and --json has the ± of each.";
+            blocks.push(Block::Note(words.into()));
+        }
+    }
+    blocks
+}
+
+fn limits(found: &Design) -> Vec<Block> {
+    let is_open = Measured::noisy(&found.measured).is_some();
+    let sentence = |passed: &corner_impact::study::design::Passed| {
+        let name = passed.limit.to_string().replace('-', " ");
+        let limit = words![format!("{name} of "), (passed.value, SIX), format!(" {}: ", passed.unit)];
+        let values = if found.over.is_speed() { "speeds" } else { "values" };
+        let open = if is_open { ", of the cam as it is drawn: what it leaves open is the ± above" } else { "" };
+        match passed.at {
+            Some(at) => {
+                words![
+                    limit,
+                    Span::Marked(TextMark::Bad, "passed".into()),
+                    " at ",
+                    (at.across(), Digits::Significant(4)),
+                    if found.over.is_speed() {
+                        " rpm first, as far as the speeds above tell"
+                    } else {
+                        " first, as far as the values above tell"
+                    },
+                    open
+                ]
+            }
+            None => {
+                words![
+                    limit,
+                    Span::Marked(TextMark::Good, "kept".into()),
+                    format!(" at each of the {values} above"),
+                    open
+                ]
+            }
+        }
+    };
+    if found.limits.is_empty() {
+        return Vec::new();
+    }
+    vec![Block::Heading("Limits".into()), Block::List(found.limits.iter().map(sentence).collect())]
+}
+
+fn needs(found: &Design) -> Vec<Block> {
+    let is_open = Measured::noisy(&found.measured).is_some();
+    let mut blocks = Vec::new();
+    for of_need in found.needs.chunk_by(|one, two| one.need == two.need) {
+        let columns = [
+            Column::words("change"),
+            number("now"),
+            Column::words(""),
+            number("to"),
+            Column::words("unit"),
+            Column::words("known"),
+            Column::words(""),
+        ];
+        let mut table = Table::new(&of_need[0].need, columns);
+        for answer in of_need {
+            let Answer { lever, now, unit, note, known, .. } = answer;
+            let digits = if *known == Evidence::Computed { Digits::Significant(9) } else { Digits::Significant(3) };
+            let bound = if answer.is_upper_bound { "at most" } else { "at least" };
+            // If any value will do, there is no uncertainty, and the note says so.
+            let unknown = if is_open && answer.error.is_none() && note.is_empty() { " ± ?" } else { "" };
+            let value = answer.value.map(|value| words![with_open(value, answer.error, digits), unknown]);
+            let other = answer.other.map(|other| with_open(other, answer.other_error, digits));
+            let (bound, to) = match (value, other) {
+                (None, _) => ("", "none".into()),
+                (Some(value), None) => (bound, value),
+                (Some(value), Some(other)) if answer.is_upper_bound => ("between", words![other, " and ", value]),
+                (Some(value), Some(other)) => ("between", words![value, " and ", other]),
+            };
+            table.row([
+                lever.to_string().into(),
+                words![(*now, Digits::Short)],
+                bound.into(),
+                to,
+                unit.into(),
+                known.to_string().into(),
+                note.into(),
+            ]);
+        }
+        blocks.push(Block::Heading(of_need[0].need.as_str().into()));
+        blocks.push(Block::Table(table));
+        blocks.push(Block::Note("Each alone, with the others kept.".into()));
+    }
+    blocks
+}
+
+fn rounded(found: &Design) -> Vec<Block> {
+    if found.rounded.is_empty() {
+        return Vec::new();
+    }
+    let columns = [
+        number("rounded over deg"),
+        number("leaves the cam at rpm"),
+        number(words!["largest jerk ", Span::Unit("m/rad^3")]),
+    ];
+    let mut table = Table::new("The cam with its corners rounded", columns);
+    for at in &found.rounded {
+        let speed = at.separation_rpm.map_or("".into(), |rpm| words![(rpm, Digits::Significant(7))]);
+        table.row([words![(at.corner_rounding_deg, SIX)], speed, words![(at.jerk, SIX)]]);
+    }
+    let words = "The acceleration of the cam jumps, and its jerk is infinite there. Rounded by a polynomial (corner_rounding_deg), which keeps \
+                 the lifts and slopes on both sides, and whose acceleration goes beyond both by a twelfth of the jump for that, over \
+                 however short an angle:";
+    vec![Block::Heading("Jumps of the acceleration".into()), Block::paragraph(words), Block::Table(table)]
+}
+
+/// A load with its uncertainty due to the cam, or in the digits that this leaves. A load that may be zero is shown as an upper bound.
+fn load(value: f64, error: Option<f64>, digits: Digits, is_told: bool) -> Words {
+    /// Relative uncertainty that leaves a value three digits.
+    const KNOWN: f64 = 0.005;
+    let Some(error) = error.filter(|error| *error > 0.0) else { return words![(value, digits)] };
+    let (open, rounded) = with_error(error);
+    match error < value {
+        // Three digits are enough here.
+        true if !is_told && error < KNOWN * value => words![(value, digits)],
+        true if is_told => words![(value, open), " ± ", (rounded, open)],
+        true => words![(value, open)],
+        false => {
+            let most = with_error(value + error);
+            format!("< {}", most.0.text(most.1)).into()
+        }
+    }
+}
+
+/// A value with its uncertainty due to the cam.
+fn with_open(value: f64, error: Option<f64>, digits: Digits) -> Words {
+    match error.map(with_error) {
+        Some((digits, error)) => words![(value, digits), " ± ", (error, digits)],
+        None => words![(value, digits)],
+    }
+}
+
+fn trade(trade: &Trade) -> [Block; 2] {
+    let Trade { need, parameter, unit, against, against_unit, pairs, known } = trade;
+    let digits = if *known == Evidence::Computed { SIX } else { Digits::Significant(3) };
+    let columns = [number(format!("{against} {against_unit}")), number(format!("{parameter} {unit}"))];
+    let mut table = Table::new(need, columns);
+    for RequiredPair { given, found, error, other, other_error, again } in pairs {
+        let found = found.map(|value| with_open(value, *error, digits));
+        let mut cell = match (found, other.map(|value| with_open(value, *other_error, digits))) {
+            (None, _) => "none".into(),
+            (Some(found), None) => found,
+            (Some(found), Some(other)) if parameter.is_upper_bound() => words![other, " to ", found],
+            (Some(found), Some(other)) => words![found, " to ", other],
+        };
+        if let Some(again) = again {
+            cell = words![cell, ", and ", (*again, digits)];
+        }
+        table.row([words![(*given, SIX)], cell]);
+    }
+    let bound = match parameter.is_upper_bound() {
+        _ if pairs.iter().any(|pair| pair.other.is_some()) => "",
+        true => "most ",
+        false => "least ",
+    };
+    [Block::Heading(format!("{need}: the {bound}{parameter} for each {against}").into()), Block::Table(table)]
+}

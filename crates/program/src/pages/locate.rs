@@ -1,0 +1,225 @@
+//! The page of `locate`: the corner impacts in a range of speeds, and the scenario at each.
+
+use crate::pages::speeds::measured_speed;
+use crate::show::Paged;
+use crate::show::block::{Block, Column, Table, TextMark, Words, words};
+use crate::show::digits::Digits;
+use crate::show::words;
+use corner_impact::border_collision::Classification;
+use corner_impact::corner::Way;
+use corner_impact::corner::candidates::{MOST_IMPACTS, NEAREST_OTHER};
+use corner_impact::corner::range::{FoundCornerImpacts, Recaptured, UndecidedSpeeds};
+use corner_impact::corner::shots::{SHOT_RATIO, VELOCITIES};
+use corner_impact::measured::Measured;
+use corner_impact::orbit::branch::GRID_RATIO;
+use corner_impact::study::locate::{Happens, Located, LocatedImpact};
+
+impl Paged for Located {
+    fn blocks(&self) -> Vec<Block> {
+        let plural = if self.revolutions == 1 { "" } else { "s" };
+        let (low, high) = (self.range.rpm_min, self.range.rpm_max);
+        let mut page = vec![
+            Block::Title(format!("Corner impacts of {}", self.model.name).into()),
+            Block::paragraph(format!(
+                "{low} to {high} rpm, orbits that repeat after {} revolution{plural}.",
+                self.revolutions
+            )),
+            Block::Heading(format!("Found ({})", self.found.len()).into()),
+            match self.found.is_empty() {
+                true => Block::paragraph("No orbit of this kind was found with an impact on a corner in this range."),
+                false => Block::Table(table(&self.found)),
+            },
+        ];
+        for (index, impact) in self.found.iter().enumerate().filter(|(_, impact)| !impact.agrees) {
+            let words = format!("{}: {}. {}", index + 1, verdict(impact), disagreement(impact));
+            page.extend([Block::Gap, Block::paragraph(words)]);
+        }
+        for (index, impact) in self.found.iter().enumerate() {
+            if let Some(cam) = Measured::noisy(&self.measured) {
+                let speed = measured_speed(impact.at.speed_rpm(), Digits::Fixed(9), impact.speed_error, Some(cam));
+                page.extend([Block::Gap, Block::paragraph(words![format!("{}: ", index + 1), speed])]);
+            }
+        }
+        page.push(Block::Heading("What happens there".into()));
+        page.extend(meanings(&self.found));
+        page.extend(rejected(self));
+        page.extend([Block::Heading("What was looked at".into()), Block::paragraph(searched(self))]);
+        page.extend(words::hypotheses(&self.hypotheses).map(Block::paragraph));
+        page
+    }
+}
+
+fn table(found: &[LocatedImpact]) -> Table {
+    let columns = [
+        Column::right("", 4),
+        Column::right("rpm", 15),
+        Column::right("corner deg", 13),
+        Column::right("order", 7),
+        Column::right("impacts", 9),
+        Column::right("v before", 12),
+        Column::right("v after", 12),
+        Column::left("what happens", 2, 17),
+        Column::left("routes", 0, 0),
+    ];
+    let mut table = Table::new("Corner impacts", columns);
+    for (index, impact) in found.iter().enumerate() {
+        let at = &impact.at;
+        let side = impact.side().map_or(String::new(), |side| format!(", {side}"));
+        table.row([
+            (index + 1).into(),
+            (at.speed_rpm(), Digits::Fixed(9)).into(),
+            (at.corner.angle.to_degrees(), Digits::Fixed(6)).into(),
+            at.corner.jump_order.into(),
+            at.cycle.impacts.len().into(),
+            (at.velocity_before, Digits::Significant(8)).into(),
+            (at.velocity_after, Digits::Significant(8)).into(),
+            words::verdict_with(&format!("{}{side}", impact.local.scenario()), impact.danger.as_ref()).into(),
+            Words::from((if impact.agrees { TextMark::Good } else { TextMark::Bad }, verdict(impact))),
+        ]);
+    }
+    table
+}
+
+/// A sentence for each scenario of border collision, and one for each other kind of event.
+fn meanings(found: &[LocatedImpact]) -> Vec<Block> {
+    let mut said: Vec<String> = Vec::new();
+    let mut meanings = Vec::new();
+    for (index, impact) in found.iter().enumerate() {
+        let scenario = impact.local.scenario();
+        match &impact.local {
+            Happens::BorderCollision(Ok(Classification { minus, plus, .. })) => {
+                let scenario = words::verdict_with(&scenario, impact.danger.as_ref());
+                meanings.push(Block::paragraph(format!(
+                    "{}: {scenario}. Fixed points: impacts before the corner at speeds {}, {}; after it {}, {}.",
+                    index + 1,
+                    minus.exists_for,
+                    words::stability(minus.stability),
+                    plus.exists_for,
+                    words::stability(plus.stability),
+                )));
+                let lines = impact.danger.iter().flat_map(|danger| {
+                    std::iter::once(words::danger(danger)).chain(words::returns(danger)).map(|line| words![line, "."])
+                });
+                meanings.extend(lines.map(|line| Block::Paragraph(4, line)));
+            }
+            other if !said.contains(&scenario) => {
+                meanings.push(Block::paragraph(format!("{scenario}: {}.", other.meaning())));
+                said.push(scenario);
+            }
+            _ => {}
+        }
+    }
+    if found.is_empty() { vec![Block::paragraph("Nothing.")] } else { meanings }
+}
+
+fn rejected(found: &Located) -> Vec<Block> {
+    /// Most refusals that are printed line by line.
+    const LONGEST: usize = 12;
+    let all = &found.looked_at.rejected;
+    if all.is_empty() {
+        return Vec::new();
+    }
+    let title = format!("Not corner impacts, though the equations hold at these speeds ({})", all.len());
+    let line = |words: Words| Block::Paragraph(4, words);
+    let mut lines = vec![Block::Heading(title.into())];
+    lines.extend(all.iter().take(LONGEST).map(|rejected| {
+        let (speed, angle) = (rejected.speed_rpm, rejected.cam_angle.to_degrees());
+        line(words![(speed, Digits::Fixed(6)), " rpm at ", (angle, Digits::Fixed(4)), " deg: ", &rejected.why])
+    }));
+    if all.len() > LONGEST {
+        lines.push(line(format!("and {} more; --json lists them", all.len() - LONGEST).into()));
+    }
+    lines
+}
+
+fn searched(found: &Located) -> String {
+    let FoundCornerImpacts { corners, left_out, searched, undecided, .. } = &found.looked_at;
+    let corners = corners.len();
+    let knots = match left_out {
+        0 => String::new(),
+        _ => format!(", {left_out} knots of its spline left out"),
+    };
+    let mut words = if corners == 0 && *left_out == 0 {
+        "The cam has no corner: no derivative of its lift jumps as far as can be told.".to_owned()
+    } else if corners == 0 {
+        format!(
+            "No corner is looked at: {left_out} knots of the cam's spline, or ends of dwells that its rows show, are no part of what was measured."
+        )
+    } else {
+        format!(
+            "{corners} corner(s) of the cam{knots}. Orbits of one impact: {}. Orbits of several impacts were looked for in two ways that know \
+             nothing of each other: on branches through what a search finds at {} speeds, each {:.0} % faster than the one before, and \
+             through what branches off there with twice the period ({} stretches of branches); and by {VELOCITIES} shots from each \
+             corner at speeds {:.1} % apart. {} Of up to {MOST_IMPACTS} impacts a revolution, none of them within {:.2} deg of the one on \
+             the corner. A search of a part of the range finds the same there. Orbits on which the follower sticks forget where they hit: they are left \
+             out.",
+            if undecided.is_empty() { "all, which is proved" } else { "all but for what is not decided" },
+            searched.speeds.len(),
+            100.0 * (GRID_RATIO - 1.0),
+            searched.branches,
+            100.0 * (SHOT_RATIO - 1.0),
+            found_by(found),
+            NEAREST_OTHER.to_degrees(),
+        )
+    };
+    for UndecidedSpeeds { cam_angle, speeds_rpm } in undecided {
+        let (angle, speeds) =
+            (Digits::Fixed(4).text(cam_angle.to_degrees()), words::range(*speeds_rpm, Digits::Fixed(6)));
+        words += &format!(" Not decided at {angle} deg: {speeds} rpm.");
+    }
+    if let Some(error) = &searched.failed {
+        words += &format!(" A search could not go on: {error}.");
+    }
+    words
+}
+
+/// Numbers of corner impacts that each search found, that only one search found, and that are probably missing.
+fn found_by(found: &Located) -> String {
+    let recaptured = found.looked_at.recaptured();
+    let sum = |count: fn(&Recaptured) -> usize| recaptured.values().map(count).sum::<usize>();
+    let (branches, shots, both) = (sum(|it| it.branches), sum(|it| it.shots), sum(|it| it.both));
+    /// Fewest corner impacts found by both searches from which the missing ones are estimated.
+    const TELLING: usize = 10;
+    let missing = match recaptured.values().map(Recaptured::missing).sum::<f64>() {
+        _ if both < TELLING => "too few to tell how many more there may be".to_owned(),
+        some if some >= 0.1 => {
+            format!("by that some {some:.1} more are to be expected, and the more the harder they are to find")
+        }
+        _ => "by that no more are to be expected, but for those that are hard to find both ways".to_owned(),
+    };
+    let alone = |way: Way| {
+        let numbers =
+            (1..).zip(&found.found).filter(|(_, it)| it.at.ways == [way]).map(|(number, _)| number.to_string());
+        Some(numbers.collect::<Vec<_>>().join(", ")).filter(|numbers| !numbers.is_empty())
+    };
+    let on_branches = alone(Way::Branch).map_or_else(String::new, |numbers| format!(" On branches alone: {numbers}."));
+    let by_shots = alone(Way::Shot).map_or_else(String::new, |numbers| format!(" By shots alone: {numbers}."));
+    if branches + shots == 0 {
+        return "Neither found any.".into();
+    }
+    format!(
+        "The first found {branches}, the second {shots}, {both} of them the same: {missing}.{on_branches}{by_shots}"
+    )
+}
+
+/// Agreement of the routes, in a word or two.
+fn verdict(impact: &LocatedImpact) -> &'static str {
+    match (impact.agrees, impact.comparisons.iter().all(|entry| entry.agrees)) {
+        (true, _) => "agree",
+        (false, true) => "not all ran",
+        (false, false) => "DISAGREE",
+    }
+}
+
+/// Disagreements at a corner impact, and routes that failed.
+fn disagreement(impact: &LocatedImpact) -> String {
+    let missing = impact.skipped.iter().filter(|skipped| skipped.failed);
+    let missing = missing.map(|skipped| format!("{}: {}", skipped.route, skipped.why));
+    let differing = impact.comparisons.iter().filter(|entry| !entry.agrees);
+    let differing = differing.map(|entry| {
+        let [one, other] = &entry.routes;
+        let (off, allowed) = (entry.max_abs_diff, entry.bound.value);
+        format!("{}: {one} and {other} differ by {off:.1e}, allowed {allowed:.1e}", entry.quantity)
+    });
+    missing.chain(differing).collect::<Vec<_>>().join("; ")
+}

@@ -1,0 +1,131 @@
+//! The answer: one picture, and a sentence each on separation, impact speed, coexisting motions, and
+//! proofs.
+
+use crate::figures::chaotic_set;
+use crate::pages::report::html::{HtmlError, plates};
+use crate::pages::speeds::{measured_speed, together};
+use crate::report::Report;
+use crate::show::block::{Block, PageSection, Span, TextMark, Words, about, words};
+use crate::show::digits::Digits;
+use crate::show::words::{accuracy, hypotheses};
+use corner_impact::measured::Measured;
+use corner_impact::study::design::contact::Separation;
+
+pub(crate) fn section(report: &Report) -> Result<PageSection, HtmlError> {
+    let picture = report.overview.as_ref().map(|plate| plates::plate(plate, report)).transpose()?;
+    let said = [Some(separates(report)), margin(report), impacts(report), coexistence(report), Some(proved(report))];
+    let blocks = picture.into_iter().chain([Block::List(said.into_iter().flatten().collect())]).collect();
+    Ok(PageSection { id: "answer", title: "In brief".into(), blocks })
+}
+
+fn headed(head: &str, what: &str, sentence: Words) -> Words {
+    words![(TextMark::Strong, head), " ", about(what, sentence)]
+}
+
+fn separates(report: &Report) -> Words {
+    let sentence = match (&report.separation, &report.margin) {
+        (Separation::At { rpm, error, .. }, Some(margin)) => words![
+            "The follower leaves the cam for the first time where that has turned by ",
+            (margin.separation_deg, Digits::Fixed(2)),
+            "°, at ",
+            measured_speed(*rpm, Digits::Fixed(3), error.is_finite().then_some(*error), report.measured.as_ref()),
+            "."
+        ],
+        (Separation::Never, _) => {
+            "The follower stays on the cam at every speed: nowhere does the cam fall away from it.".into()
+        }
+        (Separation::Kink { .. }, _) => {
+            "The follower leaves the cam however slow that turns: its velocity jumps.".into()
+        }
+        _ => "The follower leaves the cam however slow that turns: the spring does not press it on all of it.".into(),
+    };
+    headed("Separation.", "separation", sentence)
+}
+
+fn margin(report: &Report) -> Option<Words> {
+    let margin = report.margin.as_ref()?;
+    let [there, still] = margin.least_force.map(|force| words![(force, Digits::Significant(4))]);
+    let sentence = words![
+        "At four fifths of that speed, ",
+        (margin.speed_rpm, Digits::Fixed(1)),
+        " rpm, the cam still presses with ",
+        there,
+        format!(" {} at least, at ", margin.force_unit),
+        (margin.cam_angle_deg, Digits::Fixed(1)),
+        "°; standing still, with ",
+        still,
+        format!(" {}.", margin.force_unit)
+    ];
+    Some(headed("Margin.", "contact_force", sentence))
+}
+
+fn impacts(report: &Report) -> Option<Words> {
+    let found = report.speeds.as_ref().ok()?;
+    let [low, high] = found.range;
+    let open = match Measured::noisy(&found.measured) {
+        Some(cam) => {
+            let loads = if report.loads.is_some() { "; the loads below have their ±" } else { "" };
+            format!(" It is of the cam as it is drawn ({}){loads}.", accuracy(cam))
+        }
+        None => String::new(),
+    };
+    let sentence = match found.hardest() {
+        Some([speed, rpm]) => words![
+            "The hardest impact that was seen, ",
+            (speed, Digits::Significant(3)),
+            " ",
+            Span::Unit("m/s"),
+            " between follower and cam, is at ",
+            (rpm, Digits::Significant(4)),
+            format!(" rpm (looked at: {low} to {high} rpm)."),
+            open
+        ],
+        None => format!("None was seen from {low} to {high} rpm.").into(),
+    };
+    Some(headed("Impacts.", "impact_speed", sentence))
+}
+
+fn coexistence(report: &Report) -> Option<Words> {
+    let found = report.speeds.as_ref().ok()?;
+    let sentence = match together(found) {
+        ranges if ranges.is_empty() => "At no speed were two motions found that runs come to.".into(),
+        ranges => words!["Which motion a run comes to depends on its start at ", several(ranges), "."],
+    };
+    Some(headed("Coexistence.", "attractors", sentence))
+}
+
+/// The first few of some ranges, and the number of all.
+fn several(ranges: Vec<Words>) -> Words {
+    const SHOWN: usize = 3;
+    let more = ranges.len().saturating_sub(SHOWN);
+    let mut said = Words::joined(ranges.into_iter().take(SHOWN), ", ");
+    said.push(" rpm");
+    if more > 0 {
+        said.push(format!(", and elsewhere, {} ranges in all", SHOWN + more));
+    }
+    said
+}
+
+fn proved(report: &Report) -> Words {
+    let certified = report.verification.as_ref().ok().filter(|found| found.certificate.is_some());
+    let certificate = certified.and_then(|found| found.certificate.as_ref());
+    let taken = certificate.and_then(|certificate| hypotheses(&certificate.hypotheses()));
+    let corner = certified.map(|found| {
+        words!["that the corner impact at ", (found.at.speed_rpm(), Digits::Fixed(6)), " rpm exists, and its local map"]
+    });
+    let chaos = report.plates.iter().any(|plate| plate.id == chaotic_set() && plate.drawn.is_ok());
+    let chaos = chaos.then(|| "that a set of chaotic motions exists beyond the corner impact".into());
+    let all: Vec<Words> = corner.into_iter().chain(chaos).collect();
+    let sentence = match all.is_empty() {
+        true => {
+            "Nothing on this page: what it says of speeds comes from runs at some of them, and from some starts.".into()
+        }
+        false => words![
+            "It is proved ",
+            Words::joined(all, ", and "),
+            "; what is said of other speeds comes from runs at some of them. ",
+            taken.as_deref().unwrap_or_default()
+        ],
+    };
+    headed("What is proved.", "speed_rpm", sentence)
+}

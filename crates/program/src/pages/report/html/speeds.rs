@@ -1,0 +1,36 @@
+//! Motions of the follower at other speeds.
+
+use crate::pages::report::html::HtmlError;
+use crate::pages::report::html::plates::plate;
+use crate::pages::speeds::{cam, dangers, detachment, how, remarks, table, together};
+use crate::report::Report;
+use crate::show::block::{self, Block, PageSection, Words, words};
+use corner_impact::study::speeds::SpeedSurvey;
+
+pub(crate) fn section(report: &Report) -> Result<PageSection, HtmlError> {
+    let mut blocks = match &report.speeds {
+        Ok(found) => attractors(found),
+        Err(why) => vec![Block::paragraph(format!("Not known: {why}."))],
+    };
+    if let Some(picture) = &report.attractors {
+        blocks.push(plate(picture, report)?);
+    }
+    Ok(PageSection { id: "speeds", title: "At each speed".into(), blocks })
+}
+
+fn attractors(found: &SpeedSurvey) -> Vec<Block> {
+    let together = match found.coexistence.is_empty() {
+        true => Words::from("No two attractors were found at one speed."),
+        false => {
+            words!["Which one a run ends on depends on its start at ", Words::joined(together(found), ", "), " rpm."]
+        }
+    };
+    let separation = block::about("separation", detachment(found));
+    let about = words!["The follower leaves the cam for the first time at ", separation, ". ", together];
+    let mut blocks = vec![Block::paragraph(about), Block::Table(table(found))];
+    blocks.extend(remarks(found));
+    blocks.extend(dangers(found));
+    blocks.push(Block::paragraph(how(found)));
+    blocks.extend(found.measured.iter().filter_map(cam));
+    vec![Block::About("attractors".into(), blocks)]
+}

@@ -1,0 +1,348 @@
+//! Tables as lines of CSV. Numbers have the fewest digits that read back as the same double, without a point if they are
+//! whole and never with a power of ten. The csv crate is not used, because it writes `1.0` and `1e-7`.
+
+use std::borrow::Cow;
+use std::fmt::{Display, Write};
+
+use crate::show::digits::Digits;
+use corner_impact::border_collision::EventCurve;
+use corner_impact::estimate::Estimate;
+use corner_impact::flight::State;
+use corner_impact::model::Units;
+use corner_impact::orbit::Eigenvalue;
+use corner_impact::orbit::branch::{Branch, SpecialKind};
+use corner_impact::orbit::long_run::LongRun;
+use corner_impact::section::TraceSample;
+use corner_impact::simulate::{Event, Machine, Motion};
+use corner_impact::study::basins::{Basin, Basins, BasinsOver};
+use corner_impact::study::chart::{Chart, Charted, class};
+use corner_impact::study::design::loads::Loads;
+use corner_impact::study::speeds::{At, AttractorRow, SpeedSurvey};
+use corner_impact::study::survey::{Axis, Beginning, GridResults, Point, RecordBlock, RecordRow, Section, Seen, Sweep};
+use corner_impact_plot::{Data, Figure};
+
+/// Converts a table to the units of a model.
+pub(crate) fn told<'a>(table: &'a str, units: &Units) -> Cow<'a, str> {
+    in_units(table, table.lines().next().unwrap_or_default(), units)
+}
+
+/// Converts lines under `columns`, or a whole table whose first line is `columns`, to the units of a model.
+pub(crate) fn in_units<'a>(lines: &'a str, columns: &str, units: &Units) -> Cow<'a, str> {
+    if !units.are_given {
+        return lines.into();
+    }
+    let names: Vec<&str> = columns.trim_end().split(',').collect();
+    let mut told = String::with_capacity(lines.len());
+    for line in lines.lines() {
+        if line == columns.trim_end() {
+            told.push_str(&units.columns(line));
+            continue;
+        }
+        for (index, cell) in line.split(',').enumerate() {
+            told.push_str(if index > 0 { "," } else { "" });
+            match (units.converted(names.get(index).copied().unwrap_or_default()), cell.parse()) {
+                // Writing to a string does not fail.
+                (Some(convert), Ok(value)) => _ = write!(told, "{}", convert(units, value)),
+                _ => told.push_str(cell),
+            }
+        }
+        told.push('\n');
+    }
+    told.into()
+}
+
+/// Columns of a run's events.
+pub(crate) const EVENTS: &str =
+    "revolution,time_s,cam_angle_rad,event,position_m,velocity_before_m_s,velocity_after_m_s,cam_velocity_m_s\n";
+
+/// Appends an event of a run at `angular_velocity`, rad/s, that started at `start_angle`, rad.
+pub(crate) fn event(line: &mut String, event: &Event, start_angle: f64, angular_velocity: f64) {
+    let Event { revolution, cam_angle, position, velocity_before, velocity_after, cam_velocity, .. } = event;
+    let (time, kind) = (event.turned_since(start_angle) / angular_velocity, event.kind.name());
+    // Writing to a string does not fail.
+    let _ = writeln!(
+        line,
+        "{revolution},{time},{cam_angle},{kind},{position},{velocity_before},{velocity_after},{cam_velocity}"
+    );
+}
+
+/// Columns of a run's states at one angle.
+pub(crate) const STROBE: &str = "revolution,position_m,velocity_m_s,gap_m,contact\n";
+
+/// Appends the state of a run at a section.
+pub(crate) fn strobe(line: &mut String, machine: &Machine, motion: &Motion) {
+    let State { position, velocity } = motion.state;
+    let (gap, contact) = (machine.gap(motion), motion.contact);
+    let _ = writeln!(line, "{},{position},{velocity},{gap},{contact}", motion.revolution);
+}
+
+/// Columns of a run's samples.
+pub(crate) const TRACE: &str = "time_s,cam_angle_rad,position_m,velocity_m_s,gap_m,contact_force_n\n";
+
+/// Samples of a run: time since `start_angle`, rad, and the contact force of the cam on a follower of `mass`, kg.
+pub(crate) fn trace(samples: &[TraceSample], start_angle: f64, angular_velocity: f64, mass: f64) -> String {
+    let mut lines = String::new();
+    for TraceSample { turned, cam_angle, state: State { position, velocity }, gap, pressing, .. } in samples {
+        let time = (turned - start_angle) / angular_velocity;
+        let _ = writeln!(lines, "{time},{cam_angle},{position},{velocity},{gap},{}", mass * pressing);
+    }
+    lines
+}
+
+/// Columns of a diagram.
+pub(crate) fn diagram(sweep: &Sweep) -> String {
+    let seen = match sweep.section {
+        Section::Impacts => "cam_angle_rad,event,position_m,velocity_before_m_s,velocity_after_m_s",
+        Section::Strobe(_) => "position_m,velocity_m_s",
+    };
+    let growth = sweep.growth.as_ref().map_or("", |_| ",lyapunov_per_revolution,lyapunov_error");
+    let motion = if matches!(sweep.starts, Beginning::Found(_)) { ",attractor" } else { "" };
+    format!("{},revolution,{seen}{growth}{motion}\n", sweep.over.axis().parameter.name())
+}
+
+/// Lines of a diagram, as one worker writes them.
+#[derive(Debug, Default)]
+pub(crate) struct Lines(pub String);
+
+impl Lines {
+    /// Number of characters after which lines are sent on.
+    const FULL: usize = 1 << 15;
+}
+
+impl RecordBlock for Lines {
+    fn push(&mut self, row: &RecordRow) {
+        let line = &mut self.0;
+        let RecordRow { value, revolution, motion, seen, growth } = row;
+        let _ = match seen {
+            Seen::Event(event) => {
+                let Event { cam_angle, position, velocity_before, velocity_after, .. } = event;
+                let kind = event.kind.name();
+                write!(line, "{value},{revolution},{cam_angle},{kind},{position},{velocity_before},{velocity_after}")
+            }
+            Seen::Section(State { position, velocity }) => write!(line, "{value},{revolution},{position},{velocity}"),
+        };
+        if let Some(Estimate { value, error, .. }) = growth {
+            let _ = write!(line, ",{value},{error}");
+        }
+        if let Some(motion) = motion {
+            let _ = write!(line, ",{motion}");
+        }
+        line.push('\n');
+    }
+
+    fn is_full(&self) -> bool {
+        self.0.len() >= Self::FULL
+    }
+}
+
+/// The value, or an empty cell.
+fn cell(value: Option<impl Display>) -> String {
+    value.map_or(String::new(), |value| value.to_string())
+}
+
+/// Two multipliers, each as real and imaginary part.
+fn multipliers([one, two]: [Eigenvalue; 2]) -> String {
+    format!("{},{},{},{}", one.re, one.im, two.re, two.im)
+}
+
+/// Table of starts, a line each, row by row; `ending` is empty if the start is below the cam.
+pub(crate) fn basins(basins: &Basins) -> String {
+    let mut lines = String::from("position_m,velocity_m_s,ending,part,revolutions,impacts,followed\n");
+    for (index, part) in basins.cells.iter().enumerate() {
+        let State { position, velocity } = basins.begun.state(index);
+        let ending = part.map(|part| &basins.parts[part].ending);
+        let (name, part) = (cell(ending.map(LongRun::kind)), cell(*part));
+        let period = ending.and_then(LongRun::period);
+        let (turns, impacts) = (cell(period.map(|period| period.0)), cell(period.map(|period| period.1)));
+        let followed = cell(basins.followed.get(index).copied().flatten());
+        let _ = writeln!(lines, "{position},{velocity},{name},{part},{turns},{impacts},{followed}");
+    }
+    lines
+}
+
+/// Table of motions, a line for each at each value: the share of the starts that end on it.
+pub(crate) fn basins_over(found: &BasinsOver) -> String {
+    let mut lines = format!(
+        "{},ending,part,revolutions,impacts,growth_rate,growth_error,starts,share,share_error,followed\n",
+        found.over.name
+    );
+    for at in &found.at {
+        let value = at.place.across();
+        for (part, it) in at.found.iter().flat_map(|found| &found.parts).enumerate() {
+            let (name, period, growth) = (it.ending.kind(), it.ending.period(), it.ending.growth());
+            let (turns, impacts) = (cell(period.map(|period| period.0)), cell(period.map(|period| period.1)));
+            let Basin { starts, share: Estimate { value: share, error, .. }, followed, .. } = it;
+            let (rate, rate_error) = (growth.value, growth.error);
+            let _ = writeln!(
+                lines,
+                "{value},{name},{part},{turns},{impacts},{rate},{rate_error},{starts},{share},{error},{followed}"
+            );
+        }
+    }
+    lines
+}
+
+/// Columns of a run's motion. No cell is empty, so numerical programs can read all columns but the class.
+const POINT: &str =
+    "class,revolutions,impacts,growth_rate,growth_error,impact_speed_m_s,impacts_per_revolution,followed\n";
+
+/// Appends the cells of [`POINT`].
+fn point(lines: &mut String, point: &Result<Point, String>) {
+    let class = class(point.as_ref().ok().map(|point| point.kind));
+    let _ = match point {
+        Ok(Point { revolutions, impacts, impact_rate, growth, impact_speed, followed, .. }) => {
+            let Estimate { value, error, .. } = growth;
+            writeln!(lines, "{class},{revolutions},{impacts},{value},{error},{impact_speed},{impact_rate},{followed}")
+        }
+        Err(_) => writeln!(lines, "{class},0,0,NaN,NaN,NaN,NaN,0"),
+    };
+}
+
+/// Table of the points of a chart, a line each, row by row.
+pub(crate) fn chart(found: &Charted) -> String {
+    let mut lines = format!("x,y,{POINT}");
+    let Chart { x, y, .. } = &found.chart;
+    for (index, point) in found.points.iter().enumerate() {
+        let (x, y) = (x.values[index % x.values.len()], y.values[index / x.values.len()]);
+        let _ = write!(lines, "{x},{y},");
+        self::point(&mut lines, point);
+    }
+    lines
+}
+
+/// Table of the motions at each value, a line each.
+pub(crate) fn one_row(over: &Axis, points: &GridResults<Point>) -> String {
+    let mut lines = format!("{},{POINT}", over.parameter.name());
+    for (value, point) in over.values.iter().zip(points) {
+        let _ = write!(lines, "{value},");
+        self::point(&mut lines, point);
+    }
+    lines
+}
+
+/// Table of the loads on follower and cam, a line for each revolution of a sweep.
+pub(crate) fn loads(over: &str, sweep: &[Vec<Loads>]) -> String {
+    let mut lines = format!("{over},revolution,impact_speed_m_s,gap_m,off_cam_share,energy_lost_j,largest_force_n\n");
+    for (revolution, Loads { place, impact_speed, gap, off_cam, energy, force, .. }) in
+        sweep.iter().flat_map(|at| at.iter().enumerate())
+    {
+        let value = place.across();
+        let _ = writeln!(lines, "{value},{revolution},{impact_speed},{gap},{off_cam},{energy},{force}");
+    }
+    lines
+}
+
+/// Table of the attractors at each value of the grid.
+pub(crate) fn speeds(found: &SpeedSurvey) -> String {
+    let mut lines = format!(
+        "{},attractor,kind,revolutions,impacts,growth_rate,growth_error,share,share_error,coexisting,followed\n",
+        found.over.name
+    );
+    let mut all: Vec<(&AttractorRow, &At)> =
+        found.attractors.iter().flat_map(|attractor| attractor.at.iter().map(move |at| (attractor, at))).collect();
+    all.sort_by(|(_, one), (_, two)| one.value().total_cmp(&two.value()));
+    for (attractor, at) in &all {
+        let value = at.value();
+        let coexisting = all.iter().filter(|(_, other)| other.value() == value).count();
+        let (period, growth) = (at.ending.period(), at.ending.growth());
+        let (turns, impacts) = (cell(period.map(|period| period.0)), cell(period.map(|period| period.1)));
+        let (rate, error, followed) = (growth.value, growth.error, at.followed);
+        let (id, kind, share, share_error) = (&attractor.id, at.ending.kind(), at.share.value, at.share.error);
+        let _ = writeln!(
+            lines,
+            "{value},{id},{kind},{turns},{impacts},{rate},{error},{share},{share_error},{coexisting},{followed}"
+        );
+    }
+    lines
+}
+
+/// Table of every orbit of every branch, with its first impact and the state just after that. An orbit without impacts has
+/// the state at angle 0.
+pub(crate) fn branches(parameter: &str, branches: &[Branch]) -> String {
+    let mut lines = String::from(
+        "rpm,parameter,value,revolutions,impacts,cam_angle_rad,position_m,velocity_m_s,multiplier_1_re,multiplier_1_im,\
+         multiplier_2_re,multiplier_2_im,stable,special,branch,jump_order,bracket_low,bracket_high,special_residual,stability,\
+         graze_class\n",
+    );
+    let points = branches.iter().zip(1..).flat_map(|(branch, index)| branch.points.iter().map(move |p| (index, p)));
+    for (index, point) in points {
+        let (rpm, value, orbit, special) = (point.rpm, point.value, &point.orbit, point.special);
+        let (turns, stable, impacts) = (orbit.revolutions, orbit.is_stable(), orbit.impacts().count());
+        let first = orbit.impacts().next().map(|first| (first.cam_angle, first.position, first.velocity_after));
+        let (angle, position, velocity) = first.unwrap_or((0.0, orbit.state.position, orbit.state.velocity));
+        let (order, class) = match special.map(|special| special.kind) {
+            Some(SpecialKind::Corner { jump_order, .. }) => (Some(jump_order), None),
+            Some(SpecialKind::Graze { first, .. }) => (None, first.map(|first| first.class)),
+            _ => (None, None),
+        };
+        let (order, low) = (cell(order), cell(special.map(|special| special.bracket[0])));
+        let (high, residual) = (cell(special.map(|special| special.bracket[1])), cell(special.map(|s| s.residual)));
+        let (special, both) = (special.map_or("", |special| special.kind.name()), multipliers(orbit.multipliers()));
+        let _ = write!(lines, "{rpm},{parameter},{value},{turns},{impacts},{angle},{position},{velocity},{both},");
+        let (stability, class) = (orbit.judgement.stability, cell(class));
+        let _ = writeln!(lines, "{stable},{special},{index},{order},{low},{high},{residual},{stability},{class}");
+    }
+    lines
+}
+
+/// Table of every event of every curve; columns for corner impacts only are empty for other events.
+pub(crate) fn curves(parameter: &str, curves: &[EventCurve]) -> String {
+    let mut lines = String::from(
+        "rpm,parameter,value,revolutions,impacts,cam_angle_rad,jump_order,scenario,multiplier_minus_1_re,\
+         multiplier_minus_1_im,multiplier_minus_2_re,multiplier_minus_2_im,multiplier_plus_1_re,multiplier_plus_1_im,\
+         multiplier_plus_2_re,multiplier_plus_2_im,special,curve,event\n",
+    );
+    let points = curves.iter().zip(1..).flat_map(|(curve, index)| curve.points.iter().map(move |p| (curve, index, p)));
+    for (curve, index, point) in points {
+        let (rpm, value, angle, turns) = (point.rpm, point.value, point.cam_angle, point.revolutions);
+        let order = if let SpecialKind::Corner { jump_order, .. } = curve.kind { Some(jump_order) } else { None };
+        let (count, order, happening) = (point.impacts, cell(order), cell(point.happening));
+        let _ = write!(lines, "{rpm},{parameter},{value},{turns},{count},{angle},{order},{happening}");
+        let each = |index: usize| point.multipliers.get(index).map(|value| [value.re, value.im]);
+        let _ = (0..4).try_for_each(|index| {
+            let [re, im] = [0, 1].map(|part| cell(each(index).map(|value| value[part])));
+            write!(lines, ",{re},{im}")
+        });
+        let (special, event) = (cell(point.special.map(|special| special.kind.name())), cell(curve.kind.bifurcation()));
+        let _ = writeln!(lines, ",{special},{index},{event}");
+    }
+    lines
+}
+
+/// Table of a figure's data: a row for each point of its lines and marks, and for each cell of its clouds with the number of points in it.
+/// Values have six digits across, because speeds may differ little, and five up. Cells have one digit less, as two thousand lie side by
+/// side.
+pub fn figure(figure: &Figure) -> String {
+    let mut rows = String::from("panel,series,kind,x,y,count\n");
+    let word = |text: &str| format!("\"{}\"", text.replace('"', "\"\""));
+    for panel in &figure.panels {
+        for series in &panel.series {
+            let across = [&figure.x, &panel.y].map(|axis| format!("{} ({})", axis.label, axis.unit).replace(" ()", ""));
+            let heads = format!(
+                "{},{}",
+                word(&across.join(", ")),
+                word(if series.label.is_empty() { &series.name } else { &series.label })
+            );
+            let mut row = |kind: &str, [x, y]: [f64; 2], count: u16| {
+                let [across, up] = if kind == "line" || kind == "point" { [6, 5] } else { [5, 4] };
+                let [x, y] = [shown(x, across), shown(y, up)];
+                rows.push_str(&format!("{heads},{kind},{x},{y},{count}\n"));
+            };
+            match &series.data {
+                Data::Line { points, .. } | Data::Area { points, .. } | Data::Arrow { points, .. } => {
+                    points.iter().for_each(|point| row("line", *point, 1));
+                }
+                Data::Points { points, .. } => points.iter().for_each(|point| row("point", *point, 1)),
+                Data::Density(cells) => cells.counted().for_each(|(at, count)| row("cell", at, count)),
+                Data::Region { cells, .. } => cells.counted().for_each(|(at, _)| row("region", at, 1)),
+                Data::Words(_) => {}
+            }
+        }
+    }
+    rows
+}
+
+/// A value with its digits; empty at a break of a line.
+fn shown(value: f64, digits: usize) -> String {
+    if value.is_nan() { String::new() } else { Digits::Significant(digits).typed(value) }
+}

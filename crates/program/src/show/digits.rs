@@ -1,0 +1,108 @@
+//! Numbers as digits: the number of digits is chosen once, and every page writes it alike.
+
+use maud::{Markup, html};
+
+use corner_impact::elementary;
+use corner_impact::tolerance;
+
+/// Number of displayed digits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Digits {
+    /// Number of significant digits, without trailing zeros.
+    Significant(usize),
+    /// Number of significant digits, including trailing zeros, so that numbers can be compared.
+    Aligned(usize),
+    /// Number of decimal places.
+    Fixed(usize),
+    /// Number of decimal places, without trailing zeros.
+    UpTo(usize),
+    /// Number of significant digits, with a power of ten.
+    Power(usize),
+    /// Two digits, for a difference or a bound, where only the size matters.
+    Size,
+    /// Nine digits, or six and a power of ten where zeros would replace digits.
+    Short,
+    /// All digits that are needed to read back the same number.
+    All,
+}
+
+impl Digits {
+    /// Text for a terminal and for a text file: `-1.5e-9`.
+    pub(crate) fn text(self, value: f64) -> String {
+        match self {
+            _ if !value.is_finite() => format!("{value}"),
+            // The rounding error of a zero, or its sign, has no meaning.
+            Self::Short if value.abs() < tolerance::DISPLAYED_ZERO.value => "0".into(),
+            Self::Short if is_plain(value) => Self::Significant(9).text(value),
+            Self::Short => Self::Power(6).text(value),
+            // A column of a terminal is narrow: limit the places to the digits.
+            Self::Significant(digits) => trimmed(&format!("{value:.*}", places(value, digits).min(digits))),
+            Self::Aligned(digits) if value == 0.0 || is_plain(value) => {
+                without_sign_of_zero(format!("{value:.*}", places(value, digits)))
+            }
+            Self::Aligned(digits) | Self::Power(digits) => format!("{value:.*e}", digits.saturating_sub(1)),
+            Self::Fixed(places) => without_sign_of_zero(format!("{value:.places$}")),
+            Self::UpTo(places) => trimmed(&format!("{value:.places$}")),
+            Self::Size => Self::Power(2).text(value),
+            Self::All => format!("{value}"),
+        }
+    }
+
+    /// Markup for a browser, with all digits in the value of a `data` element.
+    pub(crate) fn markup(self, value: f64) -> Markup {
+        html! { @if value.is_finite() { data value=(value) { (typeset(&self.typed(value))) } } @else { (value) } }
+    }
+
+    /// Digits of [`Digits::markup`] before typesetting; a small number has room for all its places.
+    pub(crate) fn typed(self, value: f64) -> String {
+        match self {
+            Self::Significant(_) if value.abs() < tolerance::DISPLAYED_ZERO.value => "0".into(),
+            Self::Size if value == 0.0 => "0".into(),
+            Self::Size if (0.01..100.0).contains(&value.abs()) => trimmed(&format!("{value:.*}", places(value, 2))),
+            Self::Significant(digits) if is_plain(value) => trimmed(&format!("{value:.*}", places(value, digits))),
+            Self::Significant(digits) => Self::Power(digits).text(value),
+            Self::All if value != 0.0 && !is_plain(value) => format!("{value:e}"),
+            _ => self.text(value),
+        }
+    }
+}
+
+/// Digits for a number with this error, down to the second digit of the error, and the error rounded up to that place.
+pub(crate) fn with_error(error: f64) -> (Digits, f64) {
+    if !(error > 0.0 && error.is_finite()) {
+        return (Digits::Significant(9), error);
+    }
+    let place = 1.0 - elementary::log10(error).floor();
+    let unit = elementary::powf(10.0_f64, place);
+    (Digits::Fixed(place.clamp(0.0, 12.0) as usize), (error * unit).ceil() / unit)
+}
+
+/// Typesets digits as in print: a minus as wide as a plus, and a raised power of ten.
+pub(crate) fn typeset(text: &str) -> Markup {
+    let signed = |text: &str| text.replace('-', "\u{2212}");
+    html! {
+        @match text.split_once('e') {
+            Some((mantissa, exponent)) => { (signed(mantissa)) "\u{202f}×\u{202f}10" sup { (signed(exponent)) } }
+            None => (signed(text))
+        }
+    }
+}
+
+/// Whether a number is written without a power of ten: only few zeros precede or follow its digits.
+fn is_plain(value: f64) -> bool {
+    (-4.0..9.0).contains(&elementary::log10(value.abs()))
+}
+
+/// Decimal places that give a number this many significant digits.
+fn places(value: f64, digits: usize) -> usize {
+    if value == 0.0 { 0 } else { (digits as f64 - 1.0 - elementary::log10(value.abs()).floor()).max(0.0) as usize }
+}
+
+fn trimmed(text: &str) -> String {
+    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { text };
+    without_sign_of_zero(text.into())
+}
+
+fn without_sign_of_zero(text: String) -> String {
+    if text.bytes().any(|letter| (b'1'..=b'9').contains(&letter)) { text } else { text.trim_start_matches('-').into() }
+}

@@ -1,0 +1,76 @@
+//! Remarks on a model before any computation, a sentence each.
+
+use crate::show::digits::Digits;
+use crate::show::words::{accuracy, known_to, noise_unknown};
+use corner_impact::cam::Stray;
+use corner_impact::measured::{CamUncertainty, Remarks};
+use corner_impact::model::{Model, ModelError, TableProfile};
+
+/// Remarks on a model at the requested speeds, rpm, or at those of `[study]`: numbers in unlikely units, rows with apparent errors,
+/// and given values that contradict the rows.
+pub fn notes(model: &Model, rpm: Option<[f64; 2]>) -> Result<Vec<String>, ModelError> {
+    let mut notes: Vec<String> = model.doubt(rpm)?.into_iter().collect();
+    let Some(profile) = model.table() else { return Ok(notes) };
+    let Remarks { strays, loose, contradicted } = Remarks::on(model)?;
+    let reading = &profile.reading;
+    let told = |length: f64| Digits::Aligned(2).text(reading.in_model.told(length));
+    notes.extend(slips(profile, &strays));
+    notes.extend(loose.map(|[within, spread]| {
+        format!(
+            "cam.tolerance: {} {unit} is far more than the rows spread by, some {} {unit}; the spline may leave out what the cam has, and ± \
+             does not know of that",
+            told(within),
+            told(spread),
+            unit = reading.unit
+        )
+    }));
+    notes.extend(contradicted.map(|row| {
+        format!(
+            "{}: the rows are otherwise: at {} deg the cam is {} {} from them",
+            row.field,
+            row.cam_angle_deg,
+            told(row.off_m),
+            reading.unit
+        )
+    }));
+    Ok(notes)
+}
+
+/// Rows that lie far from the trend of their neighbours; only the first are named.
+fn slips(profile: &TableProfile, strays: &[Stray]) -> Vec<String> {
+    /// Most rows that are named.
+    const NAMED: usize = 3;
+    let reading = &profile.reading;
+    let told = |Stray { line, cam_angle_deg, lift_m, off_m }: &Stray| {
+        let place = profile.file.as_ref().map_or("cam.rows".into(), |file| format!("{file}, line {line}"));
+        let (lift, off, unit) = (reading.in_model.told(*lift_m), reading.in_model.told(*off_m), &reading.unit);
+        let side = if off < 0.0 { "below" } else { "above" };
+        let off = Digits::Aligned(2).text(off.abs());
+        format!(
+            "{place}: lift {lift} at {cam_angle_deg} deg is {off} {unit} {side} what the rows beside it tell: a slip, or does the cam turn \
+             sharply there?"
+        )
+    };
+    let mut slips: Vec<String> = strays.iter().take(NAMED).map(told).collect();
+    if strays.len() > NAMED {
+        slips.push(format!("{} more rows are off as well: `cam --json` lists them", strays.len() - NAMED));
+    }
+    slips
+}
+
+/// Uncertainty of the cam, for an answer without a ± of its own; `None` if the rows have no noise.
+pub fn as_drawn(model: &Model) -> Result<Option<String>, ModelError> {
+    let Some((open, profile)) = CamUncertainty::of(model)?.zip(model.table()) else { return Ok(None) };
+    let (accuracy, open) = match open {
+        CamUncertainty::Told(cam) => {
+            let percent = Digits::Aligned(2).text(100.0 * cam.curvature_error / cam.largest_curvature);
+            (accuracy(&cam), format!("to {percent} % of its largest value"))
+        }
+        CamUncertainty::Unknown(why) => return Ok(Some(noise_unknown(&why))),
+        CamUncertainty::Noise(spread) => (known_to(&profile.reading, spread), "as far as `cam` tells".into()),
+    };
+    Ok(Some(format!(
+        "{accuracy}, which leaves the cam's second derivative open {open}; what follows is of the cam as it is drawn through the rows, \
+         without a ±: `speeds`, `design` and `orbit` tell theirs"
+    )))
+}

@@ -1,0 +1,320 @@
+//! Blocks on a terminal: wrapped text, and marks on important words.
+//!
+//! Only `Page::coloured` shows marks; `Page::plain` leaves them out, and a mark adds nothing that the words do
+//! not say. The crate textwrap breaks the lines. Tables are laid out here, not by comfy-table: it wraps
+//! cells where there is no room, but breaks numbers too, and cannot write a table row by row.
+
+use std::fmt::{self, Write};
+
+use textwrap::core::display_width;
+use textwrap::{Options, WordSeparator, WordSplitter, WrapAlgorithm};
+
+use crate::show::block::{Block, Span, Table, TextMark, Words};
+use corner_impact::untrusted;
+
+/// Default width of a page, in columns.
+pub(crate) const WIDTH: usize = 100;
+
+/// Escape code that ends a mark.
+const RESET: &str = "\x1b[0m";
+
+impl TextMark {
+    const ALL: [Self; 6] = [Self::Heading, Self::Strong, Self::Good, Self::Bad, Self::Doubtful, Self::Open];
+
+    /// Escape codes that begin the mark: bold, and the terminal's own sixteen colours, which suit any background.
+    fn codes(self) -> &'static str {
+        match self {
+            Self::Heading => "\x1b[1m",
+            Self::Strong => "",
+            Self::Good => "\x1b[32m",
+            Self::Bad => "\x1b[1;31m",
+            Self::Doubtful => "\x1b[33m",
+            Self::Open => "\x1b[36m",
+        }
+    }
+
+    fn around(self, text: &str) -> String {
+        let codes = self.codes();
+        if codes.is_empty() || text.is_empty() { text.into() } else { format!("{codes}{text}{RESET}") }
+    }
+}
+
+/// Text with marks in lines of a limited width.
+#[derive(Clone, Debug)]
+pub struct Page {
+    width: usize,
+    text: String,
+    /// Start of the current line in the text.
+    line: usize,
+}
+
+impl Write for Page {
+    fn write_str(&mut self, text: &str) -> fmt::Result {
+        for piece in text.split_inclusive('\n') {
+            self.text.push_str(piece.trim_end_matches('\n'));
+            if piece.ends_with('\n') {
+                let line = self.text.split_off(self.line);
+                self.text.push_str(&folded(&line, self.width));
+                self.text.push('\n');
+                self.line = self.text.len();
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A type that has a page: laid out once as blocks, shown anywhere.
+pub trait Paged {
+    /// Contents of the page.
+    fn blocks(&self) -> Vec<Block>;
+
+    /// Page for a terminal of `width` columns.
+    fn page(&self, width: usize) -> Result<Page, fmt::Error> {
+        Page::of(width, &self.blocks())
+    }
+
+    /// Text of the page at the default width, without marks.
+    fn text(&self) -> Result<String, fmt::Error> {
+        Ok(self.page(WIDTH)?.plain())
+    }
+}
+
+impl Page {
+    /// Lays out `blocks` as a page.
+    pub(crate) fn of(width: usize, blocks: &[Block]) -> Result<Self, fmt::Error> {
+        let mut page = Self { width, text: String::new(), line: 0 };
+        page.blocks(blocks)?;
+        Ok(page)
+    }
+
+    /// Writes emphasized words with a line under them.
+    fn underlined(&mut self, text: &str, rule: char) -> fmt::Result {
+        self.text.push_str(&TextMark::Heading.around(text));
+        let length = display_width(text).min(self.width);
+        writeln!(self, "\n{}", String::from(rule).repeat(length))
+    }
+
+    /// Writes an indented paragraph, wrapped.
+    fn paragraph(&mut self, indent: usize, text: &str) -> fmt::Result {
+        let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
+        lines(&text, self.width.saturating_sub(indent))
+            .iter()
+            .try_for_each(|line| writeln!(self, "{:indent$}{line}", ""))
+    }
+
+    /// Writes blocks in order.
+    fn blocks(&mut self, blocks: &[Block]) -> fmt::Result {
+        blocks.iter().try_for_each(|block| match block {
+            Block::Title(words) => self.underlined(&text(words), '='),
+            Block::Heading(words) => {
+                writeln!(self)?;
+                self.underlined(&text(words), '-')
+            }
+            Block::Line(words) => writeln!(self, "{}", text(words)),
+            Block::Paragraph(indent, words) => self.paragraph(*indent, &text(words)),
+            Block::Note(words) => self.paragraph(2, &text(words)),
+            Block::Entries(width, entries) => {
+                entries.iter().try_for_each(|(name, words)| self.entry(*width, &text(name), &text(words)))
+            }
+            Block::Table(table) => self.table(table),
+            Block::List(items) => items.iter().try_for_each(|words| self.paragraph(2, &text(words))),
+            Block::Brief(blocks) | Block::About(_, blocks) => self.blocks(blocks),
+            Block::Gap => writeln!(self),
+            Block::Full(_) | Block::Details(..) | Block::Markup(_) => Ok(()),
+        })
+    }
+
+    /// Writes a name, and its description wrapped in a column that begins `width` columns further.
+    fn entry(&mut self, width: usize, name: &str, words: &str) -> fmt::Result {
+        let column = 2 + width;
+        let hang = if column <= self.width * 2 / 5 { column } else { 4 };
+        let pad = " ".repeat(width.saturating_sub(display_width(name)));
+        for (index, line) in words.split('\n').enumerate() {
+            let first = if index == 0 { format!("  {name}{pad}") } else { " ".repeat(column) };
+            let options = options(self.width).initial_indent(&first);
+            let hang = " ".repeat(hang);
+            let lines = textwrap::wrap(line, options.subsequent_indent(&hang));
+            lines.iter().try_for_each(|line| writeln!(self, "{line}"))?;
+        }
+        Ok(())
+    }
+
+    pub(crate) fn plain(&self) -> String {
+        let codes = TextMark::ALL.map(TextMark::codes).into_iter().filter(|codes| !codes.is_empty());
+        codes.chain([RESET]).fold(self.text.clone(), |text, code| text.replace(code, ""))
+    }
+
+    /// The text with escape codes around marked words.
+    pub(crate) fn coloured(&self) -> &str {
+        &self.text
+    }
+}
+
+/// Words as text for a terminal.
+pub(crate) fn text(words: &Words) -> String {
+    let of = |span: &Span| match span {
+        Span::Text(text) | Span::Quoted(text) | Span::Code(text) => untrusted::visible(text).into_owned(),
+        Span::Unit(unit) => (*unit).to_owned(),
+        Span::Number(value, digits) | Span::Against(value, _, digits) => digits.text(*value),
+        Span::Complex([re, im], digits) if *im == 0.0 => digits.text(*re),
+        Span::Complex([re, im], digits) => {
+            format!("{} {} {}i", digits.text(*re), if *im < 0.0 { '-' } else { '+' }, digits.text(im.abs()))
+        }
+        Span::Symbol(symbol) => symbol.plain.clone(),
+        Span::Matrix(rows, digits) => {
+            let row = |row: &Vec<f64>| match row.as_slice() {
+                [entry] => digits.text(*entry),
+                row => format!("[{}]", row.iter().map(|entry| digits.text(*entry)).collect::<Vec<_>>().join(", ")),
+            };
+            let entries = rows.iter().map(row).collect::<Vec<_>>().join(", ");
+            if rows.iter().all(|row| row.len() == 1) { format!("({entries})") } else { format!("[{entries}]") }
+        }
+        Span::Marked(mark, text) => mark.around(&untrusted::visible(text)),
+        Span::About(_, words) => self::text(words),
+        Span::Break => "\n".into(),
+    };
+    words.0.iter().map(of).collect()
+}
+
+/// Options for wrapping: lines break only at spaces, as late as possible; a word that is too long stays whole.
+pub(crate) fn options<'a>(width: usize) -> Options<'a> {
+    Options::new(width)
+        .break_words(false)
+        .word_separator(WordSeparator::AsciiSpace)
+        .wrap_algorithm(WrapAlgorithm::FirstFit)
+        .word_splitter(WordSplitter::NoHyphenation)
+}
+
+fn lines(text: &str, width: usize) -> Vec<String> {
+    textwrap::wrap(text, options(width)).into_iter().map(Into::into).collect()
+}
+
+/// Wraps a line; the continuation begins under the line's second column, if it has one.
+fn folded(line: &str, width: usize) -> String {
+    if display_width(line) <= width {
+        return line.into();
+    }
+    let words = line.trim_start();
+    let indent = line.len() - words.len();
+    let second = words.find("  ").map(|gap| {
+        let space = words[gap..].len() - words[gap..].trim_start().len();
+        indent + display_width(&words[..gap]) + space
+    });
+    let hang = second.filter(|column| *column <= width * 2 / 5).unwrap_or(indent + 2).min(width / 2);
+    let (first, hang) = (" ".repeat(indent), " ".repeat(hang));
+    textwrap::wrap(words, options(width).initial_indent(&first).subsequent_indent(&hang)).join("\n")
+}
+
+/// Spaces before each column's cells, and the width of the cells.
+type Layout = Vec<(usize, usize)>;
+
+/// Least width in which the last column's words are wrapped.
+const NARROWEST: usize = 18;
+
+impl Page {
+    /// Writes a table with its gaps, or without them. If even that is too wide, writes several tables, or row by row.
+    fn table(&mut self, table: &Table) -> fmt::Result {
+        let Some(last) = table.columns.len().checked_sub(1) else { return Ok(()) };
+        let heads: Vec<String> = table.columns.iter().map(|column| text(&column.head)).collect();
+        let rows: Vec<Vec<String>> = table.rows.iter().map(|row| row.cells.iter().map(text).collect()).collect();
+        let widest = |column: usize| {
+            let cells = rows.iter().filter_map(|row| row.get(column)).chain([&heads[column]]);
+            cells.flat_map(|cell| cell.split('\n')).map(display_width).max().unwrap_or(0)
+        };
+        let natural: Vec<usize> = (0..=last).map(widest).collect();
+        let wide: Layout = table
+            .columns
+            .iter()
+            .zip(&natural)
+            .map(|(column, widest)| (column.gap, (*widest).max(column.least)))
+            .collect();
+        let close: Layout = natural.iter().map(|widest| (2, *widest)).collect();
+        let takes = |layout: &[(usize, usize)]| layout.iter().map(|(gap, width)| gap + width).sum::<usize>();
+        // Words may be wrapped, numbers not.
+        let folded = if table.columns[last].left { natural[last].min(NARROWEST) } else { natural[last] };
+        let choices = [(&wide, natural[last]), (&close, natural[last]), (&wide, folded), (&close, folded)];
+        let fits = |(layout, room): &(&Layout, usize)| takes(&layout[..last]) + layout[last].0 + room <= self.width;
+        let Some(kept) = table.repeated else {
+            return match choices.iter().find(|choice| fits(choice)) {
+                Some((layout, _)) => self.side_by_side(table, layout, &heads, &rows),
+                None => self.stacked(&heads, &rows),
+            };
+        };
+        let between = 1..(last + 1).saturating_sub(kept).max(1);
+        let each = wide[between.clone()].iter().map(|(gap, width)| gap + width).max().unwrap_or(1);
+        let room = self.width.saturating_sub(takes(&wide[..1]) + takes(&wide[between.end..]));
+        // As few tables as possible, with columns evenly divided.
+        let tables = between.len().div_ceil((room / each).max(1)).max(1);
+        let columns: Vec<usize> = between.clone().collect();
+        for (index, some) in columns.chunks(columns.len().div_ceil(tables).max(1)).enumerate() {
+            if index > 0 {
+                writeln!(self)?;
+            }
+            let shown: Vec<usize> = [0].into_iter().chain(some.iter().copied()).chain(between.end..=last).collect();
+            fn only<T: Clone>(all: &[T], shown: &[usize]) -> Vec<T> {
+                shown.iter().filter_map(|column| all.get(*column).cloned()).collect()
+            }
+            let rows: Vec<Vec<String>> = rows.iter().map(|row| only(row, &shown)).collect();
+            let part = Table { columns: only(&table.columns, &shown), ..Table::new(&table.label, []) };
+            self.side_by_side(&part, &only(&wide, &shown), &only(&heads, &shown), &rows)?;
+        }
+        Ok(())
+    }
+
+    fn side_by_side(
+        &mut self,
+        table: &Table,
+        layout: &[(usize, usize)],
+        heads: &[String],
+        rows: &[Vec<String>],
+    ) -> fmt::Result {
+        let last = layout.len() - 1;
+        // Heads of several lines are aligned at the bottom.
+        let depth = heads.iter().map(|head| head.split('\n').count()).max().unwrap_or(1);
+        let head_line = |line: usize| {
+            let part = |head: &String| {
+                let above = depth - head.split('\n').count();
+                line.checked_sub(above).and_then(|line| head.split('\n').nth(line)).unwrap_or("").to_owned()
+            };
+            heads.iter().map(part).collect::<Vec<String>>()
+        };
+        let heads = (0..depth).map(head_line).filter(|head| head.iter().any(|cell| !cell.is_empty()));
+        for row in heads.chain(rows.iter().cloned()) {
+            let mut line = String::new();
+            for (index, cell) in row.iter().enumerate() {
+                let (gap, width) = layout[index];
+                let space = width.saturating_sub(display_width(cell));
+                let (before, behind) = if table.columns[index].left { (gap, space) } else { (gap + space, 0) };
+                line.push_str(&" ".repeat(before));
+                if index == last && table.columns[index].left {
+                    let hang = display_width(&line);
+                    let hanging = format!("\n{}", " ".repeat(hang));
+                    line.push_str(&lines(cell, self.width.saturating_sub(hang).max(1)).join(&hanging));
+                } else {
+                    line.push_str(cell);
+                    line.push_str(&" ".repeat(behind));
+                }
+            }
+            // Spaces at the end of a line are left out.
+            writeln!(self, "{}", line.trim_end_matches(' '))?;
+        }
+        Ok(())
+    }
+
+    fn stacked(&mut self, heads: &[String], rows: &[Vec<String>]) -> fmt::Result {
+        let longest = heads.iter().map(|head| display_width(head)).max().unwrap_or(0);
+        for (number, row) in rows.iter().enumerate() {
+            if number > 0 {
+                writeln!(self)?;
+            }
+            for (head, cell) in heads.iter().zip(row).filter(|(_, cell)| !cell.is_empty()) {
+                match head.as_str() {
+                    // The number of a row is its head.
+                    "" => writeln!(self, "  {cell}")?,
+                    head => writeln!(self, "  {head:<longest$}  {cell}")?,
+                }
+            }
+        }
+        Ok(())
+    }
+}

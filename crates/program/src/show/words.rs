@@ -1,0 +1,531 @@
+//! Enums as words: the one name of each value on a page.
+//!
+//! In JSON and in tables, a value has the name that it serializes as.
+
+use std::borrow::Borrow;
+
+use crate::show::block::{Symbol, TextMark, Words, words};
+use crate::show::digits::Digits;
+use corner_impact::agreement::Quantity;
+use corner_impact::border_collision::conditions::Decides;
+use corner_impact::border_collision::danger::{Danger, DangerKind, Divergence, LocalAttractor, Returns};
+use corner_impact::border_collision::feigin::{Scenario, Speeds};
+use corner_impact::border_collision::long_run::{LocalChaos, LocalLongRun};
+use corner_impact::border_collision::validity::{ComparedMotion, Ends};
+use corner_impact::cam::Side;
+use corner_impact::corner::map::RouteName;
+use corner_impact::covering::UnprovedFlight;
+use corner_impact::covering::prove::Relation;
+use corner_impact::known::Evidence;
+use corner_impact::measured::Measured;
+use corner_impact::model::{Reading, Separator};
+use corner_impact::orbit::Stability;
+use corner_impact::orbit::branch::{self, Bifurcation, Doubt, FirstTouch, GrazeClass};
+use corner_impact::orbit::long_run::{Kind, LongRun};
+use corner_impact::published::Verdict;
+use corner_impact::study::attractors::{Cause, Transition};
+use corner_impact::study::speeds::AttractorRow;
+use corner_impact::study::survey::Wandering;
+
+/// Name of a route.
+pub(crate) fn route(name: RouteName) -> String {
+    spoken(&name.to_string())
+}
+
+/// A quantity as the paper writes it; on a terminal, in plain text.
+pub(crate) fn quantity(quantity: Quantity) -> Words {
+    let (name, side) = quantity.parts();
+    let (letter, above) = match quantity {
+        Quantity::Period => ("T", "∗"),
+        Quantity::State => ("x", "∗"),
+        Quantity::Speed => ("ω", "∗"),
+        Quantity::Eigenvalues(_) => ("λ", ""),
+        Quantity::AHat(_) => ("A\u{302}", ""),
+        Quantity::BHat(_) => ("B\u{302}", ""),
+        Quantity::BTilde => ("B\u{303}", ""),
+        Quantity::ABar(_) => ("A\u{304}", ""),
+        Quantity::BBar => ("B\u{304}", ""),
+        Quantity::CBar => ("C\u{304}", ""),
+        _ => (name, ""),
+    };
+    symbol(&quantity.to_string(), letter, "", side.map_or(above, sign)).into()
+}
+
+/// Sign of a side in the paper.
+pub(crate) fn sign(side: Side) -> &'static str {
+    match side {
+        Side::Minus => "\u{2212}",
+        Side::Plus => "+",
+    }
+}
+
+/// Plural of an event's name.
+pub(crate) fn events(kind: branch::SpecialKind) -> &'static str {
+    kind.bifurcation().map_or("points", |event| match event {
+        Bifurcation::Corner => "corner impacts",
+        Bifurcation::Fold => "folds",
+        Bifurcation::Flip => "flips",
+        Bifurcation::Graze => "grazes",
+        Bifurcation::Detachment => "detachments",
+        Bifurcation::Resting => "onsets of resting",
+    })
+}
+
+/// Description of the motions beyond the graze of an orbit without impacts, to follow the name of the graze.
+pub(crate) fn first_touch(touch: FirstTouch) -> String {
+    let beyond = match (touch.class, touch.back, touch.doubt) {
+        (GrazeClass::Jump, Some((passages, depth)), _) => {
+            let (passages, depth) = (many(passages, "passage"), Digits::Significant(2).text(depth));
+            format!(
+                "nothing nearby attracts, since {passages} of the cam's top later an impact is followed by a harder one,                  up to a depth of some {depth} m"
+            )
+        }
+        (GrazeClass::PeriodAdding, ..) => {
+            "stable orbits of one impact in ever more revolutions towards the graze, with ranges that overlap".into()
+        }
+        (GrazeClass::PeriodAddingChaos, ..) => {
+            "stable orbits of one impact in ever more revolutions towards the graze, with chaos between them".into()
+        }
+        (GrazeClass::Chaos, ..) => "chaos of impacts that shrink towards the graze".into(),
+        (_, _, doubt) => doubt.map_or("", doubted).to_owned(),
+    };
+    format!(" {}; class {}: {beyond}", touch_side(touch.larger), touch.class)
+}
+
+/// Side of the parameter on which the cam reaches a follower at rest.
+pub(crate) fn touch_side(larger: bool) -> &'static str {
+    if larger { "at larger values" } else { "at smaller values" }
+}
+
+/// Reason why the class of a graze is undecided.
+fn doubted(doubt: Doubt) -> &'static str {
+    match doubt {
+        Doubt::Sharp => "the cam's velocity jumps at its top",
+        Doubt::Flat => "the cam does not fall away from its top as a parabola does",
+        Doubt::Places => "the cam is as high at several places that are not alike",
+        Doubt::Unheld => "nothing returns the follower to where it was",
+        Doubt::Resonance => "the follower's oscillation is in resonance with the cam",
+        Doubt::Boundary => "the eigenvalue is at the boundary of two classes",
+    }
+}
+
+/// The names of several events, as alternatives.
+pub(crate) fn any_of(events: &[Bifurcation]) -> String {
+    let word = |event: &Bifurcation| match event {
+        Bifurcation::Corner => "corner impact",
+        Bifurcation::Fold => "fold",
+        Bifurcation::Flip => "flip",
+        Bifurcation::Graze => "graze",
+        Bifurcation::Detachment => "detachment",
+        Bifurcation::Resting => "onset of resting",
+    };
+    events.iter().map(word).collect::<Vec<_>>().join(" or ")
+}
+
+/// Number of decimals that two values share.
+pub(crate) fn shared(decimals: Option<u32>) -> String {
+    match decimals {
+        Some(1) => "1 decimal".into(),
+        Some(decimals) => format!("{decimals} decimals"),
+        None => "all digits".into(),
+    }
+}
+
+/// A name with spaces for its hyphens and underscores.
+pub(crate) fn spoken(name: &str) -> String {
+    name.replace(['_', '-'], " ")
+}
+
+/// Name of a verdict in the ledger.
+pub(crate) fn verdict_word(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Holds => "holds",
+        Verdict::Definition => "definition",
+        Verdict::InPart => "in part",
+        Verdict::Misprint => "misprint",
+        Verdict::Refuted => "refuted",
+        Verdict::Open => "open",
+    }
+}
+
+/// Counts of the statements with an error of their own, and of those that are wrong because of an earlier error.
+pub(crate) fn slips((slips, consequences): (usize, usize)) -> String {
+    let counted = |count: usize, word: &str| format!("{count} {word}{}", if count == 1 { "" } else { "s" });
+    format!("{} and {}", counted(slips, "slip"), counted(consequences, "consequence"))
+}
+
+/// Verdict of the ledger, with its mark.
+pub(crate) fn verdict(verdict: Verdict) -> Words {
+    (mark(verdict), verdict_word(verdict)).into()
+}
+
+/// Mark of a verdict in the ledger.
+pub(crate) fn mark(verdict: Verdict) -> TextMark {
+    match verdict {
+        Verdict::Holds | Verdict::Definition => TextMark::Good,
+        Verdict::Misprint | Verdict::InPart => TextMark::Doubtful,
+        Verdict::Refuted => TextMark::Bad,
+        Verdict::Open => TextMark::Open,
+    }
+}
+
+/// Effect of a border collision, depending on whether a fixed point of either side is stable and on the danger.
+pub(crate) fn meaning(scenario: Scenario, has_stable: bool, danger: Option<&Danger>) -> &'static str {
+    match scenario {
+        Scenario::Persistence if danger.is_some_and(|danger| danger.kind == DangerKind::Dangerous) => {
+            "the fixed point crosses from one side to the other, but its basin shrinks to nothing at omega*"
+        }
+        Scenario::Persistence if danger.is_some() => {
+            "the fixed point crosses from one side to the other, and other attractors shrink to it at omega*"
+        }
+        Scenario::Persistence => "the fixed point crosses from one side to the other",
+        Scenario::NonsmoothFold if has_stable => {
+            "the two fixed points meet at omega* = 60/T* rpm and vanish: a motion that follows one of them has nowhere to go"
+        }
+        Scenario::NonsmoothFold => {
+            "the two fixed points meet at omega* = 60/T* rpm and vanish. Both are unstable: what ends there for a follower is not \
+             one of them but what else the local map keeps beside them"
+        }
+        Scenario::NonsmoothFlip => {
+            "the fixed point crosses from one side to the other, and an orbit of period two is born"
+        }
+    }
+}
+
+/// A scenario with the kind of danger, if there is any.
+pub(crate) fn verdict_with(scenario: &str, danger: Option<&Danger>) -> String {
+    match danger.map(|danger| danger.kind) {
+        Some(DangerKind::Dangerous) => format!("{scenario}, dangerous"),
+        Some(DangerKind::MultipleAttractors) => format!("{scenario}, multiple attractors"),
+        None => scenario.into(),
+    }
+}
+
+/// Describes a danger in a sentence.
+pub(crate) fn danger(danger: &Danger) -> Words {
+    match &danger.divergence {
+        Some(Divergence { share, known, follows }) => {
+            let which = if *share == 1.0 && *known != Evidence::Sampled {
+                "every motion of the local map diverges there".into()
+            } else {
+                let least = if *known == Evidence::Sampled { "" } else { "at least " };
+                let percent = (1000.0 * share).floor() / 10.0;
+                format!("motions of the local map diverge there, from {least}{percent} % of the directions")
+            };
+            let follows = follows.as_ref().map_or_else(String::new, |(word, multiplier)| {
+                format!(", along the sequence {word} by a factor of {multiplier:.6} per period")
+            });
+            format!("dangerous: the basin shrinks to nothing at omega*, since {which} ({known}){follows}").into()
+        }
+        None => {
+            let at = |speeds| {
+                let names: Vec<String> = danger.at(speeds).map(local_attractor).collect();
+                (names.len() > 1).then(|| format!("{}: {}", self::speeds(Some(speeds)), names.join(", ")))
+            };
+            let sides: Vec<String> = [Speeds::Faster, Speeds::Slower].into_iter().filter_map(at).collect();
+            let known = danger.known;
+            format!(
+                "several attractors meet at omega* ({known}), {}; near omega* the smallest disturbance decides between them",
+                sides.join("; ")
+            )
+            .into()
+        }
+    }
+}
+
+/// An attractor of the local map.
+fn local_attractor(attractor: &LocalAttractor) -> String {
+    attractor.word().map_or_else(|| attractor.end.name().into(), ToString::to_string)
+}
+
+/// Disturbances of the attractors of a local map that return, a line for each attractor.
+pub(crate) fn returns(danger: &Danger) -> Vec<Words> {
+    let line = |attractor: &LocalAttractor| {
+        let Returns { position, velocity, any } = attractor.returns?;
+        let size = |size: Option<f64>, unit: &str| match size {
+            Some(size) => words![(size, Digits::Power(3)), " ", unit],
+            None => "any size".into(),
+        };
+        let name = format!("{} {}", speeds(Some(attractor.speeds)), local_attractor(attractor));
+        Some(Words::prose(
+            "{} regains a disturbance of its position of {}, of its velocity of {}, of both of {}, for each rpm from omega* (sampled)",
+            [name.into(), size(position, "m"), size(velocity, "m/s"), size(any, "m")],
+        ))
+    };
+    danger.attractors.iter().filter_map(line).collect()
+}
+
+/// Condition on a strip.
+pub(crate) fn relation(relation: Relation) -> &'static str {
+    match relation {
+        Relation::Apart => "that N is a parallelogram above the cam, and its strips are in it and apart,",
+        Relation::Flight => "that each flight ends with an impact that is the first",
+        Relation::Edges => "that its edges are carried beyond N",
+        Relation::Height => "that nothing of it is carried above or below N",
+        Relation::Cones => "that cones are kept",
+        Relation::Losses => "that impacts or flights have losses",
+    }
+}
+
+/// Reason why nothing is proved about a flight.
+pub(crate) fn unproved(why: UnprovedFlight) -> &'static str {
+    match why {
+        UnprovedFlight::NoImpact => "the follower may stay on the cam, or not come back to it for long",
+        UnprovedFlight::NotTransversal => "the next impact may be a graze",
+        UnprovedFlight::NotFirst => "the follower may meet the cam before",
+    }
+}
+
+/// List of numbers.
+pub(crate) fn listed(numbers: &[u64]) -> String {
+    let numbers: Vec<String> = numbers.iter().map(u64::to_string).collect();
+    match numbers.split_last() {
+        Some((last, before)) if !before.is_empty() => format!("{} and {last}", before.join(", ")),
+        _ => numbers.concat(),
+    }
+}
+
+pub(crate) fn stability(stability: Stability) -> &'static str {
+    match stability {
+        Stability::Stable => "stable",
+        Stability::Unstable => "unstable",
+        Stability::Neutral => "neutral",
+    }
+}
+
+/// Speeds below or above that of the corner impact, or that speed itself.
+pub(crate) fn speeds(speeds: Option<Speeds>) -> &'static str {
+    match speeds {
+        Some(Speeds::Faster) => "faster than omega*",
+        Some(Speeds::Slower) => "slower than omega*",
+        None => "at omega*",
+    }
+}
+
+/// Position of the impact on a side of the corner.
+pub(crate) fn side(side: Side) -> &'static str {
+    match side {
+        Side::Minus => "impact before the corner",
+        Side::Plus => "impact after the corner",
+    }
+}
+
+/// Statement that depends on a condition.
+pub(crate) fn decides(decides: Decides) -> &'static str {
+    match decides {
+        Decides::Classification => "classification",
+        Decides::Stability => "stability",
+        Decides::NormalForm => "normal form",
+        Decides::RobustChaos => "theorem of robust chaos",
+    }
+}
+
+/// Quantity that a prediction of the local map is about.
+pub(crate) fn compared(compared: ComparedMotion) -> &'static str {
+    match compared {
+        ComparedMotion::OneRevolution => "a turn from x*",
+        ComparedMotion::FixedPointMinus => "fixed point minus",
+        ComparedMotion::FixedPointPlus => "fixed point plus",
+    }
+}
+
+/// Reason for the end of a prediction's range, to follow the position of the end.
+pub(crate) fn ends(ends: Ends) -> &'static str {
+    match ends {
+        Ends::Differs => "",
+        Ends::OtherMotion => ", where the real motion ends",
+        Ends::Nothing => ", as far as was tried",
+    }
+}
+
+/// Ending of the motions of the local map.
+pub(crate) fn end(end: &LocalLongRun) -> Words {
+    let growth = |what: &str, value, error| {
+        let four = Digits::Fixed(4);
+        words![what, ", Lyapunov exponent ", (value, four), " +- ", (error, four), " a turn"]
+    };
+    match end {
+        LocalLongRun::Periodic(orbit) if end.fixed_on().is_some() => {
+            format!("on the fixed point {}", orbit.word).into()
+        }
+        LocalLongRun::Periodic(orbit) => format!("on the orbit {}", orbit.word).into(),
+        LocalLongRun::Chaotic(LocalChaos { exponent, .. }) => growth("chaotic", exponent.value, exponent.error),
+        LocalLongRun::Undecided(exponent) => growth("bounded so far, undecided", exponent.value, exponent.error),
+        LocalLongRun::Corner => "to the corner impact".into(),
+        LocalLongRun::Escapes(_) => format!("without bound ({})", end.basis()).into(),
+    }
+}
+
+/// Long-term motion of the follower.
+pub(crate) fn kind(kind: Kind) -> &'static str {
+    match kind {
+        Kind::Stays => "stays on the cam",
+        Kind::Periodic => "periodic",
+        Kind::Resting => "rests on the cam",
+        Kind::Chaotic => "chaotic",
+        Kind::Undecided => "undecided",
+    }
+}
+
+/// Kind of motion as a predicate: `is chaotic`, `rests on the cam`.
+pub(crate) fn is_of(kind: Kind) -> String {
+    let is = if matches!(kind, Kind::Stays | Kind::Resting) { "" } else { "is " };
+    format!("{is}{}", self::kind(kind))
+}
+
+pub(crate) fn many(count: u64, what: &str) -> String {
+    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
+}
+
+/// A motion with its period in revolutions of the cam and in impacts.
+pub(crate) fn motion(kind: Kind, revolutions: Option<u64>, impacts: Option<u64>) -> String {
+    let turns = |n: u64| if n == 1 { "a revolution".to_owned() } else { many(n, "revolution") };
+    match (kind, revolutions, impacts) {
+        (Kind::Periodic, Some(_), Some(0)) => "never meets the cam".into(),
+        (Kind::Periodic, Some(n), Some(impacts)) => format!("{} in {}", many(impacts, "impact"), turns(n)),
+        (Kind::Resting, Some(1), _) => "rests in each revolution".into(),
+        (Kind::Resting, Some(n), _) => format!("rests, period {}", many(n, "revolution")),
+        (Kind::Resting, None, _) => "rests now and then".into(),
+        _ => self::kind(kind).into(),
+    }
+}
+
+/// Ending of starts, for a legend.
+pub(crate) fn ending(ending: &LongRun) -> String {
+    let period = ending.period();
+    motion(ending.kind(), period.map(|(revolutions, _)| revolutions), period.map(|(_, impacts)| impacts))
+}
+
+/// Name of a long-run motion with its evidence: the number of revolutions for which chaotic or undecided runs were followed.
+pub(crate) fn followed(ending: &LongRun, revolutions: u64) -> String {
+    let words = self::ending(ending);
+    match ending {
+        // A chaotic run may rest on its way, even at its start.
+        LongRun::Chaotic(recorded) if recorded.rested => {
+            format!("{words} (no orbit and no rest that repeats in {revolutions} revolutions)")
+        }
+        LongRun::Chaotic(_) => format!("{words} (no rest in {revolutions} revolutions)"),
+        LongRun::Undecided(_) => format!("{words} after {revolutions} revolutions"),
+        LongRun::Sticking(orbit) if orbit.is_long() => {
+            format!("{words} (transient chaos: once in {:.0} revolutions)", orbit.between_rests())
+        }
+        _ => words,
+    }
+}
+
+/// Number of revolutions for which runs were followed, for the title of a figure.
+pub(crate) fn followed_for(each: impl Iterator<Item = u64>) -> String {
+    let range = each.fold(None, |range: Option<[u64; 2]>, one| {
+        Some(range.map_or([one; 2], |[low, high]| [low.min(one), high.max(one)]))
+    });
+    match range {
+        Some([one, other]) if one == other => format!(", seen for {}", many(one, "revolution")),
+        Some([low, high]) => format!(", seen for {low} to {high} revolutions"),
+        None => String::new(),
+    }
+}
+
+/// Sentence on transient chaos, if some of the wandering runs left it.
+pub(crate) fn transient_chaos(wandering: &Wandering) -> Option<String> {
+    let Wandering { revolutions, left, .. } = *wandering;
+    (left > 0).then(|| {
+        format!("transient chaos: {left} of the runs that wandered left it for good in {revolutions} revolutions, so that all do sooner or later")
+    })
+}
+
+/// Description of an attractor over a range.
+pub(crate) fn attractor(row: &AttractorRow) -> String {
+    motion(row.kind, row.revolutions, row.impacts)
+}
+
+/// Event that begins or ends an attractor.
+pub(crate) fn transition(transition: &Transition) -> String {
+    match transition.cause {
+        Cause::Fold => "fold".into(),
+        Cause::SymmetryBreaking => "symmetry breaking".into(),
+        Cause::Flip => "flip".into(),
+        Cause::Graze { impacts: [before, after] } => format!("graze, {before} and {after} impacts"),
+        Cause::CornerImpact { cam_angle, .. } => format!("corner impact at {:.2} deg", cam_angle.to_degrees()),
+        Cause::Detachment => "detachment".into(),
+        Cause::Runs => "by runs".into(),
+    }
+}
+
+/// A letter with an index below and a sign above, for a browser, and its form on a terminal.
+pub(crate) fn symbol(plain: &str, letter: &'static str, below: &str, above: &'static str) -> Symbol {
+    Symbol { plain: plain.into(), letter, below: below.into(), above }
+}
+
+/// An entry of a map, such as `A12`, with its indices and its side.
+pub(crate) fn entry(name: &str, side: Side) -> Symbol {
+    let letter = if name.starts_with('A') { "A" } else { "B" };
+    symbol(name, letter, name.get(1..).unwrap_or_default(), sign(side))
+}
+
+/// Text of a range, or of one number if both ends look alike.
+pub(crate) fn range(ends: [f64; 2], digits: Digits) -> String {
+    match ends.map(|end| digits.text(end)) {
+        [from, to] if from == to => from,
+        [from, to] => format!("{from} to {to}"),
+    }
+}
+
+/// States that the noise of the rows of a table is unknown, and why.
+pub(crate) fn noise_unknown(why: &str) -> String {
+    format!(
+        "How far the rows are from a smooth motion is unknown, since none could be fitted to them (it {why}). The cam is the spline through \
+         the rows; what is said of it has no ± of the table."
+    )
+}
+
+/// Accuracy of a table of lifts: its rounding, or the spread of its lifts.
+pub(crate) fn accuracy(measured: &Measured) -> String {
+    let reading = &measured.reading;
+    match reading.step.filter(|_| measured.is_rounded()) {
+        Some(step) => format!("lift rounded to {step} {}", reading.unit),
+        None => known_to(reading, measured.noise_m),
+    }
+}
+
+/// Accuracy of a table that is not rounded, from the spread of its lifts, m. The cause is measurement, or rows too far apart for the cam's
+/// motion.
+pub(crate) fn known_to(reading: &Reading, noise: f64) -> String {
+    format!("lift known to {} {}", Digits::Aligned(2).text(reading.in_model.told(noise)), reading.unit)
+}
+
+/// Summary of how the rows of a table were interpreted.
+pub(crate) fn reading(reading: &Reading) -> String {
+    let mut words = format!("{} rows, angles in {} and lifts in {}", reading.rows, reading.angle_unit, reading.unit);
+    if let Some(layout) = &reading.layout {
+        words.push_str(match layout.separator {
+            Separator::Comma => ", columns parted by commas",
+            Separator::Semicolon => ", columns parted by semicolons",
+            Separator::Tab => ", columns parted by tabs",
+            Separator::Blanks => ", columns parted by blanks",
+        });
+        if layout.decimal_comma {
+            words.push_str(", with decimal commas");
+        }
+        match &layout.header {
+            Some(header) => words.push_str(&format!("; the header is \"{header}\"")),
+            None => words.push_str("; there is no header"),
+        }
+        match layout.comments {
+            0 => {}
+            1 => words.push_str("; 1 comment is left out"),
+            count => words.push_str(&format!("; {count} comments are left out")),
+        }
+    }
+    if reading.first_deg != 0.0 {
+        words.push_str(&format!("; they begin at {} deg, of whatever turn", Digits::UpTo(6).text(reading.first_deg)));
+    }
+    if reading.repeats_first {
+        words.push_str("; the last row repeats the first");
+    }
+    words
+}
+
+/// Hypotheses of the proofs on a page, in one sentence; `None` if there are none.
+pub fn hypotheses(all: &[impl Borrow<str>]) -> Option<String> {
+    (!all.is_empty()).then(|| format!("Taken for granted: {}.", all.join("; ")))
+}
