@@ -10,8 +10,7 @@ use crate::simulate::{Machine, Motion, SimulateError};
 use crate::study::attractors::AttractorsAtValue;
 use crate::study::design::loads::Loads;
 use crate::study::survey::{
-    Beginning, GridResults, Places, Point, RecordBlock, Sample, Section, Spacing, Start, Survey, Sweep, SweepError,
-    SweepStart, SweepTally,
+    Beginning, GridResults, Point, RecordBlock, Sample, Start, Survey, Sweep, SweepError, SweepStart, SweepTally,
 };
 
 /// Returns a motion on each attractor of `machine`, as found without other machines.

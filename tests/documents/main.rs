@@ -155,7 +155,7 @@ fn inline_code() -> Vec<(String, String)> {
         let place = |line: usize| format!("{}:{line}", page.path.display());
         found.extend(page.inline_code().map(|(line, code)| (place(line), code.to_owned())));
     }
-    for file in files_of(&root().join("src"), "rs") {
+    for file in ["src", "crates"].iter().flat_map(|folder| files_of(&root().join(folder), "rs")) {
         let text = std::fs::read_to_string(&file).unwrap();
         for (index, line) in text.lines().enumerate().filter(|(_, line)| line.trim_start().starts_with("//")) {
             let odd = line.split('`').skip(1).step_by(2).map(String::from);
@@ -202,7 +202,13 @@ fn commands_and_options_that_are_named_exist() {
             Some("cargo") => {
                 let example = code.split_once("--example ").and_then(|(_, rest)| rest.split(' ').next());
                 let test = code.split_once("--test ").and_then(|(_, rest)| rest.split(' ').next());
-                let examples = example.map(|name| root().join(format!("examples/{name}.rs")));
+                let places = |name: &str| {
+                    ["examples", "crates/program/examples"].map(|folder| root().join(format!("{folder}/{name}.rs")))
+                };
+                let examples = example.map(|name| {
+                    let [own, programs] = places(name);
+                    if programs.is_file() { programs } else { own }
+                });
                 let tests = test.map(|name| root().join(format!("tests/{name}.rs")));
                 for file in examples.into_iter().chain(tests) {
                     assert!(file.is_file(), "{place}: `{code}`: no {}", file.display());
@@ -216,8 +222,8 @@ fn commands_and_options_that_are_named_exist() {
 }
 
 /// Folders of the project whose files are named by their path.
-const FOLDERS: [&str; 9] =
-    ["src/", "tests/", "docs/", "models/", "derivations/", "examples/", "golden/", "benches/", "python/"];
+const FOLDERS: [&str; 10] =
+    ["src/", "crates/", "tests/", "docs/", "models/", "derivations/", "examples/", "golden/", "benches/", "python/"];
 
 #[test]
 fn files_that_are_named_exist() {

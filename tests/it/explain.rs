@@ -121,7 +121,7 @@ fn every_label_is_reached() {
 fn every_column_of_every_table_is_reached() {
     let (links, model) = (Links::read().unwrap(), Model::built_in().unwrap());
     let findings = Findings::new(&model, None).unwrap();
-    let code = file("src/show/csv.rs");
+    let code = file("crates/program/src/show/csv.rs");
     let is_word =
         |word: &str| !word.is_empty() && word.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_');
     let mut reached = BTreeSet::new();

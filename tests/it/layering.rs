@@ -1,7 +1,15 @@
-//! Does data move one way? No stage may use a stage that `lib.rs` lists below it.
+//! Does data move one way? No stage may use a stage that `lib.rs` of its package lists below it.
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::path::{Path, PathBuf};
+
+/// The packages: the library, the plotting engine, and the command.
+const PACKAGES: [&str; 3] = ["src", "crates/plot/src", "crates/program/src"];
+
+/// The source folder of each package.
+fn packages() -> impl Iterator<Item = PathBuf> {
+    PACKAGES.iter().map(|package| Path::new(crate::common::ROOT).join(package))
+}
 
 pub fn rust_files(folder: &Path) -> Vec<PathBuf> {
     let mut files = Vec::new();
@@ -33,23 +41,42 @@ fn uses(text: &str) -> Vec<(usize, String)> {
 
 #[test]
 fn no_stage_uses_one_below_it() {
-    let root = Path::new(crate::common::ROOT).join("src");
-    let stages = stages(&root);
-    assert!(stages.len() > 10, "{stages:?}");
     let mut checked = 0;
-    for file in rust_files(&root) {
-        let inside = file.strip_prefix(&root).unwrap().with_extension("");
-        let stage = inside.components().next().unwrap().as_os_str().to_string_lossy().into_owned();
-        let Some(here) = stages.iter().position(|name| *name == stage) else { continue };
-        for (line, used) in uses(&std::fs::read_to_string(&file).unwrap()) {
-            let there = stages.iter().position(|name| *name == used);
-            let there =
-                there.unwrap_or_else(|| panic!("{}:{line}: crate::{used} is no stage of lib.rs", file.display()));
-            assert!(there <= here, "{}:{line}: {stage} uses {used}, which comes after it", file.display());
-            checked += 1;
+    // Stages of the plotting engine are private, and files of its root belong together.
+    for root in [PACKAGES[0], PACKAGES[2]].map(|package| Path::new(crate::common::ROOT).join(package)) {
+        let stages = stages(&root);
+        assert!(stages.len() > 5, "{stages:?}");
+        for file in rust_files(&root) {
+            let inside = file.strip_prefix(&root).unwrap().with_extension("");
+            let stage = inside.components().next().unwrap().as_os_str().to_string_lossy().into_owned();
+            let Some(here) = stages.iter().position(|name| *name == stage) else { continue };
+            for (line, used) in uses(&std::fs::read_to_string(&file).unwrap()) {
+                let there = stages.iter().position(|name| *name == used);
+                let there =
+                    there.unwrap_or_else(|| panic!("{}:{line}: crate::{used} is no stage of lib.rs", file.display()));
+                assert!(there <= here, "{}:{line}: {stage} uses {used}, which comes after it", file.display());
+                checked += 1;
+            }
         }
     }
     assert!(checked > 40, "{checked} uses seen");
+}
+
+/// The plotting engine knows no mechanics, and the library nothing of what people look at.
+#[test]
+fn no_package_asks_for_one_above_it() {
+    let manifest = |path: &str| {
+        let text = std::fs::read_to_string(Path::new(crate::common::ROOT).join(path)).unwrap();
+        let manifest: toml::Table = toml::from_str(&text).unwrap();
+        manifest["dependencies"].as_table().unwrap().keys().cloned().collect::<Vec<_>>()
+    };
+    let own = |path: &str| manifest(path).into_iter().filter(|name| name.starts_with("corner-impact")).count();
+    assert_eq!(own("Cargo.toml"), 0);
+    assert_eq!(own("crates/plot/Cargo.toml"), 0);
+    assert_eq!(own("crates/program/Cargo.toml"), 2);
+    for terminal in ["clap", "indicatif", "maud", "miette", "resvg", "signal-hook", "terminal_size"] {
+        assert!(!manifest("Cargo.toml").iter().any(|name| name == terminal), "the library asks for {terminal}");
+    }
 }
 
 /// The modules of `src` by their paths from the crate's root, each with its file and its code without comments and tests.
@@ -173,10 +200,19 @@ fn multiplied_out(tree: &str) -> Vec<String> {
 /// `mod.rs` only hands on belongs to the file that it comes from.
 #[test]
 fn no_two_files_use_each_other() {
-    let house = House::read(&Path::new(crate::common::ROOT).join("src"));
-    let uses = house.uses();
-    assert!(uses.values().map(BTreeSet::len).sum::<usize>() > 500, "too few uses seen");
-    // The shortest way from each file back to itself, once for the files on it.
+    let houses: Vec<House> = packages().map(|package| House::read(&package)).collect();
+    let mut seen = 0;
+    for house in &houses {
+        let uses = house.uses();
+        seen += uses.values().map(BTreeSet::len).sum::<usize>();
+        let circles = circles(&uses);
+        assert!(circles.is_empty(), "circles:\n{}", circles.join("\n"));
+    }
+    assert!(seen > 500, "too few uses seen");
+}
+
+/// The shortest way from each file back to itself, once for the files on it.
+fn circles(uses: &BTreeMap<&Vec<String>, BTreeSet<Vec<String>>>) -> Vec<String> {
     let mut circles = BTreeMap::new();
     for start in uses.keys() {
         let (mut ways, mut seen) = (VecDeque::from([vec![*start]]), BTreeSet::new());
@@ -194,7 +230,7 @@ fn no_two_files_use_each_other() {
             }
         }
     }
-    assert!(circles.is_empty(), "circles:\n{}", circles.into_values().collect::<Vec<_>>().join("\n"));
+    circles.into_values().collect()
 }
 
 /// Routes to the map share the model, the cam and the place, and nothing else with one another.
@@ -238,8 +274,9 @@ fn prediction_and_measurement_share_nothing() {
 /// One event loop, one tolerance table: small numbers that decide something stand in the table.
 #[test]
 fn thresholds_stand_in_the_table() {
-    let root = Path::new(crate::common::ROOT).join("src");
-    for file in rust_files(&root) {
+    // What a plot can show apart is no threshold of the mathematics.
+    let roots = [PACKAGES[0], PACKAGES[2]].map(|package| Path::new(crate::common::ROOT).join(package));
+    for file in roots.iter().flat_map(|root| rust_files(root)) {
         if file.ends_with("tolerance.rs") {
             continue;
         }
@@ -289,7 +326,7 @@ fn mutants_are_looked_for_where_there_is_something() {
 #[test]
 fn no_public_type_name_occurs_twice() {
     let mut seen = BTreeMap::new();
-    for file in rust_files(&Path::new(crate::common::ROOT).join("src")) {
+    for file in packages().flat_map(|package| rust_files(&package)) {
         for line in std::fs::read_to_string(&file).unwrap().lines() {
             let words: Vec<&str> = line.trim_start().split(' ').take(3).collect();
             let ["pub", "struct" | "enum" | "type" | "trait" | "union", name] = words[..] else { continue };

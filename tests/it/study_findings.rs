@@ -23,6 +23,7 @@ use corner_impact::study::survey::{
     Axis, Beginning, Place, Placed, Places, Point, Sample, Section as Shows, Start, Survey, Sweep, Values,
 };
 use corner_impact::study::verify::{External, verify};
+use corner_impact_cli::figures::Shown;
 use serde_json::{Value, json};
 
 use crate::chart_store::START;

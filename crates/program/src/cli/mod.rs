@@ -46,7 +46,7 @@ pub use session::Terminal;
 pub use signals::watch as clear_on_signals;
 
 use corner_impact::cancel;
-use corner_impact::file::{self, FileError, Output};
+use corner_impact::file::{FileError, Output};
 use corner_impact::model::{ModelError, Units};
 use corner_impact::simulate::SimulateError;
 

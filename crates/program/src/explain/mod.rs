@@ -329,7 +329,10 @@ impl Links {
                 let unit = if it.unit.is_empty() { String::new() } else { format!(", in {}", it.unit) };
                 Explanation {
                     value: Some(it.value.into()),
-                    code: Some(Code { file: "src/report/quantities.rs".into(), function: "quantities".into() }),
+                    code: Some(Code {
+                        file: "crates/program/src/report/quantities.rs".into(),
+                        function: "quantities".into(),
+                    }),
                     ..plain(&format!("A number of the model: {}{unit}.", it.meaning), Evidence::Read)
                 }
             }
