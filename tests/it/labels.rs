@@ -1,8 +1,8 @@
 //! Does `grep` lead from an equation of the paper to the line that computes it, and from derivations/README.md to the code?
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use crate::layering::rust_files;
+use crate::layering::{packages, rust_files};
 
 /// The labels of the paper's equations.
 pub const LABELS: [&str; 26] = [
@@ -45,11 +45,15 @@ const NOT_TAKEN: [(&str, &str); 5] = [
 
 /// The code of the crate but for the ledger, which names every equation.
 fn code() -> Vec<(String, String)> {
-    let root = Path::new(crate::common::ROOT).join("src");
-    let files = rust_files(&root).into_iter().map(|file| {
-        let name = file.strip_prefix(&root).unwrap().to_str().unwrap().to_owned();
-        (name, std::fs::read_to_string(&file).unwrap())
-    });
+    let of_package = |root: PathBuf| {
+        let files = rust_files(&root);
+        let named = move |file: PathBuf| {
+            let name = file.strip_prefix(&root).unwrap().to_str().unwrap().to_owned();
+            (name, std::fs::read_to_string(&file).unwrap())
+        };
+        files.into_iter().map(named).collect::<Vec<_>>()
+    };
+    let files = packages().flat_map(of_package);
     files.filter(|(name, _)| !name.starts_with("paper/")).collect()
 }
 

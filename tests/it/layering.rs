@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 const PACKAGES: [&str; 3] = ["src", "crates/plot/src", "crates/program/src"];
 
 /// The source folder of each package.
-fn packages() -> impl Iterator<Item = PathBuf> {
+pub fn packages() -> impl Iterator<Item = PathBuf> {
     PACKAGES.iter().map(|package| Path::new(crate::common::ROOT).join(package))
 }
 
