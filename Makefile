@@ -7,7 +7,7 @@ CARGO ?= cargo
 RELEASE := --release --locked
 
 .DEFAULT_GOAL := help
-.PHONY: help verify report quick test properties python slurm-test check derive derive-check theorems claims pictures review mutants mutants-sample fuzz soak bench bench-each bench-peers clean
+.PHONY: help verify report quick test properties python slurm-test check derive derive-check theorems claims pictures review wasm mutants mutants-sample fuzz soak bench bench-each bench-peers clean
 
 # Python and its packages, once; again when the list of packages changes.
 PYTHON ?= python3
@@ -67,6 +67,9 @@ check: ## formatting, lints and documentation, warnings denied
 	$(CARGO) fmt --all --check
 	$(CARGO) clippy --workspace --all-targets $(RELEASE) -- -D warnings
 	RUSTDOCFLAGS="-D warnings" $(CARGO) doc --no-deps $(RELEASE)
+
+wasm: ## check that the library compiles for a browser's page (`rustup target add wasm32-unknown-unknown` has what that needs)
+	$(CARGO) check --locked --package corner-impact --lib --target wasm32-unknown-unknown
 
 derive: $(VENV) ## redo the derivations by computer algebra and write golden/derived
 	.venv/bin/python derivations/derive.py

@@ -4,6 +4,7 @@
 //! business. No result depends on the observer.
 
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::{Duration, Instant};
 
 /// Observer of a computation's progress; called from any thread.
 pub trait Watch: Sync {
@@ -46,4 +47,18 @@ pub struct Unwatched;
 
 impl Watch for Unwatched {
     fn at(&self, _: &str, _: u64, _: u64) {}
+}
+
+/// A clock that a computation starts for the seconds that it tells of itself. A browser's page has none for it: its seconds are all 0.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Clock(Option<Instant>);
+
+impl Clock {
+    pub(crate) fn start() -> Self {
+        Self(cfg!(not(target_family = "wasm")).then(Instant::now))
+    }
+
+    pub(crate) fn elapsed(&self) -> Duration {
+        self.0.map_or(Duration::ZERO, |begun| begun.elapsed())
+    }
 }

@@ -9,7 +9,9 @@
 #[cfg(target_os = "linux")]
 use std::fs::File;
 use std::io::{self, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
+#[cfg(target_os = "linux")]
+use std::path::PathBuf;
 
 use tempfile::{Builder, NamedTempFile};
 
@@ -42,13 +44,15 @@ impl Unfinished {
     }
 
     fn hidden(folder: &Path) -> io::Result<Self> {
-        let mut builder = hidden();
+        let builder = hidden();
         #[cfg(unix)]
-        {
+        let builder = {
             use std::os::unix::fs::PermissionsExt;
+            let mut builder = builder;
             // Permissions of any new file, less the umask; a temporary file would otherwise be private to its owner.
             builder.permissions(std::fs::Permissions::from_mode(0o666));
-        }
+            builder
+        };
         let mut held = registry::held();
         let file = builder.tempfile_in(folder)?;
         held.insert(file.path().to_owned());

@@ -1,11 +1,9 @@
 //! Diagrams of the motions on which runs settle, over the speed or another number.
 
-use std::time::Instant;
-
 use serde::Serialize;
 
 use crate::orbit::long_run::Budget;
-use crate::progress::Watch;
+use crate::progress::{Clock, Watch};
 use crate::simulate::{Machine, Motion, SimulateError};
 use crate::study::attractors::AttractorsAtValue;
 use crate::study::design::loads::Loads;
@@ -91,7 +89,7 @@ impl Swept {
             SweepStart::Nothing => threads.unwrap_or_else(rayon::current_num_threads).min(sweep.over.count()),
             SweepStart::Up | SweepStart::Down => 1,
         };
-        let clock = Instant::now();
+        let clock = Clock::start();
         let tally = sweep.run(Some(threads), |index, block| {
             watch.at("", index as u64, sweep.over.count() as u64);
             take(block)

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use serde::Serialize;
 
@@ -10,7 +10,7 @@ use super::{StudyError, machine};
 use crate::known::Evidence;
 use crate::model::Model;
 use crate::orbit::long_run::{Budget, Kind, LongRun};
-use crate::progress::Watch;
+use crate::progress::{Clock, Watch};
 use crate::simulate::{Event, EventKind, Goal, Machine, Motion};
 use crate::study::survey::{Judged, Start, long_run};
 
@@ -181,7 +181,7 @@ impl Simulation {
             if (motion.revolution, motion.cam_angle) < (drawn.revolution, drawn.cam_angle) {
                 goal = earlier(goal, drawn);
             }
-            let (before, clock) = (impacts, Instant::now());
+            let (before, clock) = (impacts, Clock::start());
             let mut events = 0_u32;
             let flow = machine.advance(&mut motion, goal, &mut |event: &Event| {
                 match event.kind {

@@ -1,11 +1,9 @@
 //! The share of the starts that end on each motion, over the values of a number.
 
-use std::time::Instant;
-
 use super::{Basin, BasinSection, Basins, SectionStarts, States};
 use crate::flight::State;
 use crate::orbit::long_run::{Budget, Kind};
-use crate::progress::{Unwatched, Watch};
+use crate::progress::{Clock, Unwatched, Watch};
 use crate::study::StudyError;
 use crate::study::survey::{Axis, Over, Place, VariedNumber};
 
@@ -118,7 +116,7 @@ impl BasinsOver {
         threads: Option<usize>,
         watch: &dyn Watch,
     ) -> Self {
-        let (clock, total) = (Instant::now(), axis.values.len() as u64);
+        let (clock, total) = (Clock::start(), axis.values.len() as u64);
         let one = |value: f64| -> Result<Basins, StudyError> {
             let (model, _) = over.model(value)?;
             let section = BasinSection::new(&model, over.place(value).rpm, cam_angle)?;

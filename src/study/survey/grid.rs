@@ -4,7 +4,7 @@
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use rayon::prelude::*;
 
@@ -13,7 +13,7 @@ use super::over::{self, OverError};
 use super::threads::SweepError;
 use crate::model::Model;
 use crate::orbit::{Family, FamilyError, Parameter};
-use crate::progress::Watch;
+use crate::progress::{Clock, Watch};
 use crate::simulate::{Machine, SimulateError, angular_velocity};
 
 /// The machines of a model over the values of one or two of its numbers.
@@ -140,7 +140,7 @@ impl Survey {
         watch: &dyn Watch,
         one: impl Fn([usize; 2], &Machine) -> Result<T, String> + Sync,
     ) -> Result<(GridResults<T>, [f64; 2]), SweepError> {
-        let clock = Instant::now();
+        let clock = Clock::start();
         let pool = super::threads::threads(threads)?;
         // Rows, or the columns of the only row.
         let (lines, what) = if self.up.is_some() { (rows.clone(), "rows") } else { (columns.clone(), "") };
@@ -205,12 +205,12 @@ const STRIP: usize = 32;
 /// Processor time of a thread, if the system reports it; else wall-clock time.
 enum Processor {
     Thread(Duration),
-    Day(Instant),
+    Day(Clock),
 }
 
 impl Processor {
     fn now() -> Self {
-        Self::of_thread().map_or_else(|| Self::Day(Instant::now()), Self::Thread)
+        Self::of_thread().map_or_else(|| Self::Day(Clock::start()), Self::Thread)
     }
 
     /// Linux reports it in nanoseconds, as the first number of a file.
