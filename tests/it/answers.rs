@@ -69,6 +69,7 @@ pub fn are_as_they_were(name: &str, lines: &[&str]) {
 }
 
 #[test]
+#[ignore = "slow"]
 fn where_corner_impacts_are() {
     are_as_they_were(
         "answers-locate",
@@ -82,6 +83,7 @@ fn where_corner_impacts_are() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn where_corner_impacts_of_other_kinds_are() {
     are_as_they_were(
         "answers-locate-kinds",
@@ -94,6 +96,7 @@ fn where_corner_impacts_of_other_kinds_are() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn which_corner_impacts_are_none() {
     are_as_they_were(
         "answers-locate-refused",
@@ -107,11 +110,13 @@ fn which_corner_impacts_are_none() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn which_corner_impacts_come_after_chattering() {
     are_as_they_were("answers-locate-chattering", &["locate --rpm 163.4:163.5 --json"]);
 }
 
 #[test]
+#[ignore = "slow"]
 fn corner_impacts_of_many_impacts() {
     are_as_they_were(
         "answers-locate-many",
@@ -123,6 +128,7 @@ fn corner_impacts_of_many_impacts() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn corner_impacts_at_other_corners() {
     are_as_they_were(
         "answers-locate-corners",
@@ -136,6 +142,7 @@ fn corner_impacts_at_other_corners() {
 
 /// Where a turn begins an impact is named by the end of it or by the beginning of the next.
 #[test]
+#[ignore = "slow"]
 fn corner_impacts_over_several_turns() {
     are_as_they_were(
         "answers-locate-turns",
@@ -147,6 +154,7 @@ fn corner_impacts_over_several_turns() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn corner_impacts_where_turns_begin() {
     are_as_they_were(
         "answers-locate-begin",
@@ -155,6 +163,7 @@ fn corner_impacts_where_turns_begin() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn corner_impacts_of_many_impacts_on_either_side() {
     are_as_they_were("answers-locate-sides", &["locate models/laws/polynomial.toml --rpm 408:411 --json"]);
 }
@@ -192,6 +201,7 @@ fn which_motions_there_are_beside_chaos() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn which_motions_end_in_flips() {
     are_as_they_were(
         "answers-speeds-flips",
@@ -261,6 +271,7 @@ fn what_a_designer_asks() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn what_a_designer_asks_against_another_number() {
     are_as_they_were(
         "answers-design-against",
@@ -296,6 +307,7 @@ fn how_a_run_goes() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn how_events_move() {
     are_as_they_were(
         "answers-curve",
@@ -308,6 +320,7 @@ fn how_events_move() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn how_folds_move_from_a_sharp_corner() {
     are_as_they_were(
         "answers-curve-rounded",

@@ -187,6 +187,7 @@ fn ranges_and_magnitudes_that_cannot_be_searched() {
 
 /// Numbers at the edge of a double end in a message, never in a panic.
 #[test]
+#[ignore = "slow"]
 fn extreme_numbers() {
     for (index, (field, value)) in [
         ("mass", "1e-308"),

@@ -232,6 +232,7 @@ fn fixed_points_and_period_two_are_where_trace_and_determinant_say() {
 /// Where phi < 0 the saddle's own unstable manifold leaves: its fold, at `(l/(l - dL), 0)`, is carried past the stable one.
 /// Chaos that does not reach as far as the fold stays, on nine of the maps.
 #[test]
+#[ignore = "slow"]
 fn chaos_is_robust_where_it_is_known_to_be() {
     let (mut chaotic, mut left, mut stayed) = (0, 0, 0);
     for (d_l, d_r) in [(0.2, 0.2), (0.4, 0.4), (0.3, 0.7), (0.7, 0.3), (0.05, 0.9)] {

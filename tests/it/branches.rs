@@ -471,6 +471,7 @@ fn a_jump_of_the_cams_velocity_is_a_gap() {
 
 /// Each graze adds an impact, closer to the one before: the follower begins to chatter, which is what is said.
 #[test]
+#[ignore = "slow"]
 fn a_cascade_of_grazes_ends_in_chattering() {
     for (file, rpm, range) in [("harmonic", 500.0, [350.0, 700.0]), ("polynomial", 800.0, [400.0, 1000.0])] {
         let model = common::read(&Path::new(common::ROOT).join(format!("models/laws/{file}.toml")));

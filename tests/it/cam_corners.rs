@@ -234,6 +234,7 @@ fn the_cam_document_lists_segments_and_corners() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn the_page_fits_and_counts_what_it_does_not_list() {
     let page = |name: &str| {
         let output = corner_impact(["cam", &law_file(name)]);

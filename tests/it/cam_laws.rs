@@ -317,6 +317,7 @@ fn bounds_of_a_law_are_as_large_as_it_is() {
 
 /// The least of what lift and derivatives make with any weights is that of a fine scan, of a cam of six hundred cosines and of a small one too, and is where it says.
 #[test]
+#[ignore = "slow"]
 fn the_least_is_that_of_a_scan() {
     let amplitudes: Vec<f64> = (1..=600).map(|k| 0.1 * f64::from(k * k % 7 - 3) / f64::from(k * k)).collect();
     let phases: Vec<f64> = (1..=600).map(|k| f64::from(k * 47 % 360)).collect();

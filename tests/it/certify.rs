@@ -92,6 +92,7 @@ fn every_corner_impact_is_proved_to_its_digits() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn the_paper_s_corner_impacts_are_proved_and_its_solution_inside_of_the_cam_is_not() {
     let found = certified(&["models/osorio-2008.toml"]);
     let [one, two] = &found["corner_impacts"].as_array().unwrap()[..] else { panic!("{found}") };
@@ -229,6 +230,7 @@ fn more_bits_prove_more_digits_and_too_few_prove_nothing() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn places_where_there_is_none_are_refused() {
     let model = common::osorio();
     let place = |angle: f64, period: f64| json!({ "cam_angle_rad": angle, "period_s": period, "revolutions": 1 });
@@ -290,6 +292,7 @@ fn a_flight_that_touches_is_refused_and_one_that_is_clear_by_a_hair_is_not() {
 
 /// At this restitution a multiplier of the law before the corner is -1, but for 1e-8.
 #[test]
+#[ignore = "slow"]
 fn a_sign_that_is_not_decided_is_refused() {
     let arguments = ["certify", "--set", "restitution=0.61501779", "--rpm", "687:689", "--bits"];
     let output = corner_impact([&arguments[..], &["26"]].concat());
@@ -513,6 +516,7 @@ fn what_is_refused_where_the_velocity_jumps_is_not_asked_for() {
 
 /// The preload, the units and digits beyond those of a double reach the proof as they are written.
 #[test]
+#[ignore = "slow"]
 fn a_proof_is_of_the_numbers_that_are_written() {
     let folder = tempfile::TempDir::new().unwrap();
     let period = |changes: &[(&str, &str)], rpm: &str, set: &[&str]| {

@@ -153,6 +153,7 @@ fn stored<const BYTES: usize>(folder: &Path, name: &str, number: fn([u8; BYTES])
 
 /// A store has the numbers of the table; in parts, and with files that are lost or cut off and run again, the same bytes.
 #[test]
+#[ignore = "slow"]
 fn a_store_is_the_table_in_blocks() {
     let folder = tempfile::TempDir::new().unwrap();
     let path = |name: &str| folder.path().join(name).to_string_lossy().into_owned();
@@ -303,6 +304,7 @@ fn what_is_no_chart_is_refused_with_a_reason() {
 
 /// The nonsmooth fold of the paper goes over the chart at omega* where the restitution is the paper's, whichever axis is which.
 #[test]
+#[ignore = "slow"]
 fn curves_go_over_the_chart() {
     let folder = tempfile::TempDir::new().unwrap();
     let (speeds, restitutions) = ("rpm=660:740:5", "restitution=0.7:0.8:5");

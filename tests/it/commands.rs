@@ -164,6 +164,7 @@ fn the_rows_of_a_diagram_are_the_events_of_its_runs() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn rows_are_the_same_for_every_number_of_threads() {
     for start in ["fixed", "up", "down"] {
         let table = |threads: &str| {

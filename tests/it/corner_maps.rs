@@ -142,6 +142,7 @@ fn b_of_a_machine_with_gravity_is_what_machines_show() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn a_fit_by_a_number_finds_the_same() {
     let Case { model, cam, at } = case(common::osorio(), 736.110814, 1);
     for name in ["follower.restitution", "cam.flank_start_deg"] {
@@ -267,6 +268,7 @@ fn a_fit_knows_how_far_its_border_is_off() {
 /// The law that goes on past a corner ends 0.17 deg from it, where the next one is 5.6e-11 m away: less than what counts as one lift where a
 /// cam's numbers were typed, and no less a step.
 #[test]
+#[ignore = "slow"]
 fn a_flight_past_the_end_of_a_continued_law_comes_down_where_the_cam_is() {
     let Case { model, cam, at } = case(read("laws/program.toml"), 1928.338528659, 2);
     let machine = Machine::new(cam.clone(), &model.follower, at.angular_velocity());

@@ -56,6 +56,7 @@ fn pair(vector: Vector2<f64>) -> String {
 }
 
 #[test]
+#[ignore = "slow"]
 fn b_by_every_number_is_as_it_was() {
     let mut text = String::new();
     let machines = [(in_grams(), [739.0, 739.1], 1), (read("persistence"), [493.0, 494.0], 1)];
@@ -128,6 +129,7 @@ fn parts_begin_and_end_on_their_orbit<const N: usize>(machines: [(Model, [f64; 2
 }
 
 #[test]
+#[ignore = "slow"]
 fn parts_of_an_orbit_begin_and_end_on_it() {
     parts_begin_and_end_on_their_orbit([
         (common::osorio(), [736.0, 736.2], 1),
@@ -139,6 +141,7 @@ fn parts_of_an_orbit_begin_and_end_on_it() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn parts_of_an_orbit_of_thirteen_impacts_begin_and_end_on_it() {
     parts_begin_and_end_on_their_orbit([(common::osorio(), [195.5, 195.7], 1)]);
 }
@@ -309,6 +312,7 @@ fn a_jump_that_is_not_as_predicted_disagrees() {
 
 /// The deviation that is carried once around from x* is that of the state at its section, at each of its impacts.
 #[test]
+#[ignore = "slow"]
 fn the_course_of_an_orbit_comes_round() {
     for (model, speeds, revolutions) in
         [(common::osorio(), [736.0, 736.2], 1), (common::osorio(), [739.3, 739.4], 2), (in_grams(), [739.0, 739.1], 1)]
@@ -345,6 +349,7 @@ fn what_is_left_of_the_equation_for_the_period_is_a_rounding_of_its_terms() {
 
 /// No branch comes to it: its period is known to where Newton's method closed.
 #[test]
+#[ignore = "slow"]
 fn a_corner_impact_that_shots_alone_find_has_its_period_in_a_bracket() {
     let (_, all) = found(&read("sharp-nose"), [225.7, 225.8], 1);
     let at = &all[0];
@@ -436,6 +441,7 @@ fn a_sample_that_sticks_is_refused_as_such() {
 /// Where the corner comes last of six impacts, where six amplify what is not known of those before, and where it comes first of two in two
 /// revolutions: map and border are off by no more than is said, which is little.
 #[test]
+#[ignore = "slow"]
 fn differences_know_their_errors_wherever_the_corner_comes() {
     for (model, speeds, revolutions) in [
         (read("laws/polynomial"), [419.8, 419.9], 1),
@@ -462,6 +468,7 @@ fn differences_know_their_errors_wherever_the_corner_comes() {
 /// A machine that is lower by 40 mm, cam and spring together, is the same machine: B by the base is the same where that is 0, and known to no
 /// less than a rounding of the lift over the step that it is differenced by, a 64th of the number, or of one unit where it is 0, at most.
 #[test]
+#[ignore = "slow"]
 fn b_by_the_base_of_a_cam_does_not_hang_on_where_it_is() {
     let model = read("laws/program");
     let CamProfile::Program(_) = &model.cam else { panic!("{:?}", model.cam) };
@@ -560,6 +567,7 @@ fn flights_that_stick_are_none() {
 /// The last of six is 0.03 rad from the end of its own, and there are such that have it after that with the corner's impact still in reach; of
 /// the other of two there are such that have it before.
 #[test]
+#[ignore = "slow"]
 fn a_sample_has_every_impact_on_its_own_segment() {
     let (mut before, mut after) = (0, 0);
     for (model, speeds) in

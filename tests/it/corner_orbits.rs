@@ -298,6 +298,7 @@ fn a_corner_impact_has_no_other_impact_next_to_it() {
 
 /// Beyond twelve impacts a revolution no branch is looked at, and a shot ends at its thirteenth.
 #[test]
+#[ignore = "slow"]
 fn of_more_than_twelve_impacts_a_revolution_nothing_is_looked_for() {
     let on_short = (-1.0, SHORT, FRAC_PI_2);
     for (restitution, range) in [(0.6, [8.629, 8.631]), (0.8, [8.647, 8.649])] {

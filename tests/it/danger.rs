@@ -63,6 +63,7 @@ fn grown(map: &LocalMap, steps: u32) -> [f64; 2] {
 
 /// Both fixed points are stable. Whether motions diverge at mu = 0 is seen in long runs here.
 #[test]
+#[ignore = "slow"]
 fn what_diverges_at_the_corner_impact_is_dangerous() {
     for [l, r, d_l, d_r] in [
         // Of the machine below.
@@ -96,6 +97,7 @@ fn what_diverges_at_the_corner_impact_is_dangerous() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn what_shrinks_at_the_corner_impact_is_not_dangerous() {
     for case in [
         [-1.17, 1.75, 0.65, 0.95],
@@ -119,6 +121,7 @@ fn what_shrinks_at_the_corner_impact_is_not_dangerous() {
 
 /// Attractors by solving for orbits in Python, of six steps or fewer.
 #[test]
+#[ignore = "slow"]
 fn attractors_that_meet_at_the_corner_impact_are_told() {
     for (case, mu, words) in [
         ([0.19, -1.28, 0.64, 0.87], 1.0, ["R", "LLR"]),
@@ -280,6 +283,7 @@ fn no_model_of_the_project_is_called_dangerous() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn every_command_tells_of_the_danger() {
     let model = machine();
     let verified = verify(&model, External::LeftOut).unwrap();

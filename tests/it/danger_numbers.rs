@@ -24,6 +24,7 @@ fn seen(map: &LocalMap, m: Matrix2<f64>) -> LocalMap {
 
 /// Stretched by powers of two, with the period that angular velocities then ask for, every number is the same to the last bit, but for its unit.
 #[test]
+#[ignore = "slow"]
 fn a_danger_in_other_units_is_the_same_one() {
     for (traces, determinants) in [([-0.3, -1.7], [0.9025, 0.9025]), ([0.19, -1.28], [0.64, 0.87])] {
         let map = common::normal_form(traces, determinants);
@@ -66,6 +67,7 @@ fn long_run(map: &LocalMap, start: Vector2<f64>, mu: f64) -> (bool, f64) {
 
 /// Beside the fixed point of the minus side some motions are chaotic: they stay, and part by more than a hundredth each step.
 #[test]
+#[ignore = "slow"]
 fn chaos_beside_a_fixed_point_is_an_attractor_of_its_own() {
     let map = common::normal_form([1.15, -2.12], [0.88, -0.05]);
     let (mut fixed, mut parting) = (0, 0);
@@ -92,6 +94,7 @@ fn chaos_beside_a_fixed_point_is_an_attractor_of_its_own() {
 /// What starts where x < 0 grows by half each step, and so does what starts where y > x > 0, which is there after one; the rest shrinks: 225 degrees of
 /// 360, in units of any size. The growth is the same in all directions, so that no sector is certain of its neighbours.
 #[test]
+#[ignore = "slow"]
 fn the_share_of_directions_that_are_sampled_is_that_of_the_circle() {
     for [one, two] in [[1.0, 1.0], [100.0, 0.01], [0.001, 3.0]] {
         for quarters in 0..4 {

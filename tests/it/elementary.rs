@@ -131,6 +131,7 @@ fn bits_are_those_of_every_processor() {
 ///
 /// The test says nothing where the C library is not glibc, or the processor has no fused multiply-add: both runs are then the same.
 #[test]
+#[ignore = "slow"]
 fn fused_multiply_add_changes_no_byte() {
     const WITHOUT: &str = "glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2,-AVX512F,-FMA_Usable,-FMA4_Usable,-AVX2_Usable";
     for words in [

@@ -133,6 +133,7 @@ fn rpm_of(damping: f64, lambda: f64) -> f64 {
 }
 
 #[test]
+#[ignore = "slow"]
 fn the_class_of_a_graze_goes_by_the_eigenvalue() {
     for damping in [2.0, 3.0] {
         for (lambda, class) in [
@@ -294,6 +295,7 @@ fn the_orbits_beyond_a_graze_are_where_its_class_has_them() {
 
 /// The graze is at one value at every speed, and its class changes where the eigenvalue or the resonance has it.
 #[test]
+#[ignore = "slow"]
 fn the_curve_of_a_graze_of_a_follower_at_rest_is_straight() {
     let found = |model: &Model, rpm: [f64; 2]| {
         let parameter = Parameter::named(model, "offset").unwrap();
@@ -442,6 +444,7 @@ fn tops_count_as_one_where_they_are_alike_and_evenly_apart() {
 
 /// At 2 pi j + pi/n of its oscillation the follower is back at its equilibrium after n passages, as far as the angle is known.
 #[test]
+#[ignore = "slow"]
 fn a_follower_that_comes_back_to_its_equilibrium_is_in_resonance() {
     let oscillation = (1.0 - 0.0025_f64).sqrt();
     let doubt = |angle: f64| touched(&wall(0.1, 1.0, -1.01), oscillation * 60.0 / angle, "offset", 1.0).doubt;
@@ -533,6 +536,7 @@ fn orbits_at_rest_end_where_there_are_none() {
 
 /// Of the borders between classes those of the range are told, and no other.
 #[test]
+#[ignore = "slow"]
 fn the_curve_of_a_graze_has_the_borders_between_its_speeds() {
     let found = |model: &Model, rpm: [f64; 2]| -> Vec<(f64, UndecidedGraze)> {
         let parameter = Parameter::named(model, "offset").unwrap();
@@ -594,6 +598,7 @@ fn touches(model: &Model, name: &str, range: [f64; 2], rpm: [f64; 2]) -> Curves 
 /// A cam with k equal tops passes k times as often, so its borders are at a k-th of the speed. A slower follower has them at speeds that are lower
 /// by the same factor.
 #[test]
+#[ignore = "slow"]
 fn the_borders_of_a_graze_go_by_passages_and_by_the_followers_time() {
     let at = |halves: f64| (1.0 - 0.0025_f64).sqrt() * 60.0 / (halves * PI);
     for (tops, slower) in [(1, 100.0), (3, 1.0), (2, 0.01)] {

@@ -116,6 +116,7 @@ fn judged(line: &serde_json::Value) -> String {
 
 /// Above the cam up to where they meet it, as a scan finds, by the rounding of doubles: on cams of many segments too.
 #[test]
+#[ignore = "slow"]
 fn planted_flights_come_down_first_where_a_scan_says() {
     let holds = |(case, aim, units): &Planted| match start(case, *aim, *units) {
         // Where damping has stopped a follower from very far off, what it has lost on the way is rounded too.

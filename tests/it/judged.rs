@@ -251,6 +251,7 @@ fn a_row_has_the_fastest_impact_of_its_motion() {
 
 /// An attractor is of the kind that it has at most speeds, of those that it has at any.
 #[test]
+#[ignore = "slow"]
 fn a_row_is_of_the_kind_of_most_of_its_speeds() {
     let mut mixed = 0;
     // Of the second range the speeds alone, and none beside it.
@@ -267,6 +268,7 @@ fn a_row_is_of_the_kind_of_most_of_its_speeds() {
 
 /// A corner impact with danger is told once where it is in the range, and not where it is beyond either end, however near.
 #[test]
+#[ignore = "slow"]
 fn a_danger_is_told_in_the_range_alone() {
     let model = Model::parse("dangerous.toml", include_str!("corpus/dangerous.toml")).unwrap();
     let budget = Budget { transient: 300, record: 50, longest: 4, patience: 0 };

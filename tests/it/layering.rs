@@ -79,9 +79,9 @@ fn no_package_asks_for_one_above_it() {
     }
 }
 
-/// The modules of `src` by their paths from the crate's root, each with its file and its code without comments and tests.
+/// The modules of a package by their paths from its root, each with the paths that its code names.
 struct House {
-    modules: BTreeMap<Vec<String>, (PathBuf, String)>,
+    modules: BTreeMap<Vec<String>, Vec<Named>>,
 }
 
 /// A path as it is written, cut at `::`, and the name by which a file knows what it leads to.
@@ -98,7 +98,7 @@ impl House {
             let text = std::fs::read_to_string(&file).unwrap();
             let code = text.split("#[cfg(test)]").next().unwrap();
             let code: Vec<&str> = code.lines().map(|line| line.split("//").next().unwrap()).collect();
-            (path, (file, code.join("\n")))
+            (path, Self::paths(&code.join("\n")))
         };
         let is_library = |file: &PathBuf| !file.ends_with("main.rs");
         Self { modules: rust_files(root).into_iter().filter(is_library).map(module).collect() }
@@ -163,16 +163,16 @@ impl House {
             parts.next();
         }
         let Some(item) = parts.next() else { return Some(at) };
-        let handed_on = Self::paths(&self.modules.get(&at)?.1).into_iter().find(|(path, name)| {
+        let handed_on = self.modules.get(&at)?.iter().find(|(path, name)| {
             name == item && path.len() > 1 && self.definer(&at, &path[..path.len() - 1]).is_some_and(|from| from != at)
         });
-        handed_on.and_then(|(path, _)| self.definer(&at, &path)).or(Some(at))
+        handed_on.and_then(|(path, _)| self.definer(&at, path)).or(Some(at))
     }
 
     /// Which files use which others, but for what a file takes from the `mod.rs` of a folder that it is in.
     fn uses(&self) -> BTreeMap<&Vec<String>, BTreeSet<Vec<String>>> {
-        let of_module = |(here, (_, code)): (&Vec<String>, &(PathBuf, String))| {
-            let used = Self::paths(code).into_iter().filter_map(|(path, _)| self.definer(here, &path));
+        let of_module = |(here, paths): (&Vec<String>, &Vec<Named>)| {
+            let used = paths.iter().filter_map(|(path, _)| self.definer(here, path));
             used.filter(|there| !here.starts_with(there)).collect()
         };
         self.modules.iter().map(|(here, module)| (here, of_module((here, module)))).collect()

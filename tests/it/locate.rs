@@ -256,6 +256,7 @@ fn the_page_says_what_was_looked_at() {
 
 /// No search at the grid's speeds comes upon the branch of this orbit of five impacts; shots from the corner do.
 #[test]
+#[ignore = "slow"]
 fn what_one_way_of_looking_misses_the_other_finds() {
     let found = surveyed(&common::osorio(), 294.0, 295.5, 1);
     let is_it =
@@ -434,6 +435,7 @@ fn orbits_are_searched_for_at_the_speeds_of_a_whole_cell_and_its_margins() {
 /// A cam whose numbers were typed to ten digits is one cam on either side of a joint: the routes agree as on that of all digits, and find
 /// as much.
 #[test]
+#[ignore = "slow"]
 fn numbers_typed_to_ten_digits_change_no_agreement() {
     let text = std::fs::read_to_string(law("polynomial")).unwrap();
     let typed = text.replace("0.06283185307179587", "0.0628318531");

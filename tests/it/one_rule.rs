@@ -309,6 +309,7 @@ fn lobes(lobes: usize) -> Model {
 /// Two orbits branch off from one that does the same over each of two lobes where the orbit over one lobe doubles its period, at twice the
 /// speed: located by its own equations from any step, and no row has no width.
 #[test]
+#[ignore = "slow"]
 fn a_symmetry_breaks_at_half_of_the_speed_of_the_flip_over_one_lobe() {
     let flip = 369.573_082_351_769_7;
     for (step, starts) in [(0.5, 16), (1.0, 8)] {
@@ -383,6 +384,7 @@ fn equal_lobes_have_the_answers_of_one() {
 
 /// A row that no start reached hides no range: rows that overlap coexist, and one list has the headline.
 #[test]
+#[ignore = "slow"]
 fn what_overlaps_coexists() {
     let found = common::speeds(&lobes(2), [188.0, 192.0], &Resolution::new(common::step(1.0), 8), &Unwatched).unwrap();
     assert!(!found.coexistence.is_empty());

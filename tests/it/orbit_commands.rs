@@ -144,6 +144,7 @@ fn a_branch_has_the_contracts_columns_and_names_its_points() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn with_all_orbits_of_twice_the_period_are_in_the_table_too() {
     let followed = |all: &[&str]| {
         let line = ["continue", MODEL, "--from-rpm", "738", "--parameter", "rpm=730:745"];

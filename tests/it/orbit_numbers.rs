@@ -159,6 +159,7 @@ fn branches_in_the_speed() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn branches_in_numbers_of_the_model() {
     let told = [
         through("osorio-2008", 700.0, 1, "restitution", [0.75, 0.9], 0.05),
@@ -235,6 +236,7 @@ fn curves(name: &str, rpm: f64, speeds: [f64; 2], parameter: &str, range: [f64; 
 }
 
 #[test]
+#[ignore = "slow"]
 fn curves_in_two_numbers() {
     let told = [
         curves("osorio-2008", 700.0, [660.0, 760.0], "restitution", [0.7, 0.9]),
@@ -249,6 +251,7 @@ fn curves_in_two_numbers() {
 
 /// Up to bounds of the model, through corners and grazes of other impacts, to where velocities grow without bound, and to chattering.
 #[test]
+#[ignore = "slow"]
 fn curves_over_wide_ranges() {
     let told = [
         curves("osorio-2008", 700.0, [660.0, 760.0], "restitution", [0.3, 1.2]),
@@ -264,6 +267,7 @@ fn curves_over_wide_ranges() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn curves_of_a_follower_that_rests() {
     let told = [
         curves("osorio-2008", 150.0, [100.0, 250.0], "stiffness", [1420.0, 1440.0]),
@@ -354,6 +358,7 @@ fn orbits_of_two_impacts_of_any_machine() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn orbits_of_any_machine() {
     let mut told = String::new();
     for (index, case) in machines(30, &[2, 6, 13, 23, 27, 29]) {

@@ -52,6 +52,7 @@ fn over(model: &Model, name: &str, range: [f64; 2], step: Step, starts: usize) -
 
 /// `--rpm LO:HI:N` is short for `--over rpm=LO:HI:N`.
 #[test]
+#[ignore = "slow"]
 fn a_range_of_speeds_is_one_number_of_many() {
     for options in [&["--one-row"][..], &["--record", "3"], &["--show", "gap", "--record", "3"]] {
         let one = [&["diagram", MODEL, "--rpm", "660:740:3", "--out", "-"], options].concat();
@@ -248,6 +249,7 @@ fn a_follower_leaves_the_cam_at_a_gravity() {
 /// On an eccentric `c = a (1 + cos)` at `m w^2 = 0.9 k` the inertia presses on a follower that the spring would lift off a cam at rest:
 /// `N = k a - k rest_position + 0.1 k a cos` is nowhere negative up to `rest_position = 0.9 a`.
 #[test]
+#[ignore = "slow"]
 fn a_follower_that_inertia_presses_on_leaves_at_a_rest_position() {
     let [amplitude, stiffness, mass] = [0.02_f64, 100.0, 1.0];
     let text = format!(

@@ -299,6 +299,7 @@ fn a_font_of_a_file_is_taken_or_refused() {
 
 /// Readable in grey: motions that repeat are told apart by the shapes of their points, and a bar bears the shape of its motion.
 #[test]
+#[ignore = "slow"]
 fn attractors_are_told_apart_by_shapes() {
     let model = common::osorio();
     let resolution =

@@ -403,6 +403,7 @@ fn a_run_may_be_split_anywhere() {
 
 /// Over many segments, too, some of which it goes over at once.
 #[test]
+#[ignore = "slow"]
 fn a_run_over_many_segments_may_be_split_anywhere() {
     check_many_segments(150, |case| splits(case, on));
 }

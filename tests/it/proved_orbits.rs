@@ -86,6 +86,7 @@ fn event(proved: &Value, kind: &str, speed: &str, degrees: f64) {
 }
 
 #[test]
+#[ignore = "slow"]
 fn the_paper_s_machine_has_no_orbit_of_one_impact_below_its_corner_impact_and_two_beyond_at_every_speed() {
     let proved = held("models/osorio-2008.toml", "600:800", "700");
     event(&proved, "corner-impact", "673.2344450038120023278237472", 150.1794);
@@ -129,6 +130,7 @@ fn folds_and_grazes_are_proved_where_branches_have_them() {
 
 /// At 500 rpm one of the flights between two impacts may last a half swing, after which a follower is at its end however it left.
 #[test]
+#[ignore = "slow"]
 fn orbits_of_two_impacts_are_all_there_where_a_flight_may_last_a_half_swing() {
     let proved = document(&["certify", "--orbits", "--rpm", "500"]);
     assert_eq!((&proved["complete"], &proved["undecided"]), (&json!([1, 2]), &json!([])), "{proved}");
@@ -165,6 +167,7 @@ fn where_a_flight_touches_the_list_is_not_said_to_be_complete() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn machines_whose_orbits_are_not_counted_over_a_range_are_refused_with_the_reason() {
     for (arguments, why) in [
         (&["models/laws/rectified-sine.toml"][..], "the cam's velocity jumps"),
@@ -200,6 +203,7 @@ coefficients = [0.05510291367552992, -0.18479739484281107, 0.043095002513597935]
 
 /// The orbit of one impact solves the equations of flight and impact to 2e-40, found by Newton's method in 60 digits.
 #[test]
+#[ignore = "slow"]
 fn no_orbit_is_missing_where_the_velocity_of_the_cam_jumps() {
     let folder = tempfile::TempDir::new().unwrap();
     let file = folder.path().join("jumping.toml");

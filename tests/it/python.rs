@@ -245,6 +245,7 @@ fn an_h_set_that_is_off_is_refused_in_balls_too() {
 
 /// The balls know no rounded corner and say so; to the other routes in Python such a cam has no corner.
 #[test]
+#[ignore = "slow"]
 fn a_rounded_corner_is_none() {
     use std::io::Write;
     let model = common::osorio().with_number("cam.corner_rounding_deg", 0.1).unwrap();

@@ -312,6 +312,7 @@ fn in_any_units(case: &Case, questions: &[&'static str], patience: Duration) -> 
 }
 
 #[test]
+#[ignore = "slow"]
 fn answers_are_the_same_in_any_units() {
     check(4, |case| in_any_units(case, &QUICK, Duration::from_secs(60)));
 }

@@ -131,6 +131,7 @@ fn a_kind_is_that_of_most_speeds() {
 /// At 493.8275 rpm an impact of the orbit goes over a corner, and on both sides the orbit is stable: it is one attractor, that does not
 /// end there.
 #[test]
+#[ignore = "slow"]
 fn an_orbit_goes_on_over_a_corner() {
     let found = over(&model("persistence"), [493.5, 494.5], 0.5, 1).unwrap();
     let orbits: Vec<_> = found.families.iter().filter(|row| row.period() == Some((1, 1))).collect();

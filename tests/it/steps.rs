@@ -120,6 +120,7 @@ fn no_start_is_fast_enough_for_a_step() {
 
 /// Flights over a step find their contacts where a scan does, and know their gap; who is below it is as deep as the lift is higher.
 #[test]
+#[ignore = "slow"]
 fn flights_go_over_steps() {
     const TURNS: f64 = 1.5;
     let (mut below, mut over) = (0, 0);

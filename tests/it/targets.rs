@@ -40,6 +40,7 @@ fn the_orbit() {
 
 /// However wide the range, the orbit in it is found.
 #[test]
+#[ignore = "slow"]
 fn the_orbit_in_a_wide_range() {
     let model = common::osorio_with(&[("rpm_min", "1.0"), ("rpm_max", "100000.0")]);
     let (first, others) = corner_impact::corner::locate(&model, &common::cam(&model)).unwrap();

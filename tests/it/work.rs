@@ -90,6 +90,7 @@ fn a_flight_over_many_segments_is_looked_at_where_it_comes_down() {
 /// Whatever the cam, the follower and the start, to the few that the last digits of a sine decide: looks that do not march, their
 /// gaps and steps; those that do, and their gaps.
 #[test]
+#[ignore = "slow"]
 fn any_machine_takes_what_it_took() {
     for (cases, took) in [
         (drawn(cases_of_every_law(), 500), [6380, 15417, 9450, 1597, 29285]),
