@@ -27,6 +27,7 @@ impl Evidence {
 
 /// A list of orbits has all of so many revolutions and impacts, and how that is known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[doc(hidden)]
 pub struct Complete {
     /// Turns of the cam in one period.
     pub revolutions: u64,

@@ -66,6 +66,7 @@ pub mod known;
 
 pub mod progress;
 
+#[doc(hidden)]
 pub mod cancel;
 
 #[doc(hidden)]
@@ -93,10 +94,12 @@ pub mod impact;
 #[doc(hidden)]
 pub mod reading;
 
+#[doc(hidden)]
 pub mod measured;
 
 pub mod simulate;
 
+#[doc(hidden)]
 pub mod section;
 
 pub mod orbit;

@@ -13,6 +13,7 @@ pub trait Watch: Sync {
 }
 
 /// Counter of pieces of work that are done in any order, on any thread.
+#[doc(hidden)]
 pub struct Pieces<'a> {
     watch: &'a dyn Watch,
     what: &'a str,

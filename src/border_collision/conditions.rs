@@ -29,6 +29,7 @@ pub enum Decides {
 
 /// One condition.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[doc(hidden)]
 pub struct Condition {
     /// Formula of the quantity that must not vanish; for continuity, of the one that must vanish.
     pub name: &'static str,
@@ -63,6 +64,7 @@ impl Condition {
 }
 
 /// Every condition on the map of the plane `map`, those of the classification first.
+#[doc(hidden)]
 pub fn conditions(map: &LocalMap) -> Vec<Condition> {
     let (minus, plus) = (&map.minus, &map.plus);
     let one =

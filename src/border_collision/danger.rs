@@ -58,6 +58,7 @@ document!(Danger as danger {
 
 /// Motions of the local map that diverge at omega*.
 #[derive(Clone, Debug, PartialEq)]
+#[doc(hidden)]
 pub struct Divergence {
     /// The share of directions, in the map's natural units, in which motions diverge. Where computed or proved it is a lower bound, and 1
     /// then means that the motions of every start but the corner impact itself diverge.
@@ -77,6 +78,7 @@ document!(Divergence as it {
 
 /// An attractor of the local map.
 #[derive(Clone, Debug, PartialEq)]
+#[doc(hidden)]
 pub struct LocalAttractor {
     /// Speeds at which it exists.
     pub speeds: Speeds,
@@ -99,6 +101,7 @@ document!(LocalAttractor as it {
 /// Disturbances of a periodic orbit that return to it: every smaller one does, as far as was sampled. All are per unit of the distance of
 /// the speed from omega*, with which they grow; none where every disturbance that was tried returns.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[doc(hidden)]
 pub struct Returns {
     /// Largest disturbance of the position on the section, m per rpm.
     pub position: Option<f64>,

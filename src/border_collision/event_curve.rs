@@ -70,6 +70,7 @@ impl EventPoint {
 
 /// A curve of one kind of event.
 #[derive(Clone, Debug, PartialEq)]
+#[doc(hidden)]
 pub struct EventCurve {
     /// The event at the model's own number.
     pub kind: SpecialKind,

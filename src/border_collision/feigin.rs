@@ -59,12 +59,14 @@ impl Speeds {
 }
 
 /// The name of the speeds at which the period changes by `mu`.
+#[doc(hidden)]
 pub fn speeds_at(mu: f64) -> String {
     Speeds::of(mu).map_or("at".into(), |speeds| speeds.to_string())
 }
 
 /// Contribution of one side.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[doc(hidden)]
 pub struct SideCounts {
     /// Real eigenvalues above 1.
     pub above_one: usize,

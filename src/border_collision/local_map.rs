@@ -25,6 +25,7 @@ pub struct LocalMap {
 
 /// An orbit that repeats a word, wherever its points lie.
 #[derive(Clone, Debug, PartialEq)]
+#[doc(hidden)]
 pub struct MapOrbit {
     /// Sides of the word.
     pub word: Word,
@@ -139,6 +140,7 @@ pub(super) fn stability(eigenvalues: &[Eigenvalue; 2]) -> Stability {
 }
 
 /// `det(z I - A) = z^2 - z tr A + det A` for z = 1 or -1, and the sum of its terms' sizes.
+#[doc(hidden)]
 pub fn characteristic(a: &Matrix2<f64>, z: f64) -> (f64, f64) {
     let (trace, determinant) = (a.trace(), a.determinant());
     (1.0 - z * trace + determinant, 1.0 + trace.abs() + determinant.abs())

@@ -14,22 +14,31 @@
 //! | [`mod@rounded`] | how far a fold moves where the corner is rounded |
 //! | `event_curve` | curves of corner impacts, folds, flips, grazes in two numbers of the model; scenarios of corner impacts |
 
+#[doc(hidden)]
 pub mod conditions;
 pub mod danger;
+#[doc(hidden)]
 pub mod directions;
 #[doc(hidden)]
 pub mod event_curve;
 pub mod feigin;
 pub mod local_map;
+#[doc(hidden)]
 pub mod long_run;
+#[doc(hidden)]
 pub mod normal_form;
 #[doc(hidden)]
 pub mod outcome;
+#[doc(hidden)]
 pub mod passage;
 pub mod robust_chaos;
+#[doc(hidden)]
 pub mod rounded;
+#[doc(hidden)]
 pub mod trapping;
+#[doc(hidden)]
 pub mod validity;
+#[doc(hidden)]
 pub mod word;
 
 pub use conditions::{Condition, conditions};
@@ -62,7 +71,7 @@ pub enum Degenerate {
 
 /// Why a corner impact is not classified.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[expect(missing_docs, reason = "the message says what each number is")]
+#[doc(hidden)]
 pub enum Refusal {
     /// The map is none of the generic kinds.
     #[error("degenerate: {0}")]

@@ -12,6 +12,7 @@ use crate::tolerance;
 
 /// `x -> A_bar x + B_bar dT` with the border at `C_bar x = 0`.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[doc(hidden)]
 pub struct NormalForm {
     /// B after the shift `x~ = x + e1 D dT/c1`; the same on both sides.
     pub b_tilde: Vector2<f64>,
@@ -37,6 +38,7 @@ document!(NormalForm as form {
 });
 
 /// The normal form of a continuous piecewise-linear map.
+#[doc(hidden)]
 pub fn normal_form(map: &CornerMap) -> Result<NormalForm, Degenerate> {
     let (a, c, d) = (map.minus.a, map.c(), map.d());
     let c1 = c[0];

@@ -18,6 +18,7 @@ pub const LONGEST_WORD: usize = 8;
 
 /// The local map's motions for one sign of mu.
 #[derive(Clone, Debug, PartialEq)]
+#[doc(hidden)]
 pub struct LocalOutcome {
     /// 1, -1 or 0; everything scales with its size.
     pub mu: f64,

@@ -31,6 +31,7 @@ use crate::tolerance;
 
 /// The theorem at one sign of mu, where there are such saddles.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[doc(hidden)]
 pub struct RobustChaos {
     /// The side L.
     pub saddle: Side,

@@ -27,6 +27,7 @@ use crate::tolerance;
 
 /// Effect of rounding the corner on a nonsmooth fold.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[doc(hidden)]
 pub struct RoundedCorner {
     /// Shift of the speed at which the fixed points meet, rpm for each degree over which the corner is rounded.
     pub rpm_per_degree: f64,
@@ -41,6 +42,7 @@ document!(RoundedCorner as it {
 });
 
 /// Effect to first order in the angle, for a corner impact that is a nonsmooth fold; none for another.
+#[doc(hidden)]
 pub fn rounded(kind: &Classification, at: &CornerImpact) -> Option<RoundedCorner> {
     if kind.scenario != Scenario::NonsmoothFold {
         return None;

@@ -11,6 +11,7 @@ use crate::tolerance;
 /// A circle whose centre lies at polar `(distance, direction)` from the cam's axis, met by the ray at angle theta:
 /// `c = kappa cos(phi) + sqrt(rho^2 - kappa^2 sin^2(phi))`, `phi = theta - direction`.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[doc(hidden)]
 pub struct Arc {
     /// kappa, m.
     pub distance: f64,

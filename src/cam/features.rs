@@ -61,6 +61,7 @@ pub(super) fn of(smoothing: &Smoothing, angles: &[f64], lifts: &[f64], half_step
 
 /// A row of a table that is far from the value that the rows beside it give.
 #[derive(Clone, Copy, Debug, Serialize)]
+#[doc(hidden)]
 pub struct Stray {
     /// Its line in the file of the table or of the model; for rows without a file, its index.
     pub line: usize,

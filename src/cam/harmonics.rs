@@ -9,6 +9,7 @@ use crate::tolerance;
 
 /// `c = offset + sum A_k cos(k theta) + B_k sin(k theta)`, k from 1.
 #[derive(Clone, Debug, PartialEq)]
+#[doc(hidden)]
 pub struct Harmonics {
     offset: f64,
     terms: Box<[Term]>,

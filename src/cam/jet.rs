@@ -2,6 +2,7 @@
 
 /// Lift and its derivatives at an angle, order 0 first.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[doc(hidden)]
 pub struct Jet(pub [f64; Jet::ORDERS]);
 
 impl Jet {

@@ -10,6 +10,7 @@ use crate::interval::{Interval, Number};
 
 /// A smooth lift law, valid on its segment and some way past its ends.
 #[derive(Clone, Debug, PartialEq)]
+#[doc(hidden)]
 pub enum Law {
     /// Constant lift, m.
     Dwell(f64),

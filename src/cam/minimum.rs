@@ -8,6 +8,7 @@ use crate::tolerance;
 
 /// Where on a cam something is least.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[doc(hidden)]
 pub struct Least {
     /// Index of the segment: at a corner either side may have it.
     pub segment: usize,

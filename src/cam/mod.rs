@@ -97,6 +97,7 @@ enum Joint {
 }
 
 /// An angle, rad, in `[0, 2 pi)`.
+#[doc(hidden)]
 pub fn within_a_turn(angle: f64) -> f64 {
     let angle = angle.rem_euclid(TAU);
     // A tiny negative angle rounds up to a whole turn.
@@ -104,12 +105,14 @@ pub fn within_a_turn(angle: f64) -> f64 {
 }
 
 /// The angle between two angles, rad, the shorter way round.
+#[doc(hidden)]
 pub fn apart(one: f64, two: f64) -> f64 {
     let turned = (one - two).rem_euclid(TAU);
     turned.min(TAU - turned)
 }
 
 /// The angle plus the whole turns that bring it nearest to another angle, rad.
+#[doc(hidden)]
 pub fn nearest_turn(angle: f64, other: f64) -> f64 {
     angle - ((angle - other) / TAU).round() * TAU
 }

@@ -8,6 +8,7 @@ use crate::tolerance;
 
 /// `c = sum a_k u^k`, `u = theta - start`.
 #[derive(Clone, Debug, PartialEq)]
+#[doc(hidden)]
 pub struct Polynomial {
     start: f64,
     coefficients: Box<[f64]>,

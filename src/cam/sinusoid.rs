@@ -10,6 +10,7 @@ use crate::tolerance;
 ///
 /// Written with the remainders of sine and cosine near phi = 0, so that motions that start there at rest keep their digits.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[doc(hidden)]
 pub struct Sinusoid {
     /// Where `u` is 0, rad; need not lie on the segment.
     pub start: f64,

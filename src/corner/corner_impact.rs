@@ -16,6 +16,7 @@ use crate::tolerance;
 /// How a corner impact was found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
+#[doc(hidden)]
 pub enum Way {
     /// Root of the equation for one impact.
     Equation,

@@ -35,6 +35,7 @@ pub struct Outside {
 }
 
 /// Input of the outside routes for a model with study range `study`: its numbers, and for a smoothing spline what was fitted to its rows.
+#[doc(hidden)]
 pub fn told(model: &Model, study: Study) -> Result<Value, ModelError> {
     let mut numbers = json!({ "follower": model.follower, "cam": model.cam, "study": study });
     if let Some(fitted) = cam::fitted(model)? {

@@ -61,6 +61,7 @@ impl fmt::Display for NotFound {
 }
 
 /// The slowest corner impact in `[study]`, and the others by rising speed.
+#[doc(hidden)]
 pub fn locate(model: &Model, cam: &Cam) -> Result<(CornerImpact, Vec<CornerImpact>), LocateError> {
     let study = model.study()?;
     let corners: Vec<Corner> = cam.corners().iter().copied().filter(|corner| corner.jump_order == 2).collect();

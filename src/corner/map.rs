@@ -49,6 +49,7 @@ pub(crate) fn rows(matrix: &Matrix2<f64>) -> [[f64; 2]; 2] {
 
 /// A pair of values, one per side: `minus` for impacts before the corner, `plus` for impacts after it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[doc(hidden)]
 pub struct Sides<T> {
     /// With c'' before the corner.
     pub minus: T,
@@ -139,10 +140,12 @@ pub struct Route {
 }
 
 /// A line in the space of deviations of state and period: the coefficients of (dx1, dx2), and that of dT.
+#[doc(hidden)]
 pub type LinearForm = (RowVector2<f64>, f64);
 
 /// Results besides A and B that a route computes itself, not from A and B by the function that all routes share.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[doc(hidden)]
 pub struct Own {
     /// `(C, D)`, by another method than the difference of the two sides.
     pub jump: Option<LinearForm>,

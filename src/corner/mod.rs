@@ -30,24 +30,34 @@
 
 #[doc(hidden)]
 pub mod candidates;
+#[doc(hidden)]
 pub mod closed_form;
 pub(crate) mod confirm;
 pub(crate) mod corner_impact;
 pub(crate) mod external;
 mod extrapolation;
+#[doc(hidden)]
 pub mod finite_difference;
+#[doc(hidden)]
 pub mod jump_order;
+#[doc(hidden)]
 pub mod least_squares;
+#[doc(hidden)]
 pub mod locate;
 pub mod map;
+#[doc(hidden)]
 pub mod one_sided;
 pub(crate) mod period_equation;
+#[doc(hidden)]
 pub mod range;
+#[doc(hidden)]
 pub mod second_order;
 #[doc(hidden)]
 pub mod shots;
 pub(crate) mod simulated_orbit;
+#[doc(hidden)]
 pub mod variational;
+#[doc(hidden)]
 pub mod varied;
 
 pub use corner_impact::{CornerImpact, Way};

@@ -7,6 +7,7 @@ use crate::tolerance;
 
 /// Responses of the follower at a time `t` after a unit impulse and after a unit step, from rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[doc(hidden)]
 pub struct Response<N = f64> {
     /// `p(t)`, s^2: displacement under a unit acceleration switched on.
     pub step: N,

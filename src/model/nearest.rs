@@ -2,6 +2,7 @@
 
 /// The one of `names` nearest to `word`, if it is near: one or two typing errors, more in a long word. Case, hyphens and
 /// underscores make no difference.
+#[doc(hidden)]
 pub fn nearest<'a>(word: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let plain = |word: &str| word.to_lowercase().replace('-', "_");
     let word = plain(word);

@@ -2,6 +2,7 @@
 
 /// A number as the user wrote it.
 #[derive(Clone, Debug, PartialEq)]
+#[doc(hidden)]
 pub struct Numeral {
     /// The nearest double.
     pub number: f64,

@@ -103,6 +103,7 @@ pub struct ArcsProfile {
 
 /// `c = offset + sum a_k cos(k theta + p_k)`, k from 1.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[doc(hidden)]
 pub struct HarmonicProfile {
     /// Mean lift, m.
     pub offset: f64,
@@ -145,6 +146,7 @@ pub struct MotionSegment {
 /// The standard motions of cam design, between ends at rest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
+#[doc(hidden)]
 pub enum StandardMotion {
     /// Constant lift.
     Dwell,
@@ -208,6 +210,7 @@ static CAM_LAWS: [(&str, ReadProfile); 6] = [
 ];
 
 /// Field of the angle over which corners are rounded.
+#[doc(hidden)]
 pub const CORNER_ROUNDING: &str = "cam.corner_rounding_deg";
 
 pub(super) fn read(fields: &mut Fields) -> Result<CamProfile, ModelError> {

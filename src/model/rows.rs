@@ -30,6 +30,7 @@ pub(super) struct Table<'a> {
 /// Separator of the columns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
+#[doc(hidden)]
 pub enum Separator {
     /// ","
     Comma,
@@ -43,6 +44,7 @@ pub enum Separator {
 
 /// Layout of a text.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[doc(hidden)]
 pub struct TableLayout {
     /// Separator of the columns.
     pub separator: Separator,

@@ -14,10 +14,12 @@ use crate::file;
 use crate::tolerance;
 
 /// Most rows of a table in proofs.
+#[doc(hidden)]
 pub const MOST_PROVED_ROWS: usize = 1000;
 
 /// A spline through the rows of a table, or near them.
 #[derive(Clone, Debug, PartialEq)]
+#[doc(hidden)]
 pub struct TableProfile {
     /// Path of the file as in the model, relative to the model file; `None` where the model has the rows itself.
     pub file: Option<String>,
@@ -58,6 +60,7 @@ impl TableProfile {
 
 /// The periodic splines.
 #[derive(Clone, Debug, PartialEq)]
+#[doc(hidden)]
 pub enum Spline {
     /// Pieces of degree 3 through the rows; the third derivative jumps at every row.
     Cubic,
@@ -85,6 +88,7 @@ impl Spline {
 
 /// Constraints of a smoothing spline.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[doc(hidden)]
 pub struct Smoothing {
     /// Largest distance from a row.
     pub tolerance: SmoothingTolerance,
@@ -99,6 +103,7 @@ pub struct Smoothing {
 /// Largest distance of a smoothing spline from a row.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
+#[doc(hidden)]
 pub enum SmoothingTolerance {
     /// Estimated from the rows themselves.
     #[default]
@@ -113,6 +118,7 @@ pub enum SmoothingTolerance {
 
 /// How the rows of a table were interpreted.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[doc(hidden)]
 pub struct Reading {
     /// The unit of lifts in the table.
     pub unit: String,

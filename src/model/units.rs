@@ -11,6 +11,7 @@ use super::fields::{Allowed, Fields};
 
 /// A unit: its name, and its size in the internal unit as a quotient of whole numbers, which is exact.
 #[derive(Clone, Debug, PartialEq)]
+#[doc(hidden)]
 pub struct Unit {
     name: Cow<'static, str>,
     ratio: [u128; 2],
@@ -101,6 +102,7 @@ pub struct Units {
 }
 
 /// Converts an internal value for output.
+#[doc(hidden)]
 pub type Converted = fn(&Units, f64) -> f64;
 
 /// The unit from `table` that a field names; the first one if the field is missing.

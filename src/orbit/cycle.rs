@@ -25,6 +25,7 @@ use crate::tolerance;
 
 /// One impact of a cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[doc(hidden)]
 pub struct Impact {
     /// Number of times that the cam has passed angle 0 since the cycle's start; counted modulo the cycle's revolutions.
     pub revolution: i64,
@@ -45,6 +46,7 @@ impl Impact {
 
 /// A periodic motion, as its impacts in order: at least one.
 #[derive(Clone, Debug, PartialEq)]
+#[doc(hidden)]
 pub struct Cycle {
     /// Turns of the cam in one period.
     pub revolutions: u64,
@@ -57,6 +59,7 @@ pub struct Cycle {
 #[error(
     "no periodic orbit near the guess: after {steps} Newton steps the equations are off by {residual:e} of their size"
 )]
+#[doc(hidden)]
 pub struct NotClosed {
     /// Steps of Newton's method.
     pub steps: usize,

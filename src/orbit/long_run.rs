@@ -82,6 +82,7 @@ pub enum LongRun {
 
 /// Growth and impacts of a motion that settles on nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[doc(hidden)]
 pub struct Recorded {
     /// Growth of a small deviation per revolution, a natural logarithm.
     pub growth: Estimate,
@@ -265,6 +266,7 @@ impl StickingOrbit {
 }
 
 /// Whether two angles, rad, are the same place of release.
+#[doc(hidden)]
 pub fn is_same_release(one: f64, two: f64) -> bool {
     (one - two).abs() <= tolerance::SAME_ORBIT.value
 }

@@ -27,11 +27,14 @@ pub(crate) mod family;
 pub mod long_run;
 mod multipliers;
 mod naming;
+#[doc(hidden)]
 pub mod near;
+#[doc(hidden)]
 pub mod runs;
 pub mod search;
 pub mod stability;
 pub(crate) mod sticking;
+#[doc(hidden)]
 pub mod symmetry;
 
 use nalgebra::Matrix2;
@@ -107,6 +110,7 @@ document!(Rest<'_> as it { event: it.0.kind, revolution: it.0.revolution, cam_an
 
 /// The kinds of periodic motion.
 #[derive(Clone, Debug, PartialEq)]
+#[doc(hidden)]
 pub enum Course {
     /// Impacts, and flights from one to the next.
     Impacts(Cycle),

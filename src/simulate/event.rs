@@ -61,6 +61,7 @@ impl Event {
 
 /// Work spent on finding contacts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[doc(hidden)]
 pub struct Work {
     /// Evaluations of the gap between follower and cam.
     pub gaps: u64,
@@ -95,6 +96,7 @@ impl<F: FnMut(&Event) -> ControlFlow<()>> Observer for F {
 
 /// Impacts that occurred in a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[doc(hidden)]
 pub struct ImpactTally {
     /// Number of impacts.
     pub impacts: u64,

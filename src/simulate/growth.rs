@@ -15,6 +15,7 @@ use crate::flight::{Flight, State};
 /// Minus infinity if the follower sticks to the cam, be it once in thousands of revolutions: nothing remains of a deviation then, and the
 /// motion repeats what followed the stick before. Until such a stick a chaotic motion has the growth that it would have without. A start on
 /// the cam counts from its release on. Zero revolutions have zero growth.
+#[doc(hidden)]
 pub fn growth(machine: &Machine, mut motion: Motion, revolutions: u64) -> Result<f64, SimulateError> {
     let (mut sum, mut direction) = (0.0, ANY);
     let met = &mut ImpactTally::default();
@@ -27,6 +28,7 @@ const ANY: Vector2<f64> = Vector2::new(0.6, 0.8);
 
 /// Data recorded from a run that does not repeat.
 #[derive(Clone, Debug)]
+#[doc(hidden)]
 pub struct Record {
     means: Means,
     /// Direction of the deviation, carried from one part of the record to the next.

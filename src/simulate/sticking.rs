@@ -20,6 +20,7 @@ use crate::tolerance;
 /// ```
 ///
 /// and the error is of the size `(k S1)^2`.
+#[doc(hidden)]
 pub fn accumulation(relative_velocity: f64, restitution: f64, pressing: f64, rate: f64, zeta: f64) -> (f64, f64) {
     let first = 2.0 * relative_velocity / (pressing * (1.0 - restitution));
     let bend = (rate / pressing - zeta) * first;

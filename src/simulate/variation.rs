@@ -13,6 +13,7 @@ use crate::impact::ImpactRates;
 ///
 /// Sticking erases the deviation: once the follower stays on the cam, its state depends on the cam alone, and the matrix is 0.
 #[derive(Clone, Copy, Debug)]
+#[doc(hidden)]
 pub struct Variation<'a> {
     machine: &'a Machine,
     matrix: Matrix2<f64>,

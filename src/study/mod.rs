@@ -1,22 +1,34 @@
 //! One module per question that a user can ask.
 
+#[doc(hidden)]
 pub mod attractors;
+#[doc(hidden)]
 pub mod basins;
+#[doc(hidden)]
 pub mod cam;
+#[doc(hidden)]
 pub mod certify;
+#[doc(hidden)]
 pub mod chaos;
+#[doc(hidden)]
 pub mod chart;
+#[doc(hidden)]
 pub mod compare;
+#[doc(hidden)]
 pub mod continuation;
+#[doc(hidden)]
 pub mod curve;
 pub mod design;
+#[doc(hidden)]
 pub mod diagram;
 pub mod locate;
 pub mod orbit;
+#[doc(hidden)]
 pub mod routes;
 pub mod simulate;
 pub mod speeds;
 pub mod survey;
+#[doc(hidden)]
 pub mod trapping;
 pub mod verify;
 
@@ -123,6 +135,7 @@ fn inside(model: &Model, rpm: f64, following: &Following) -> Result<f64, StudyEr
 }
 
 /// Hypotheses on the machine for proofs by intervals of doubles.
+#[doc(hidden)]
 pub fn hypotheses(cam: &Cam) -> Vec<&'static str> {
     let doubles = "the machine is the one whose numbers are the doubles that those of the model file became";
     let meets = "where one law of the lift ends the next goes on with the same lift and the same slope, as the model means it, but at corners \

@@ -450,6 +450,7 @@ pub fn speeds(
 }
 
 /// Returns the kinds of an attractor over its values, each with the number of values, by kind.
+#[doc(hidden)]
 pub fn kinds(at: &[At]) -> Vec<(Kind, usize)> {
     let mut counts: BTreeMap<Kind, usize> = BTreeMap::new();
     at.iter().for_each(|at| *counts.entry(at.ending.kind()).or_default() += 1);

@@ -111,6 +111,7 @@ document!(Orbit<'_> as it { period_s: it.1, state: it.0.as_slice() });
 
 /// Uncertainty that the accuracy of a measured cam leaves.
 #[derive(Clone, Debug)]
+#[doc(hidden)]
 pub struct LeftOpen {
     /// Accuracy of the cam.
     pub cam: Measured,
@@ -246,6 +247,7 @@ impl Verification {
 
 /// Numbers of comparisons and printed numbers of each kind.
 #[derive(Clone, Copy, Debug, Default)]
+#[doc(hidden)]
 pub struct ComparisonTally {
     /// Comparisons of two routes, without those that follow from A and B.
     pub comparisons: usize,
@@ -269,6 +271,7 @@ pub struct ComparisonTally {
 
 /// One entry of A or B by every route.
 #[derive(Clone, Debug, Serialize)]
+#[doc(hidden)]
 pub struct Entry {
     /// `A11` to `B2`.
     pub entry: &'static str,
@@ -297,6 +300,7 @@ pub fn verify(model: &Model, external: External) -> Result<Verification, LocateE
 }
 
 /// Runs [`verify`] and notifies `watch` at each step.
+#[doc(hidden)]
 pub fn verify_watched(model: &Model, external: External, watch: &dyn Watch) -> Result<Verification, LocateError> {
     watch.at("looking for the corner impact", 0, 0);
     let cam = Cam::new(model)?;

@@ -1,8 +1,7 @@
 //! A figure as one value, with three renderers: SVG, and PNG and PDF from the SVG.
 //!
 //! A [`Figure`] describes the drawing in the data's own units. The module [`layout`] places it on the page; [`svg`], [`png`] and [`pdf`]
-//! write it down in a given [`Look`]. The only thing computed here from the data is their extent; the figures themselves are built in
-//! [`crate::figures`].
+//! write it down in a given [`Look`]. The only thing computed here from the data is their extent.
 
 mod density;
 mod element;

@@ -19,6 +19,7 @@ use crate::simulate::{Machine, SimulateError, angular_velocity};
 use crate::tolerance;
 
 /// Ratio of each speed of the grid to the one before it.
+#[doc(hidden)]
 pub const GRID_RATIO: f64 = 1.02;
 /// Number of grid speeds in a cell.
 const CELL: i32 = 8;
@@ -32,6 +33,7 @@ const MOST_POINTS: usize = 1000;
 
 /// Branches, and whether all could be followed.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[doc(hidden)]
 pub struct FoundBranches {
     /// The branches found, each once.
     pub branches: Vec<Branch>,
@@ -66,6 +68,7 @@ impl FoundBranches {
 
 /// The special points on the branches of a range of speeds, and the extent of the search.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[doc(hidden)]
 pub struct MetPoints {
     /// Points by rising speed, each once.
     pub points: Vec<BranchPoint>,
@@ -164,6 +167,7 @@ pub fn find_branches(model: &Model, range: [f64; 2], wanted: &Search) -> Result<
 
 /// Finds the special points of some kinds between two speeds, rpm, of orbits of `wanted.revolutions` that have `wanted.impacts` where they
 /// were found. Any wider range gives the same points in this one.
+#[doc(hidden)]
 pub fn special_points(
     model: &Model,
     range: [f64; 2],

@@ -165,6 +165,7 @@ fn struck_deeper(angle: f64) -> Option<u64> {
 /// Reason why the class of a graze is undecided at a speed. On its two sides the class differs, or the passages after which the follower is
 /// struck deeper.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[doc(hidden)]
 pub enum UndecidedGraze {
     /// The eigenvalue has this value.
     Eigenvalue(f64),

@@ -91,6 +91,7 @@ pub struct BranchPoint {
 
 /// The event that a curve follows, at one of its points.
 #[derive(Clone, Debug, PartialEq)]
+#[doc(hidden)]
 pub struct OnCurve {
     /// Cam angle of the impact on the corner, or of the touch; for other events that of the first impact; rad.
     pub cam_angle: f64,
@@ -183,6 +184,7 @@ impl End {
 
 /// One impact of the orbits of a branch, as long as it is the same impact and the orbits have the same stability.
 #[derive(Clone, Debug, PartialEq)]
+#[doc(hidden)]
 pub struct ImpactLine {
     /// Stability of the orbits.
     pub stability: Stability,

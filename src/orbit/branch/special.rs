@@ -135,6 +135,7 @@ pub(super) fn judged(orbit: PeriodicOrbit, special: Option<Special>) -> Periodic
 
 /// A special point: the kind of change, and how well it is located.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[doc(hidden)]
 pub struct Special {
     /// The kind of change.
     pub kind: SpecialKind,

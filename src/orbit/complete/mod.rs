@@ -33,6 +33,7 @@ pub(crate) enum Standing {
 
 /// Undecided angles: an orbit may have its impacts there.
 #[derive(Clone, Debug, PartialEq)]
+#[doc(hidden)]
 pub struct Undecided {
     /// Range of the angle of each impact, rad.
     pub cam_angles: Vec<[f64; 2]>,

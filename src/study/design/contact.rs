@@ -21,6 +21,7 @@ use crate::tolerance;
 
 /// A cam and the follower on it.
 #[derive(Clone, Debug)]
+#[doc(hidden)]
 pub struct Contact<'a> {
     /// The cam.
     pub cam: &'a Cam,

@@ -80,6 +80,7 @@ document!(ForceAt as it {
 
 /// The motions that the starts of one machine converge to.
 #[derive(Clone, Debug)]
+#[doc(hidden)]
 pub struct AttractorsAt {
     /// The machine's place on the axis.
     pub place: Place,
@@ -276,6 +277,7 @@ struct RoundEntry {
 }
 
 /// Adds the uncertainty of a measured cam to a separation's speed and angle; NaN if that uncertainty is unknown.
+#[doc(hidden)]
 pub fn known(separation: Separation, likely: Option<&PlausibleCams>) -> Separation {
     let Some(likely) = likely.filter(|likely| likely.best.is_some()) else { return separation };
     let Separation::At { rpm, error, cam_angle, .. } = separation else { return separation };

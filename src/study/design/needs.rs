@@ -26,6 +26,7 @@ pub struct Need {
 
 /// A requirement on a machine.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[doc(hidden)]
 pub enum What {
     /// The follower stays on the cam.
     NoSeparation,
@@ -82,6 +83,7 @@ impl FromStr for Need {
 }
 
 /// Size of a load's unit in SI units.
+#[doc(hidden)]
 pub fn in_si(load: Load, unit: &str) -> Result<f64, String> {
     let of_load = || UNITS.iter().filter(|(of, ..)| *of == load);
     let found = of_load().find(|(_, name, _)| *name == unit).map(|(_, _, one)| *one);
@@ -98,6 +100,7 @@ pub fn in_si(load: Load, unit: &str) -> Result<f64, String> {
 /// A number of the machine that an engineer can change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
+#[doc(hidden)]
 pub enum Lever {
     /// The force of the spring at the lowest lift.
     Preload,
@@ -200,6 +203,7 @@ const SPEEDS: u32 = 24;
 
 /// The value of one number that meets a need.
 #[derive(Clone, Debug, PartialEq)]
+#[doc(hidden)]
 pub struct Answer {
     /// The need, in the user's words.
     pub need: String,

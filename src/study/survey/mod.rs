@@ -28,16 +28,25 @@ mod starts;
 mod sweep;
 mod threads;
 
-pub use axis::{Axis, Place, Spacing, Values, VariedNumber};
-#[doc(hidden)]
-pub use ensemble::outlasts;
-pub use ensemble::{Attractor, Ensemble, Failed, Judged, Wandering, attractors_of, long_run};
-pub use grid::{GridResults, RunError, Survey, SurveyError};
+pub use axis::{Spacing, Values, VariedNumber};
 pub use over::{Over, OverError};
+pub use starts::{Placed, Sample, Start};
+
+#[doc(hidden)]
+pub use axis::{Axis, Place};
+#[doc(hidden)]
+pub use ensemble::{Attractor, Ensemble, Failed, Judged, Wandering, attractors_of, long_run, outlasts};
+#[doc(hidden)]
+pub use grid::{GridResults, RunError, Survey, SurveyError};
+#[doc(hidden)]
 pub use pipeline::{Counted, RecordBlock, SweepTally};
+#[doc(hidden)]
 pub use places::Places;
+#[doc(hidden)]
 pub use point::{Point, growth};
-pub use starts::{Placed, Sample, Start, Starts};
-pub use sweep::recurrence;
-pub use sweep::{Beginning, Find, Growth, RecordRow, Section, Seen, Sweep, SweepStart, settled_impacts};
+#[doc(hidden)]
+pub use starts::Starts;
+#[doc(hidden)]
+pub use sweep::{Beginning, Find, Growth, RecordRow, Section, Seen, Sweep, SweepStart, recurrence, settled_impacts};
+#[doc(hidden)]
 pub use threads::{SweepError, threads};
