@@ -173,6 +173,14 @@ impl Model {
         Ok(numbers)
     }
 
+    /// The unit of a number of `numbers`, or of `rpm`, as the model's answers have it; empty for a pure number.
+    ///
+    /// >>> Model.paper().unit("follower.stiffness")
+    /// 'N/m'
+    fn unit(&self, path: &str) -> String {
+        self.model.units.of_number(path)
+    }
+
     /// The same model with another number, by dotted path or by the end of one that no other has; it becomes a part of the name.
     ///
     /// >>> Model.paper().with_number("restitution", 0.7)

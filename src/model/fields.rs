@@ -1,54 +1,13 @@
 //! A model file as a flat list of fields with their lines, so that every complaint can point into the file.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
 
 use super::numeral::Numeral;
+use super::quantity::{Allowed, MODEL_NUMBERS, ModelNumber};
 use super::{ModelError, nearest};
 use crate::untrusted;
-
-/// A range of finite numbers.
-#[derive(Clone, Copy)]
-pub(super) struct Allowed {
-    low: f64,
-    low_is_allowed: bool,
-    high: f64,
-}
-
-impl Allowed {
-    pub(super) const POSITIVE: Self = Self { low: 0.0, low_is_allowed: false, high: f64::INFINITY };
-    pub(super) const NOT_NEGATIVE: Self = Self { low: 0.0, low_is_allowed: true, high: f64::INFINITY };
-    pub(super) const FINITE: Self = Self { low: f64::NEG_INFINITY, low_is_allowed: false, high: f64::INFINITY };
-
-    pub(super) const fn between(low: f64, high: f64) -> Self {
-        Self { low, low_is_allowed: true, high }
-    }
-
-    /// The range above `low`, up to and including `high`.
-    pub(super) const fn above(low: f64, high: f64) -> Self {
-        Self { low, low_is_allowed: false, high }
-    }
-
-    pub(super) fn contains(self, number: f64) -> bool {
-        let above = if self.low_is_allowed { number >= self.low } else { number > self.low };
-        number.is_finite() && above && number <= self.high
-    }
-}
-
-impl fmt::Display for Allowed {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "must be a finite number")?;
-        match (self.low.is_finite(), self.low_is_allowed, self.high.is_finite()) {
-            (true, false, true) => write!(f, " above {}, up to {}", self.low, self.high),
-            (true, true, true) => write!(f, " from {} to {}", self.low, self.high),
-            (true, true, false) => write!(f, ", {} or more", self.low),
-            (true, false, false) => write!(f, " above {}", self.low),
-            _ => Ok(()),
-        }
-    }
-}
 
 /// Two numbers and their line.
 pub(super) type Pair = ([f64; 2], Option<usize>);
@@ -94,11 +53,9 @@ impl Field {
     }
 }
 
-/// Every field and table name of the format; none of them counts as a misspelling of another.
-const NAMES: &str = "name source follower cam study mass damping stiffness gravity rest_position restitution law base_radius \
-    flank_radius nose_radius flank_start_deg nose_end_deg offset amplitude amplitudes phases_deg base \
-    corner_rounding_deg preload units length force angle segment motion span_deg rise start_deg coefficients file rows spline \
-    tolerance corners_deg dwells_deg unit angle_unit rpm_min rpm_max lift";
+/// Every field and table of the format that is no number; with the numbers, none of them counts as a misspelling of another.
+const NAMES: &str = "name source follower cam study law units length force angle segment motion file rows spline corners_deg \
+    dwells_deg unit angle_unit lift";
 
 /// The fields of a model file by dotted path, and the set of those that the format has.
 #[derive(Clone, Debug)]
@@ -166,23 +123,24 @@ impl Fields {
         self.fields.contains_key(path)
     }
 
-    /// A finite number within `allowed`.
-    pub(super) fn number(&mut self, path: &str, allowed: Allowed) -> Result<f64, ModelError> {
+    /// The number at a path, within what it may be.
+    pub(super) fn number(&mut self, path: &str) -> Result<f64, ModelError> {
+        let allowed = ModelNumber::of(path).map_or(Allowed::FINITE, |number| number.allowed);
         match self.take(path)?.value {
             Value::Number(number) if allowed.contains(number) => Ok(number),
             _ => Err(self.reject(path, allowed.to_string())),
         }
     }
 
-    /// A finite number within `allowed`. A missing field gets `default` and can still be changed.
-    pub(super) fn number_or(&mut self, path: &str, allowed: Allowed, default: f64) -> Result<f64, ModelError> {
+    /// The number at a path. A missing field gets `default` and can still be changed.
+    pub(super) fn number_or(&mut self, path: &str, default: f64) -> Result<f64, ModelError> {
         if !self.has(path) {
             let table = path.rsplit_once('.').and_then(|(table, _)| self.fields.get(table));
             let key = table.map_or(0..0, |table| table.key.clone());
             let (span, written, value) = (key.clone(), default.to_string(), Value::Number(default));
             self.fields.insert(path.into(), Field { line: None, is_there: false, key, span, written, value });
         }
-        self.number(path, allowed)
+        self.number(path)
     }
 
     /// Length of an array, at least one and at most `most`.
@@ -197,7 +155,7 @@ impl Fields {
     /// An array of finite numbers, one to `most` of them.
     pub(super) fn numbers(&mut self, path: &str, most: usize) -> Result<Vec<f64>, ModelError> {
         let length = self.length(path, "numbers", most)?;
-        (0..length).map(|index| self.number(&format!("{path}[{index}]"), Allowed::FINITE)).collect()
+        (0..length).map(|index| self.number(&format!("{path}[{index}]"))).collect()
     }
 
     /// Pairs of numbers, each with its line, `fewest` to `most` of them.
@@ -273,7 +231,8 @@ impl Fields {
             (at, meant, format!("[{meant}]"))
         };
         // A name of the format is not a misspelling of another.
-        let is_name = |word: &str| NAMES.split_whitespace().any(|name| name == word);
+        let is_number = |word: &str| MODEL_NUMBERS.iter().any(|number| number.name() == word);
+        let is_name = |word: &str| is_number(word) || NAMES.split_whitespace().any(|name| name == word);
         let inside = |path: &str| path.strip_prefix(at).map(|rest| rest.trim_start_matches('.').to_owned());
         let stray: Vec<String> = self.fields.keys().filter_map(|path| inside(path)).collect();
         let stray = stray.iter().map(String::as_str).filter(|name| !name.contains(['.', '[']) && !is_name(name));

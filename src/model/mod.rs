@@ -12,6 +12,7 @@ mod fields;
 mod nearest;
 mod numeral;
 mod profile;
+mod quantity;
 mod rows;
 mod table;
 mod text;
@@ -23,7 +24,7 @@ use std::path::Path;
 use serde::Serialize;
 
 pub use complaint::ModelError;
-use fields::{Allowed, Fields};
+use fields::Fields;
 pub use nearest::nearest;
 pub use numeral::Numeral;
 pub use profile::CORNER_ROUNDING;
@@ -31,6 +32,8 @@ pub(crate) use profile::{
     ArcsProfile, MOST_COEFFICIENTS, MotionSegment, PolynomialSegment, ProgramProfile, RectifiedSineProfile,
 };
 pub use profile::{CamProfile, HarmonicProfile, StandardMotion};
+#[doc(hidden)]
+pub use quantity::{Dimension, MODEL_NUMBERS, ModelNumber};
 pub(crate) use rows::TableRow;
 pub use rows::{Separator, TableLayout};
 pub use table::Reading;
@@ -105,13 +108,13 @@ impl Model {
         let name = fields.text_or("name", "unnamed")?;
         let source = fields.text_or("source", "")?;
         let units = Units::read(&mut fields)?;
-        let mass = units.number(&mut fields, "mass", Allowed::POSITIVE)?;
-        let damping = units.number(&mut fields, "damping", Allowed::NOT_NEGATIVE)?;
-        let stiffness = units.number(&mut fields, "stiffness", Allowed::NOT_NEGATIVE)?;
-        let gravity = units.number(&mut fields, "gravity", Allowed::FINITE)?;
+        let mass = units.number(&mut fields, "mass")?;
+        let damping = units.number(&mut fields, "damping")?;
+        let stiffness = units.number(&mut fields, "stiffness")?;
+        let gravity = units.number(&mut fields, "gravity")?;
         fields.may_hold("follower.preload");
         let preload = if fields.has("follower.preload") {
-            let preload = units.number(&mut fields, "preload", Allowed::NOT_NEGATIVE)?;
+            let preload = units.number(&mut fields, "preload")?;
             fields.may_hold("follower.rest_position");
             let words = if fields.has("follower.rest_position") {
                 Some("is there beside follower.rest_position: one of them says where the spring is slack")
@@ -133,17 +136,17 @@ impl Model {
             None => {
                 let meant = "; or give follower.preload, the force of the spring where the lift is lowest";
                 let is_there = fields.has("follower.rest_position");
-                let number = fields.number("follower.rest_position", Allowed::FINITE);
+                let number = fields.number("follower.rest_position");
                 number.map_err(|error| if is_there { error } else { error.found(meant) })?
             }
         };
-        let restitution = fields.number("follower.restitution", Allowed::between(0.0, 1.0))?;
+        let restitution = fields.number("follower.restitution")?;
         let follower = Follower { mass, damping, stiffness, gravity, rest_position, restitution };
         let cam = profile::read(&mut fields)?;
         fields.may_hold("study.rpm_min");
         let study = if fields.has("study") {
-            let rpm_min = fields.number("study.rpm_min", Allowed::POSITIVE)?;
-            let rpm_max = fields.number("study.rpm_max", Allowed::POSITIVE)?;
+            let rpm_min = fields.number("study.rpm_min")?;
+            let rpm_max = fields.number("study.rpm_max")?;
             if rpm_max <= rpm_min {
                 return Err(fields.reject("study.rpm_max", format!("must be above study.rpm_min = {rpm_min}")));
             }

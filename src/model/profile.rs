@@ -3,7 +3,7 @@
 use serde::{Serialize, Serializer};
 
 use super::ModelError;
-use super::fields::{Allowed, Fields};
+use super::fields::Fields;
 use super::table::{self, TableProfile};
 use crate::tolerance;
 
@@ -216,7 +216,7 @@ pub const CORNER_ROUNDING: &str = "cam.corner_rounding_deg";
 pub(super) fn read(fields: &mut Fields) -> Result<CamProfile, ModelError> {
     let read = fields.choice("cam.law", &CAM_LAWS)?;
     let (path, least) = (CORNER_ROUNDING, tolerance::LEAST_ROUNDING.value);
-    let corner_rounding_deg = fields.number_or(path, Allowed::between(0.0, 360.0), 0.0)?;
+    let corner_rounding_deg = fields.number_or(path, 0.0)?;
     if 0.0 < corner_rounding_deg && corner_rounding_deg < least {
         return Err(fields.reject(path, format!("must be 0, or from {least} on")));
     }
@@ -229,16 +229,16 @@ pub(super) fn read(fields: &mut Fields) -> Result<CamProfile, ModelError> {
 
 fn arcs(fields: &mut Fields) -> Result<CamProfile, ModelError> {
     Ok(CamProfile::Arcs(ArcsProfile {
-        base_radius: fields.number("cam.base_radius", Allowed::POSITIVE)?,
-        flank_radius: fields.number("cam.flank_radius", Allowed::POSITIVE)?,
-        nose_radius: fields.number("cam.nose_radius", Allowed::POSITIVE)?,
-        flank_start_deg: fields.number("cam.flank_start_deg", Allowed::between(0.0, 180.0))?,
-        nose_end_deg: fields.number("cam.nose_end_deg", Allowed::between(0.0, 180.0))?,
+        base_radius: fields.number("cam.base_radius")?,
+        flank_radius: fields.number("cam.flank_radius")?,
+        nose_radius: fields.number("cam.nose_radius")?,
+        flank_start_deg: fields.number("cam.flank_start_deg")?,
+        nose_end_deg: fields.number("cam.nose_end_deg")?,
     }))
 }
 
 fn harmonic(fields: &mut Fields) -> Result<CamProfile, ModelError> {
-    let offset = fields.number("cam.offset", Allowed::FINITE)?;
+    let offset = fields.number("cam.offset")?;
     let amplitudes = fields.numbers("cam.amplitudes", MOST_HARMONICS)?;
     let phases_deg = fields.numbers("cam.phases_deg", MOST_HARMONICS)?;
     if amplitudes.len() != phases_deg.len() {
@@ -254,13 +254,13 @@ fn harmonic(fields: &mut Fields) -> Result<CamProfile, ModelError> {
 
 fn rectified_sine(fields: &mut Fields) -> Result<CamProfile, ModelError> {
     Ok(CamProfile::RectifiedSine(RectifiedSineProfile {
-        offset: fields.number("cam.offset", Allowed::FINITE)?,
-        amplitude: fields.number("cam.amplitude", Allowed::FINITE)?,
+        offset: fields.number("cam.offset")?,
+        amplitude: fields.number("cam.amplitude")?,
     }))
 }
 
 fn program(fields: &mut Fields) -> Result<CamProfile, ModelError> {
-    let base = fields.number("cam.base", Allowed::FINITE)?;
+    let base = fields.number("cam.base")?;
     let count = fields.tables("cam.segment", MOST_SEGMENTS)?;
     let segments = (0..count).map(|index| motion_segment(fields, index)).collect::<Result<_, _>>()?;
     Ok(CamProfile::Program(ProgramProfile { base, segments }))
@@ -269,11 +269,11 @@ fn program(fields: &mut Fields) -> Result<CamProfile, ModelError> {
 fn motion_segment(fields: &mut Fields, index: usize) -> Result<MotionSegment, ModelError> {
     let path = |name: &str| format!("cam.segment[{index}].{name}");
     let motion = fields.choice(&path("motion"), &StandardMotion::NAMES)?;
-    let span_deg = fields.number(&path("span_deg"), Allowed::above(0.0, 360.0))?;
+    let span_deg = fields.number(&path("span_deg"))?;
     fields.may_hold(&path("rise"));
     let rise = match motion {
         StandardMotion::Dwell if !fields.has(&path("rise")) => 0.0,
-        _ => fields.number(&path("rise"), Allowed::FINITE)?,
+        _ => fields.number(&path("rise"))?,
     };
     if motion == StandardMotion::Dwell && rise != 0.0 {
         return Err(fields.reject(&path("rise"), "must be 0: a dwell does not rise"));
@@ -286,7 +286,7 @@ fn polynomial(fields: &mut Fields) -> Result<CamProfile, ModelError> {
     let mut segments: Vec<PolynomialSegment> = Vec::with_capacity(count);
     for index in 0..count {
         let path = |name: &str| format!("cam.segment[{index}].{name}");
-        let start_deg = fields.number(&path("start_deg"), Allowed::between(0.0, 360.0))?;
+        let start_deg = fields.number(&path("start_deg"))?;
         if start_deg >= 360.0 {
             return Err(fields.reject(&path("start_deg"), "must be below 360, which is 0 again"));
         }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use serde::Serialize;
 
 use super::ModelError;
-use super::fields::{Allowed, Fields, Pair, Value};
+use super::fields::{Fields, Pair, Value};
 use super::rows::{MOST_ROWS, Table, TableLayout, TableRow};
 use super::toml;
 use super::units::{LENGTHS, Unit, Units};
@@ -230,7 +230,7 @@ fn smoothing(fields: &mut Fields, step: Option<f64>, in_model: &Unit) -> Result<
         None => SmoothingTolerance::Auto,
         Some(Value::Text(_)) => fields.choice(path, &[("auto", SmoothingTolerance::Auto)])?,
         Some(_) => {
-            let within = fields.number(path, Allowed::POSITIVE)?;
+            let within = fields.number(path)?;
             // Half of a decimal step has one digit more; allow for its rounding.
             if let Some(step) = step.filter(|step| within < 0.5 * step * (1.0 - 8.0 * tolerance::ULP.value)) {
                 let words =

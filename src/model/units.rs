@@ -7,7 +7,8 @@
 use std::borrow::Cow;
 
 use super::ModelError;
-use super::fields::{Allowed, Fields};
+use super::fields::Fields;
+use super::quantity::{Dimension, ModelNumber};
 
 /// A unit: its name, and its size in the internal unit as a quotient of whole numbers, which is exact.
 #[derive(Clone, Debug, PartialEq)]
@@ -164,33 +165,43 @@ impl Units {
 
     /// Unit of a number of the follower; `None` for a pure number or a length.
     pub fn of_follower(&self, name: &str) -> Option<&Unit> {
-        match name {
-            "mass" => Some(&self.mass),
-            "damping" => Some(&self.damping),
-            "stiffness" => Some(&self.stiffness),
-            "gravity" => Some(&self.gravity),
-            "preload" => Some(&self.force),
-            _ => None,
+        self.of(ModelNumber::of(&format!("follower.{name}"))?.dimension)
+    }
+
+    /// Unit of the numbers of a dimension; `None` for those that are in one unit whatever the file says, and for lengths, which are in the
+    /// file's own.
+    fn of(&self, dimension: Dimension) -> Option<&Unit> {
+        match dimension {
+            Dimension::Mass => Some(&self.mass),
+            Dimension::Damping => Some(&self.damping),
+            Dimension::Stiffness => Some(&self.stiffness),
+            Dimension::Acceleration => Some(&self.gravity),
+            Dimension::Force => Some(&self.force),
+            Dimension::Pure | Dimension::Length | Dimension::Degrees | Dimension::Speed | Dimension::LengthPerPower => {
+                None
+            }
         }
     }
 
-    /// Output unit of a number that varies, by its dotted path or `rpm`; empty for a pure number and for one of the cam.
+    /// Output unit of a number, by its dotted path or `rpm`; empty for a pure number.
     pub fn of_number(&self, path: &str) -> String {
-        let name = path.strip_prefix("follower.").unwrap_or(path);
-        match name {
-            "rpm" => "rpm".into(),
-            "rest_position" => self.length.name().into(),
-            _ => self.of_follower(name).map_or(String::new(), |unit| unit.name().into()),
-        }
+        let number = ModelNumber::of(path).or_else(|| ModelNumber::of(&format!("follower.{path}")));
+        let Some(number) = number else { return String::new() };
+        let unit = self.of(number.dimension).filter(|_| self.are_given);
+        unit.map_or_else(|| self.spelled(number.dimension.si()), |unit| unit.name().into())
     }
 
     /// Reads a number of the follower and converts it to internal units.
-    pub(super) fn number(&self, fields: &mut Fields, name: &str, allowed: Allowed) -> Result<f64, ModelError> {
+    pub(super) fn number(&self, fields: &mut Fields, name: &str) -> Result<f64, ModelError> {
         let path = format!("follower.{name}");
-        let written = fields.number(&path, allowed)?;
+        let written = fields.number(&path)?;
         let number = self.of_follower(name).map_or(written, |unit| unit.inside(written));
         // After conversion, a number may have overflowed, or become 0 where that is not allowed.
-        if allowed.contains(number) { Ok(number) } else { Err(fields.reject(&path, "is too large or too small")) }
+        if ModelNumber::of(&path).is_none_or(|it| it.allowed.contains(number)) {
+            Ok(number)
+        } else {
+            Err(fields.reject(&path, "is too large or too small"))
+        }
     }
 
     /// Rewrites a unit of length, velocity or acceleration from metres to this file's length: `m/s` is `mm/s`.

@@ -87,6 +87,7 @@ mod properties;
 mod proved_orbits;
 mod published;
 mod python;
+mod quantities;
 mod random;
 mod random_orbits;
 mod regimes;

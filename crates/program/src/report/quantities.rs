@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use corner_impact::flight::Flight;
-use corner_impact::model::{CORNER_ROUNDING, Model, Units};
+use corner_impact::model::{CORNER_ROUNDING, MODEL_NUMBERS, Model, ModelNumber, Units};
 
 /// A number of a model.
 #[derive(Clone, Debug, Serialize)]
@@ -31,49 +31,18 @@ impl ReportQuantity {
     }
 }
 
-/// Evidence fields: path, symbol, meaning, unit.
-const KNOWN: [(&str, &str, &str, &str); 16] = [
-    ("follower.mass", "m", "mass of the follower", "kg"),
-    ("follower.damping", "b", "damping", "N s/m"),
-    ("follower.stiffness", "k", "stiffness of the spring", "N/m"),
-    ("follower.gravity", "g", "gravity", "m/s²"),
-    ("follower.rest_position", "", "position where the spring is slack", "m"),
-    ("follower.preload", "", "force of the spring at the lowest lift", "N"),
-    ("follower.restitution", "r", "coefficient of restitution", ""),
-    ("cam.base_radius", "ρ₀", "radius of the base circle", "m"),
-    ("cam.flank_radius", "ρ₁", "radius of the flank", "m"),
-    ("cam.nose_radius", "ρ₂", "radius of the nose", "m"),
-    ("cam.flank_start_deg", "", "cam angle where the flank starts", "deg"),
-    ("cam.nose_end_deg", "", "cam angle where the nose ends", "deg"),
-    ("cam.offset", "", "middle of the lift", "m"),
-    ("cam.amplitude", "", "amplitude of the lift", "m"),
-    ("cam.base", "", "lift at angle 0", "m"),
-    ("cam.corner_rounding_deg", "", "angle that corners are rounded over", "deg"),
-];
-
 /// All numbers of the model in the order of its file, then derived ones.
 pub(crate) fn quantities(model: &Model) -> Vec<ReportQuantity> {
-    let place = |field: &str| KNOWN.iter().position(|(path, ..)| *path == field);
     let is_said = |(field, value): &(&str, f64)| *field != CORNER_ROUNDING || *value != 0.0;
     let mut numbers: Vec<(&str, f64)> = model.numbers().filter(is_said).collect();
-    // Evidence fields in the order of the table, then the others in the order of the file.
-    numbers.sort_by_key(|(field, _)| place(field).unwrap_or(KNOWN.len()));
+    // Numbers in the order of the table, then those of lists in the order of the file.
+    let place = |field: &str| MODEL_NUMBERS.iter().position(|number| number.path == field);
+    numbers.sort_by_key(|(field, _)| place(field).unwrap_or(MODEL_NUMBERS.len()));
+    numbers.extend(
+        model.study.iter().flat_map(|study| [("study.rpm_min", study.rpm_min), ("study.rpm_max", study.rpm_max)]),
+    );
     let mut quantities: Vec<ReportQuantity> =
         numbers.into_iter().map(|(field, value)| written(&model.units, field, value)).collect();
-    if let Some(study) = model.study {
-        for (field, meaning, value) in [
-            ("study.rpm_min", "lowest speed at which a corner impact is looked for", study.rpm_min),
-            ("study.rpm_max", "highest speed at which a corner impact is looked for", study.rpm_max),
-        ] {
-            quantities.push(ReportQuantity {
-                field: field.into(),
-                symbol: "",
-                meaning: meaning.into(),
-                value,
-                unit: "rpm".into(),
-            });
-        }
-    }
     let flight = Flight::new(&model.follower);
     let follows = |symbol, meaning: &str, value, unit: &str| ReportQuantity {
         field: String::new(),
@@ -88,20 +57,6 @@ pub(crate) fn quantities(model: &Model) -> Vec<ReportQuantity> {
 }
 
 fn written(units: &Units, field: &str, value: f64) -> ReportQuantity {
-    let of_follower =
-        field.strip_prefix("follower.").and_then(|name| units.of_follower(name)).filter(|_| units.are_given);
-    let told = |unit: &str| of_follower.map_or_else(|| units.spelled(unit), |unit| unit.name().to_owned());
-    if let Some((_, symbol, meaning, unit)) = KNOWN.iter().find(|(path, ..)| *path == field) {
-        return ReportQuantity { field: field.into(), symbol, meaning: (*meaning).into(), value, unit: told(unit) };
-    }
-    let name = field.rsplit('.').next().unwrap_or(field);
-    let unit = match name.split('[').next().unwrap_or(name) {
-        "amplitudes" | "rise" => "m",
-        "phases_deg" | "span_deg" | "start_deg" => "deg",
-        // The power of a coefficient is its index in the list.
-        "coefficients" => "m/rad^place",
-        _ => "",
-    };
-    let words = name.split('[').next().unwrap_or(name).trim_end_matches("_deg").replace('_', " ");
-    ReportQuantity { field: field.into(), symbol: "", meaning: words, value, unit: told(unit) }
+    let (symbol, meaning) = ModelNumber::of(field).map_or(("", ""), |number| (number.symbol, number.meaning));
+    ReportQuantity { field: field.into(), symbol, meaning: meaning.into(), value, unit: units.of_number(field) }
 }

@@ -1,0 +1,177 @@
+//! The numbers of a model file, one row each: where a number stands, what it is, what it may be and what it is measured in.
+//!
+//! Reading, limits, "did you mean", units, the axes of figures, reports, `explain` and Python take what they need from here.
+
+use std::fmt;
+
+/// A range of finite numbers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Allowed {
+    low: f64,
+    low_is_allowed: bool,
+    high: f64,
+}
+
+impl Allowed {
+    pub(super) const POSITIVE: Self = Self { low: 0.0, low_is_allowed: false, high: f64::INFINITY };
+    pub(super) const NOT_NEGATIVE: Self = Self { low: 0.0, low_is_allowed: true, high: f64::INFINITY };
+    pub(super) const FINITE: Self = Self { low: f64::NEG_INFINITY, low_is_allowed: false, high: f64::INFINITY };
+
+    pub(super) const fn between(low: f64, high: f64) -> Self {
+        Self { low, low_is_allowed: true, high }
+    }
+
+    /// The range above `low`, up to and including `high`.
+    pub(super) const fn above(low: f64, high: f64) -> Self {
+        Self { low, low_is_allowed: false, high }
+    }
+
+    pub(super) fn contains(self, number: f64) -> bool {
+        let above = if self.low_is_allowed { number >= self.low } else { number > self.low };
+        number.is_finite() && above && number <= self.high
+    }
+}
+
+impl fmt::Display for Allowed {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "must be a finite number")?;
+        match (self.low.is_finite(), self.low_is_allowed, self.high.is_finite()) {
+            (true, false, true) => write!(f, " above {}, up to {}", self.low, self.high),
+            (true, true, true) => write!(f, " from {} to {}", self.low, self.high),
+            (true, true, false) => write!(f, ", {} or more", self.low),
+            (true, false, false) => write!(f, " above {}", self.low),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// What a number measures; its unit follows from it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[doc(hidden)]
+pub enum Dimension {
+    /// Without a unit.
+    Pure,
+    Mass,
+    Damping,
+    Stiffness,
+    Acceleration,
+    Force,
+    Length,
+    /// An angle in degrees, as the names say that have it.
+    Degrees,
+    /// Revolutions per minute.
+    Speed,
+    /// A length over a power of a radian: the power is the place in the list.
+    LengthPerPower,
+}
+
+impl Dimension {
+    /// Name of its SI unit; empty without one.
+    pub fn si(self) -> &'static str {
+        match self {
+            Self::Pure => "",
+            Self::Mass => "kg",
+            Self::Damping => "N s/m",
+            Self::Stiffness => "N/m",
+            Self::Acceleration => "m/s²",
+            Self::Force => "N",
+            Self::Length => "m",
+            Self::Degrees => "deg",
+            Self::Speed => "rpm",
+            Self::LengthPerPower => "m/rad^place",
+        }
+    }
+}
+
+/// A number of the format.
+#[doc(hidden)]
+pub struct ModelNumber {
+    /// Path without the places in lists: `follower.mass`, `cam.segment.rise`.
+    pub path: &'static str,
+    /// Symbol in the paper; empty without one.
+    pub symbol: &'static str,
+    /// What it is, in words.
+    pub meaning: &'static str,
+    /// What it measures.
+    pub dimension: Dimension,
+    /// What it may be.
+    pub(super) allowed: Allowed,
+    /// The laws of the cam that have it; empty for a number of every model.
+    pub laws: &'static [&'static str],
+}
+
+const fn number(
+    path: &'static str,
+    symbol: &'static str,
+    meaning: &'static str,
+    dimension: Dimension,
+    allowed: Allowed,
+    laws: &'static [&'static str],
+) -> ModelNumber {
+    ModelNumber { path, symbol, meaning, dimension, allowed, laws }
+}
+
+/// Every number of the format, in the order in which reports have them.
+#[doc(hidden)]
+#[rustfmt::skip]
+pub static MODEL_NUMBERS: [ModelNumber; 26] = {
+    use Dimension::*;
+    const POSITIVE: Allowed = Allowed::POSITIVE;
+    const NOT_NEGATIVE: Allowed = Allowed::NOT_NEGATIVE;
+    const FINITE: Allowed = Allowed::FINITE;
+    const HALF_A_TURN: Allowed = Allowed::between(0.0, 180.0);
+    const A_TURN: Allowed = Allowed::between(0.0, 360.0);
+    [
+        number("follower.mass", "m", "mass of the follower", Mass, POSITIVE, &[]),
+        number("follower.damping", "b", "damping", Damping, NOT_NEGATIVE, &[]),
+        number("follower.stiffness", "k", "stiffness of the spring", Stiffness, NOT_NEGATIVE, &[]),
+        number("follower.gravity", "g", "gravity", Acceleration, FINITE, &[]),
+        number("follower.rest_position", "", "position where the spring is slack", Length, FINITE, &[]),
+        number("follower.preload", "", "force of the spring at the lowest lift", Force, NOT_NEGATIVE, &[]),
+        number("follower.restitution", "r", "coefficient of restitution", Pure, Allowed::between(0.0, 1.0), &[]),
+        number("cam.base_radius", "ρ₀", "radius of the base circle", Length, POSITIVE, &["arcs"]),
+        number("cam.flank_radius", "ρ₁", "radius of the flank", Length, POSITIVE, &["arcs"]),
+        number("cam.nose_radius", "ρ₂", "radius of the nose", Length, POSITIVE, &["arcs"]),
+        number("cam.flank_start_deg", "", "cam angle where the flank starts", Degrees, HALF_A_TURN, &["arcs"]),
+        number("cam.nose_end_deg", "", "cam angle where the nose ends", Degrees, HALF_A_TURN, &["arcs"]),
+        number("cam.offset", "", "middle of the lift", Length, FINITE, &["harmonic", "rectified-sine"]),
+        number("cam.amplitude", "", "amplitude of the lift", Length, FINITE, &["rectified-sine"]),
+        number("cam.base", "", "lift at angle 0", Length, FINITE, &["program"]),
+        number("cam.tolerance", "", "largest distance of a smoothing spline from a row", Pure, POSITIVE, &["table"]),
+        number("cam.corner_rounding_deg", "", "angle that corners are rounded over", Degrees, A_TURN, &[]),
+        number("cam.amplitudes", "", "amplitudes", Length, FINITE, &["harmonic"]),
+        number("cam.phases_deg", "", "phases", Degrees, FINITE, &["harmonic"]),
+        number("cam.segment.span_deg", "", "span", Degrees, Allowed::above(0.0, 360.0), &["program"]),
+        number("cam.segment.rise", "", "rise", Length, FINITE, &["program"]),
+        number("cam.segment.start_deg", "", "start", Degrees, A_TURN, &["polynomial"]),
+        number("cam.segment.coefficients", "", "coefficients", LengthPerPower, FINITE, &["polynomial"]),
+        number("study.rpm_min", "", "lowest speed at which a corner impact is looked for", Speed, POSITIVE, &[]),
+        number("study.rpm_max", "", "highest speed at which a corner impact is looked for", Speed, POSITIVE, &[]),
+        number("rpm", "", "speed of the cam", Speed, POSITIVE, &[]),
+    ]
+};
+
+impl ModelNumber {
+    /// The number at a path, whatever its places in lists.
+    pub fn of(path: &str) -> Option<&'static Self> {
+        let mut plain = String::with_capacity(path.len());
+        let mut inside = false;
+        for c in path.chars() {
+            inside = (inside || c == '[') && c != ']';
+            if !inside && c != ']' {
+                plain.push(c);
+            }
+        }
+        MODEL_NUMBERS.iter().find(|number| number.path == plain)
+    }
+
+    /// Name in its table.
+    pub fn name(&self) -> &'static str {
+        self.path.rsplit('.').next().unwrap_or(self.path)
+    }
+
+    /// What it may be, as a complaint says it.
+    pub fn allowed(&self) -> String {
+        self.allowed.to_string()
+    }
+}
