@@ -53,10 +53,6 @@ impl Field {
     }
 }
 
-/// Every field and table of the format that is no number; with the numbers, none of them counts as a misspelling of another.
-const NAMES: &str = "name source follower cam study law units length force angle segment motion file rows spline corners_deg \
-    dwells_deg unit angle_unit lift";
-
 /// The fields of a model file by dotted path, and the set of those that the format has.
 #[derive(Clone, Debug)]
 pub(super) struct Fields {
@@ -230,9 +226,8 @@ impl Fields {
             let (at, meant) = table.rsplit_once('.').unwrap_or(("", table));
             (at, meant, format!("[{meant}]"))
         };
-        // A name of the format is not a misspelling of another.
-        let is_number = |word: &str| MODEL_NUMBERS.iter().any(|number| number.name() == word);
-        let is_name = |word: &str| is_number(word) || NAMES.split_whitespace().any(|name| name == word);
+        // A number of the format is not a misspelling of another; other names of it are unlike each other.
+        let is_name = |word: &str| MODEL_NUMBERS.iter().any(|number| number.name() == word);
         let inside = |path: &str| path.strip_prefix(at).map(|rest| rest.trim_start_matches('.').to_owned());
         let stray: Vec<String> = self.fields.keys().filter_map(|path| inside(path)).collect();
         let stray = stray.iter().map(String::as_str).filter(|name| !name.contains(['.', '[']) && !is_name(name));
