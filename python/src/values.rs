@@ -3,9 +3,9 @@
 use corner_impact::cam::within_a_turn;
 use corner_impact::flight::State;
 use corner_impact::model::{Model, Units};
+use corner_impact::orbit::Parameter;
 use corner_impact::orbit::long_run::Budget;
-use corner_impact::orbit::{Parameter, Search};
-use corner_impact::study::survey::{Axis, Placed, Spacing, Start, Values};
+use corner_impact::study::survey::{self as limits, Axis, Placed, Spacing, Start, Values};
 use corner_impact_cli::show::json;
 use numpy::{AllowTypeChange, PyArrayLike1};
 use pyo3::exceptions::PyValueError;
@@ -31,8 +31,8 @@ pub(crate) fn thread_count(value: &Bound<'_, PyAny>) -> PyResult<Option<usize>> 
     if value.is_none() {
         return Ok(None);
     }
-    let found = value.extract().ok().filter(|count| (1..=1024).contains(count));
-    found.map_or_else(|| refused(format!("threads = {value} must be None or from 1 to 1024")), |count| Ok(Some(count)))
+    let found = limits::thread_count(value.extract().unwrap_or(0));
+    found.map_or_else(|words| refused(format!("threads = {value} {words}, or None")), |count| Ok(Some(count)))
 }
 
 /// A number of something within limits.
@@ -46,27 +46,20 @@ pub(crate) fn within(name: &str, value: u64, [low, high]: [u64; 2]) -> PyResult<
 
 /// A speed that a simulation can turn at.
 pub(crate) fn speed(rpm: f64) -> PyResult<f64> {
-    if !(rpm > 0.0 && rpm.is_finite()) {
-        return refused(format!("rpm = {rpm} must be a finite number above 0"));
-    }
-    if rpm <= Values::FASTEST { Ok(rpm) } else { refused(format!("rpm = {rpm} must be {:e} or less", Values::FASTEST)) }
+    limits::speed(rpm).or_else(|words| refused(format!("rpm = {rpm} {words}")))
 }
 
 /// A range of speeds.
 pub(crate) fn speed_range((low, high): (f64, f64)) -> PyResult<[f64; 2]> {
     let range = [speed(low)?, speed(high)?];
-    if low < high { Ok(range) } else { refused(format!("rpm: {low} is not below {high}")) }
+    limits::range(range).or_else(|words| refused(format!("rpm: {words}")))
 }
 
-/// Evenly spaced speeds.
-pub(crate) fn speeds((low, high, count): (f64, f64, usize)) -> PyResult<Values> {
-    let (low, high) = (speed(low)?, speed(high)?);
-    match count {
-        _ if high < low => refused(format!("rpm: the highest speed, {high}, is below the lowest, {low}")),
-        1 if high > low => refused("rpm: 1 speed needs the lowest and the highest to be the same".into()),
-        1..=Values::MOST => Ok(Values::linear(low, high, count)),
-        _ => refused(format!("rpm: {count} speeds must be 1 to {}", Values::MOST)),
-    }
+/// The values of an axis; `what` is the word for one of them.
+fn checked(name: &str, (low, high, count): (f64, f64, usize), log: bool, what: &str) -> PyResult<Values> {
+    let spacing = if log { Spacing::Logarithmic } else { Spacing::Linear };
+    let values = Values { low, high, count, spacing }.checked(what);
+    values.or_else(|words| refused(format!("{name}: ({low}, {high}, {count}): {words}")))
 }
 
 /// One speed, or what a survey goes over.
@@ -78,11 +71,7 @@ pub(crate) enum Rpm<Range> {
 
 /// How the values of an axis lie.
 pub(crate) fn spacing(log: bool, low: f64) -> PyResult<Spacing> {
-    match log {
-        true if low > 0.0 => Ok(Spacing::Logarithmic),
-        true => refused(format!("a logarithmic axis begins above 0, and {low} does not")),
-        false => Ok(Spacing::Linear),
-    }
+    limits::spaced(low, if log { Spacing::Logarithmic } else { Spacing::Linear }).or_else(refused)
 }
 
 /// The one speed, where there is one, and what a diagram goes over.
@@ -94,16 +83,11 @@ pub(crate) fn axis(
 ) -> PyResult<(Option<f64>, Axis)> {
     match (rpm, over) {
         (Rpm::Range(range), None) => {
-            let values = Values { spacing: spacing(log, range.0)?, ..speeds(range)? };
+            let values = checked("rpm", (speed(range.0)?, speed(range.1)?, range.2), log, "speed")?;
             Ok((None, Axis::new(Parameter::Speed, &values)))
         }
         (Rpm::One(rpm), Some((name, low, high, count))) => {
-            if !(low <= high && (high - low).is_finite() && (1..=Values::MOST).contains(&count)) {
-                return refused(format!(
-                    "{name}: ({low}, {high}, {count}) must be the lowest value, the highest and how many"
-                ));
-            }
-            let values = Values { low, high, count, spacing: spacing(log, low)? };
+            let values = checked(&name, (low, high, count), log, "value")?;
             Ok((Some(speed(rpm)?), Axis::new(Parameter::named(model, &name).or_raise()?, &values)))
         }
         (Rpm::One(rpm), None) => refused(format!("rpm = {rpm} is one speed: over says what varies then")),
@@ -115,12 +99,7 @@ pub(crate) fn axis(
 
 /// For how long runs are followed.
 pub(crate) fn budget(transient: u64, record: u64, longest: u64, patience: u64) -> PyResult<Budget> {
-    Ok(Budget {
-        transient,
-        record: within("record", record, [1, u64::MAX])?,
-        longest: within("longest", longest, [1, Search::MOST_REVOLUTIONS])?,
-        patience: within("patience", patience, [0, Budget::MOST])?,
-    })
+    Budget { transient, record, longest, patience }.judging().or_else(refused)
 }
 
 /// Where a run starts: on the cam, leaving it at a relative velocity, or somewhere with a position and a velocity.

@@ -65,6 +65,7 @@ mod jump_order;
 mod labels;
 mod layering;
 mod ledger;
+mod limits;
 mod local_map;
 mod locate;
 mod measured;

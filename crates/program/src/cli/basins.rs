@@ -56,7 +56,7 @@ pub(super) struct Arguments {
     revolutions: Option<u64>,
     /// Threads [default: RAYON_NUM_THREADS, or one for each core].
     #[arg(long, value_name = "N", value_parser = threads, allow_hyphen_values = true)]
-    threads: Option<u16>,
+    threads: Option<usize>,
     /// A table (.csv, or - for standard output) or a picture (.svg, .png, .pdf).
     #[arg(long, value_name = "FILE", value_parser = picture::picture_or_table, group = "picture")]
     out: Option<PathBuf>,
@@ -98,7 +98,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let grid =
         arguments.grid.map(|Cells(cells)| section.grid(cells, arguments.position, arguments.velocity)).transpose()?;
     let budget = arguments.budget()?;
-    let (clock, threads) = (Instant::now(), arguments.threads.map(usize::from));
+    let (clock, threads) = (Instant::now(), arguments.threads);
     let begun = match grid {
         Some(grid) => SectionStarts::Grid(grid),
         None => SectionStarts::Given(States { cam_angle: section.map.cam_angle, states: arguments.state.clone() }),
@@ -147,7 +147,7 @@ fn shares(
         Some(Cells(cells)) => Begun::Grid(cells, [arguments.position, arguments.velocity]),
         None => Begun::Given(arguments.state.clone()),
     };
-    let (budget, threads) = (arguments.budget()?, arguments.threads.map(usize::from));
+    let (budget, threads) = (arguments.budget()?, arguments.threads);
     let to_standard = picture::out_is_standard(arguments.out.as_ref(), arguments.summary)?;
     let found = watched("", |watch| BasinsOver::new(&over, &axis, (cam_angle, &begun), budget, threads, watch));
     if let Some(path) = &arguments.out {

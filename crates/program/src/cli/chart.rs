@@ -52,7 +52,7 @@ pub(super) struct Arguments {
     with_curves: bool,
     /// Threads [default: RAYON_NUM_THREADS, or one for each core].
     #[arg(long, value_name = "N", value_parser = threads, allow_hyphen_values = true)]
-    threads: Option<u16>,
+    threads: Option<usize>,
     /// A table (.csv, or - for standard output), a picture (.svg, .png, .pdf), or a zarr store (.zarr): a folder of blocks of 100 x 100
     /// points, of which those that are there already are not run again.
     #[arg(long, value_name = "FILE", value_parser = out, group = "picture")]
@@ -134,7 +134,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     if arguments.with_curves && !drawn {
         return Err(CommandError::Words("--with-curves is for a picture: --out must end in .svg, .png or .pdf".into()));
     }
-    let threads = arguments.threads.map(usize::from);
+    let threads = arguments.threads;
     let folder = arguments.out.as_deref().filter(|path| is_store(path));
     if let (Some(_), None) = (arguments.shard, folder) {
         return Err(CommandError::Words("--shard is for a store: --out must end in .zarr".into()));

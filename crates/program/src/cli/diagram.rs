@@ -59,7 +59,7 @@ pub(super) struct Arguments {
     start: StartArguments,
     /// Threads [default: RAYON_NUM_THREADS, or one for each core]; up and down go from value to value on one.
     #[arg(long, value_name = "N", value_parser = threads, allow_hyphen_values = true)]
-    threads: Option<u16>,
+    threads: Option<usize>,
     /// A table (.csv, or - for standard output) or a picture (.svg, .png, .pdf).
     #[arg(long, value_name = "FILE", value_parser = picture::picture_or_table, group = "picture")]
     out: Option<PathBuf>,
@@ -109,10 +109,10 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let (rpm, axis) = over((&arguments.model, &model), arguments.rpm, arguments.over.as_ref())?;
     let across = Across::of(&axis, &model.units);
     // Attractors are those of `speeds`.
-    let (sample, found) = (arguments.start.sample(SAMPLED), arguments.budget.lengths(Budget::SURVEY));
+    let (sample, found) = (arguments.start.sample(SAMPLED), arguments.budget.lengths(Budget::SURVEY)?);
     let budget = match arguments.lyapunov {
         true => arguments.budget.budget(Budget::CHART)?,
-        false => arguments.budget.lengths(Budget::CHART),
+        false => arguments.budget.lengths(Budget::CHART)?,
     };
     let sweep = Sweep {
         over: Survey::new(&model, rpm, axis, None)?,
@@ -141,7 +141,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     if arguments.one_row {
         return one_row(arguments, &sweep.over, session);
     }
-    let (threads, target) = (arguments.threads.map(usize::from), arguments.out.as_deref());
+    let (threads, target) = (arguments.threads, arguments.out.as_deref());
     let (name, progress) = (model.name.as_str(), Progress::spinner(""));
     let swept =
         match target.map(|path| Target::create(path, &mut *session.out, arguments.picture.look()?)).transpose()? {
@@ -196,8 +196,8 @@ fn loads(
 ) -> Result<Exit, CommandError> {
     let Some(path) = arguments.out.as_deref() else { return Ok(Exit::BadInput) };
     let target = Target::create(path, &mut *session.out, arguments.picture.look()?)?;
-    let (start, threads) = (arguments.start.start()?, arguments.threads.map(usize::from));
-    let budget = arguments.budget.lengths(Budget::CHART);
+    let (start, threads) = (arguments.start.start()?, arguments.threads);
+    let budget = arguments.budget.lengths(Budget::CHART)?;
     let found = watched("", |watch| swept::loads(survey, start, budget, threads, watch))?;
     let table = || csv::loads(survey.axis().parameter.name(), &found);
     let over = match &survey.axis().parameter {
@@ -220,7 +220,7 @@ fn one_row(arguments: &Arguments, survey: &Survey, session: &mut Session<'_>) ->
     else {
         return Err(CommandError::Words("--one-row is a table: --out must end in .csv or be -".into()));
     };
-    let (start, threads) = (arguments.start.start()?, arguments.threads.map(usize::from));
+    let (start, threads) = (arguments.start.start()?, arguments.threads);
     let budget = arguments.budget.budget(Budget::CHART)?;
     let points = watched("", |watch| swept::one_row(survey, start, budget, threads, watch))?;
     file.write_all(csv::told(&csv::one_row(survey.axis(), &points), &session.units).as_bytes())?;

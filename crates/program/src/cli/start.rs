@@ -6,9 +6,8 @@ use super::CommandError;
 use super::session::Session;
 use corner_impact::cam::within_a_turn;
 use corner_impact::flight::State;
-use corner_impact::orbit::Search;
 use corner_impact::orbit::long_run::Budget;
-use corner_impact::study::survey::{Placed, Sample, Spacing, Start, Values};
+use corner_impact::study::survey::{self as limits, Placed, Sample, Spacing, Start, Values, speed};
 use corner_impact::untrusted;
 
 /// Where the run starts, or the runs of a survey.
@@ -73,26 +72,26 @@ pub(super) struct BudgetArguments {
     #[arg(long, value_name = "N", value_parser = count, allow_hyphen_values = true)]
     record: Option<u64>,
     /// The longest period of an orbit, revolutions [default: 32].
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=Search::MOST_REVOLUTIONS))]
+    #[arg(long, value_name = "N", value_parser = count, allow_hyphen_values = true)]
     longest: Option<u64>,
     /// Revolutions for which runs that settle on nothing are followed before that is called chaos, all together: the longer, the rarer the
     /// rests that are seen [default: 100000, in design, a chart or a diagram 0].
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(0..=Budget::MOST))]
+    #[arg(long, value_name = "N", value_parser = count, allow_hyphen_values = true)]
     patience: Option<u64>,
 }
 
 impl BudgetArguments {
     /// The budget that is asked for; numbers that are not named are those of `usual`. A record of no revolutions is refused.
     pub(super) fn budget(&self, usual: Budget) -> Result<Budget, CommandError> {
-        let budget = self.lengths(usual);
-        match budget.record {
-            0 => Err(CommandError::Words("--record 0: in no revolution nothing grows".into())),
-            _ => Ok(budget),
-        }
+        self.asked(usual).judging().map_err(|words| CommandError::Words(format!("--{words}")))
     }
 
     /// The revolutions that are asked for, of a diagram that judges no run.
-    pub(super) fn lengths(&self, usual: Budget) -> Budget {
+    pub(super) fn lengths(&self, usual: Budget) -> Result<Budget, CommandError> {
+        self.asked(usual).checked().map_err(|words| CommandError::Words(format!("--{words}")))
+    }
+
+    fn asked(&self, usual: Budget) -> Budget {
         Budget {
             transient: self.transient.unwrap_or(usual.transient),
             record: self.record.unwrap_or(usual.record),
@@ -142,15 +141,13 @@ pub(super) fn count(text: &str) -> Result<u64, String> {
 
 /// A speed that a simulation can turn at.
 pub(super) fn rpm(text: &str) -> Result<f64, String> {
-    let number = positive(text)?;
-    if number <= Values::FASTEST { Ok(number) } else { Err(format!("must be {:e} or less", Values::FASTEST)) }
+    speed(finite(text)?)
 }
 
 /// `LO:HI` of what `number` takes.
 fn ends(text: &str, number: fn(&str) -> Result<f64, String>) -> Result<[f64; 2], String> {
     let (low, high) = text.split_once(':').ok_or("must be LO:HI: from where to where")?;
-    let (low, high) = (number(low)?, number(high)?);
-    if low < high && (high - low).is_finite() { Ok([low, high]) } else { Err(format!("{low} is not below {high}")) }
+    limits::range([number(low)?, number(high)?])
 }
 
 /// `LO:HI`, any numbers.
@@ -190,10 +187,7 @@ pub(super) fn range_axis(text: &str) -> Result<RangeAxis, String> {
     let (bare, spacing) =
         bare.strip_suffix(":log").map_or((bare, Spacing::Linear), |bare| (bare, Spacing::Logarithmic));
     if let Ok((name, [low, high])) = parameter(bare) {
-        return match spacing {
-            Spacing::Logarithmic if low <= 0.0 => Err(begins_below(low)),
-            _ => Ok((name, [low, high], None, spacing)),
-        };
+        return Ok((name, [low, high], None, limits::spaced(low, spacing)?));
     }
     let (name, Values { low, high, count, spacing }) = axis(text)?;
     match u32::try_from(count).ok().filter(|count| (2..=100_000).contains(count)) {
@@ -201,10 +195,6 @@ pub(super) fn range_axis(text: &str) -> Result<RangeAxis, String> {
         Some(_) => Err(format!("{low} is not below {high}")),
         None => Err(format!("{count} values: there must be 2 to 100000")),
     }
-}
-
-fn begins_below(low: f64) -> String {
-    format!("a logarithmic axis begins above 0, and {low} does not")
 }
 
 /// One speed, or several of them.
@@ -245,14 +235,7 @@ fn spaced(text: &str, number: fn(&str) -> Result<f64, String>, what: &str) -> Re
     let (low, high) = (number(low)?, number(high)?);
     let count: usize =
         count.trim().parse().map_err(|_| format!("\"{}\" is not a number of {what}s", untrusted::value(count)))?;
-    match (high >= low && (high - low).is_finite(), count) {
-        (false, _) => Err(format!("the highest {what}, {high}, is below the lowest, {low}")),
-        (true, _) if spacing == Spacing::Logarithmic && low <= 0.0 => Err(begins_below(low)),
-        (_, 0) => Err(format!("must be 1 {what} or more")),
-        (true, 1) if high > low => Err(format!("1 {what} needs LO and HI to be the same")),
-        _ if count > Values::MOST => Err(format!("must be {} {what}s or fewer", Values::MOST)),
-        _ => Ok(Values { low, high, count, spacing }),
-    }
+    Values { low, high, count, spacing }.checked(what)
 }
 
 pub(super) fn state(text: &str) -> Result<State, String> {

@@ -4,21 +4,16 @@ use std::error::Error;
 
 use super::CommandError;
 use corner_impact::cancel;
+use corner_impact::study::survey::thread_count;
 use corner_impact::untrusted;
 
-/// A thread without work looks through all others for some, so that what is lost grows with the square of how many there are: a tenth
-/// of a second of one core with these, before anything is done, and more than a second with four times as many.
-const MOST: u16 = 256;
 /// Environment variable with the number of threads for all programs that use rayon.
 const VARIABLE: &str = "RAYON_NUM_THREADS";
 
 /// How many, for clap.
-pub(super) fn threads(text: &str) -> Result<u16, String> {
-    // What a machine has cores for it may use.
-    let cores = std::thread::available_parallelism().map_or(1, |cores| cores.get().try_into().unwrap_or(u16::MAX));
-    let most = MOST.max(cores);
-    let number = text.trim().parse().ok().filter(|number| (1..=most).contains(number));
-    number.ok_or_else(|| format!("must be a whole number of threads from 1 to {most}"))
+pub(super) fn threads(text: &str) -> Result<usize, String> {
+    // No number is no number of threads either.
+    thread_count(text.trim().parse().unwrap_or(0))
 }
 
 /// Starts those that are there for everything. The variable may also be empty or 0, which says nothing.
@@ -31,7 +26,7 @@ pub(super) fn start() -> Result<(), CommandError> {
             .map_err(|words| CommandError::Words(format!("{VARIABLE} = {}: {words}", untrusted::value(text))))?,
     };
     // Where a program runs several commands, the first has started them.
-    let builder = rayon::ThreadPoolBuilder::new().num_threads(asked.into());
+    let builder = rayon::ThreadPoolBuilder::new().num_threads(asked);
     let builder = builder
         .spawn_handler(|thread| std::thread::Builder::new().spawn(cancel::carry(move || thread.run())).map(drop));
     match builder.build_global() {

@@ -1,0 +1,82 @@
+//! What the numbers of a question may be, for the command line and Python alike. A complaint does not name the number: who asks knows how
+//! it is called there.
+
+use super::axis::{Spacing, Values};
+use crate::orbit::Search;
+use crate::orbit::long_run::Budget;
+
+/// Most threads of a machine with fewer cores. A thread without work looks through all others for some, so that what is lost grows with the
+/// square of how many there are: a tenth of a second of one core with these, before anything is done, and more than a second with four
+/// times as many.
+const MOST_THREADS: usize = 256;
+
+/// Whether so many threads may be started: what a machine has cores for, it may use.
+pub fn thread_count(count: u64) -> Result<usize, String> {
+    let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+    let most = MOST_THREADS.max(cores);
+    let count = usize::try_from(count).ok().filter(|count| (1..=most).contains(count));
+    count.ok_or_else(|| format!("must be a whole number of threads from 1 to {most}"))
+}
+
+/// Whether a cam can turn at a speed, rpm.
+pub fn speed(rpm: f64) -> Result<f64, String> {
+    match rpm {
+        rpm if !(rpm > 0.0 && rpm.is_finite()) => Err("must be a finite number above 0".into()),
+        rpm if rpm <= Values::FASTEST => Ok(rpm),
+        _ => Err(format!("must be {:e} or less", Values::FASTEST)),
+    }
+}
+
+/// Whether two numbers are the ends of a range.
+pub fn range([low, high]: [f64; 2]) -> Result<[f64; 2], String> {
+    if low < high && (high - low).is_finite() { Ok([low, high]) } else { Err(format!("{low} is not below {high}")) }
+}
+
+/// Whether an axis of this spacing may begin at a value.
+pub fn spaced(low: f64, spacing: Spacing) -> Result<Spacing, String> {
+    match spacing {
+        Spacing::Logarithmic if low <= 0.0 => Err(format!("a logarithmic axis begins above 0, and {low} does not")),
+        spacing => Ok(spacing),
+    }
+}
+
+impl Values {
+    /// Checks the values of an axis; `what` is the word for one of them.
+    pub fn checked(self, what: &str) -> Result<Self, String> {
+        let Self { low, high, count, spacing } = self;
+        if !(high >= low && (high - low).is_finite()) {
+            return Err(format!("the highest {what}, {high}, is below the lowest, {low}"));
+        }
+        spaced(low, spacing)?;
+        match count {
+            0 => Err(format!("must be 1 {what} or more")),
+            1 if high > low => Err(format!("1 {what} needs the lowest and the highest to be the same")),
+            1..=Self::MOST => Ok(self),
+            _ => Err(format!("must be {} {what}s or fewer", Self::MOST)),
+        }
+    }
+}
+
+impl Budget {
+    /// The limits of the longest period and of the patience.
+    pub const LIMITS: [(&str, [u64; 2]); 2] =
+        [("longest", [1, Search::MOST_REVOLUTIONS]), ("patience", [0, Self::MOST])];
+
+    /// Checks a budget by which motions are judged.
+    pub fn judging(self) -> Result<Self, String> {
+        match self.record {
+            0 => Err("record 0: in no revolution nothing grows".into()),
+            _ => self.checked(),
+        }
+    }
+
+    /// Checks a budget by which runs are only recorded.
+    pub fn checked(self) -> Result<Self, String> {
+        for ((name, [low, high]), value) in Self::LIMITS.into_iter().zip([self.longest, self.patience]) {
+            if !(low..=high).contains(&value) {
+                return Err(format!("{name} {value}: must be from {low} to {high}"));
+            }
+        }
+        Ok(self)
+    }
+}
