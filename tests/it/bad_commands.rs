@@ -68,7 +68,7 @@ fn numbers_that_cannot_be() {
         ("600:700:3:4", "can only be log"),
         ("700:600:3", "the highest speed, 600, is below the lowest, 700"),
         ("600:700:0", "1 speed or more"),
-        ("600:700:1", "LO and HI to be the same"),
+        ("600:700:1", "the lowest and the highest to be the same"),
         ("600:700:-3", "not a number of speeds"),
         ("600:700:2.5", "not a number of speeds"),
         ("600:700:20000000", "10000000 speeds or fewer"),

@@ -482,7 +482,10 @@ fn axes_that_cannot_be_are_refused() {
     for (words, says) in [
         (format!("diagram {MODEL} --rpm 700 --over friction=0:1:3 --out {out}"), "friction"),
         (format!("diagram {MODEL} --rpm 700 --over restitution=0:1:3:log --out {out}"), "begins above 0"),
-        (format!("diagram {MODEL} --rpm 700 --over restitution=0.5:0.9:1 --out {out}"), "LO and HI to be the same"),
+        (
+            format!("diagram {MODEL} --rpm 700 --over restitution=0.5:0.9:1 --out {out}"),
+            "the lowest and the highest to be the same",
+        ),
         (format!("diagram {MODEL} --rpm 700 --over restitution=0.9:0.5:3 --out {out}"), "below the lowest"),
         (format!("diagram {MODEL} --rpm 700 --over restitution=0.5:0.9:3:lin --out {out}"), "can only be log"),
         (format!("diagram {MODEL} --over restitution=0.5:0.9:3 --out {out}"), "--rpm says at which speed"),
