@@ -232,10 +232,15 @@ impl Units {
         names.collect::<Vec<_>>().join(",") + "\n"
     }
 
+    /// An angle, rad, as answers give it.
+    pub fn angle(&self, angle: f64) -> f64 {
+        if self.degrees { angle.to_degrees() } else { angle }
+    }
+
     /// Conversion of the values of a field or column whose name changes in these units; `None` for lengths, which need none.
     pub fn converted(&self, name: &str) -> Option<Converted> {
         if name.ends_with("_rad") && self.degrees {
-            Some(|_, angle| angle.to_degrees())
+            Some(Self::angle)
         } else if name.ends_with("_n") {
             Some(|units, force| units.force.told(force))
         } else {

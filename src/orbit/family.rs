@@ -1,7 +1,7 @@
 //! Machines that differ in a few numbers, along which a branch of orbits is followed.
 
 use crate::cam::Cam;
-use crate::model::{Model, ModelError};
+use crate::model::{Model, ModelError, Units};
 use crate::simulate::{Machine, angular_velocity};
 
 /// A number that may be varied.
@@ -85,6 +85,11 @@ impl Family {
     /// The machines of `model`, whose own is `machine`, at `rpm`, with `free` to be chosen.
     pub(crate) fn of(model: &Model, machine: &Machine, rpm: f64, free: Vec<Parameter>) -> Self {
         Self { model: model.clone(), machine: machine.clone(), rpm, free }
+    }
+
+    /// Units of the model.
+    pub(crate) fn units(&self) -> &Units {
+        &self.model.units
     }
 
     /// The machine with these values of the free numbers, and its speed, rpm.

@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use super::axis::{Axis, Place};
 use super::over::{self, OverError};
 use super::threads::SweepError;
-use crate::model::Model;
+use crate::model::{Model, Units};
 use crate::orbit::{Family, FamilyError, Parameter};
 use crate::progress::{Clock, Watch};
 use crate::simulate::{Machine, SimulateError, angular_velocity};
@@ -109,6 +109,11 @@ impl Survey {
     /// Value at an index in words.
     pub fn words(&self, index: usize) -> String {
         self.across.parameter.words(self.value(index))
+    }
+
+    /// Units of the model.
+    pub fn units(&self) -> &Units {
+        self.family.units()
     }
 
     /// Machine with the value at an index, for a survey over one number.

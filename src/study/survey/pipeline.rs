@@ -16,6 +16,11 @@ use crate::simulate::EventKind;
 
 /// A part of a record, made by a worker.
 pub trait RecordBlock: Default + Send {
+    /// An empty block for rows of a sweep.
+    fn of(_sweep: &Sweep) -> Self {
+        Self::default()
+    }
+
     /// Adds a row.
     fn push(&mut self, row: &RecordRow);
 
@@ -168,12 +173,12 @@ impl Sweep {
     ) -> Result<(Option<crate::simulate::Motion>, SweepTally), SweepError> {
         let value = self.over.value(index);
         let mut tally = SweepTally::default();
-        let mut block = B::default();
+        let mut block = B::of(self);
         let mut keep = |row: RecordRow| {
             tally.points += 1;
             tally.impacts += u64::from(matches!(&row.seen, Seen::Event(event) if event.kind == EventKind::Impact));
             block.push(&row);
-            if block.is_full() { send(std::mem::take(&mut block)) } else { ControlFlow::Continue(()) }
+            if block.is_full() { send(std::mem::replace(&mut block, B::of(self))) } else { ControlFlow::Continue(()) }
         };
         let (mut end, mut runs) = (None, 0);
         let mut run = || -> Result<(), RunError> {

@@ -109,7 +109,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let basins = watched("", |watch| begun.basins(&section.map.machine, budget, threads, watch))?;
     let wall_s = clock.elapsed().as_secs_f64();
     if let Some(path) = &arguments.out {
-        let table = || csv::basins(&basins);
+        let table = || csv::basins(&basins, &model.units);
         let picture = || {
             let title = format!("{} at {rpm} rpm: what each start ends on", model.name);
             // Refused above where there is none.

@@ -78,7 +78,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         // Nobody is left to tell where standard error is closed.
         let _ = session.err.write_all(pages::branches::branch(branch, name, index + 1).as_bytes());
     }
-    let table = || csv::branches(name, &found.branches);
+    let table = || csv::branches(name, &found.branches, &model.units);
     target.fill(&model.units, table, || {
         let settled = watched("", |watch| found.settled(arguments.runs, watch))?;
         Ok(branches_figure(

@@ -84,7 +84,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     }
     // Nobody is left to tell where standard error is closed.
     let _ = session.err.write_all(accounts.as_bytes());
-    let table = || csv::curves(name, &curves);
+    let table = || csv::curves(name, &curves, &model.units);
     target.fill(&model.units, table, || {
         let title = format!("{}: events against {name}", model.name);
         let speeds = curves.iter().flat_map(|found| &found.points).map(|point| point.rpm);

@@ -147,11 +147,8 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         match target.map(|path| Target::create(path, &mut *session.out, arguments.picture.look()?)).transpose()? {
             None => Swept::new(name, &sweep, threads, &progress, |_: Counted| Ok::<(), CommandError>(()))?,
             Some(Target::Table(mut file)) => {
-                let columns = csv::diagram(&sweep);
-                file.write_all(model.units.columns(&columns).as_bytes())?;
-                let take = |lines: csv::Lines| {
-                    Ok::<(), CommandError>(file.write_all(csv::in_units(&lines.0, &columns, &model.units).as_bytes())?)
-                };
+                file.write_all(csv::diagram(&sweep).as_bytes())?;
+                let take = |lines: csv::Lines| Ok::<(), CommandError>(file.write_all(lines.text.as_bytes())?);
                 let swept = Swept::new(name, &sweep, threads, &progress, take)?;
                 super::commit(vec![file])?;
                 swept
@@ -199,7 +196,7 @@ fn loads(
     let (start, threads) = (arguments.start.start()?, arguments.threads);
     let budget = arguments.budget.lengths(Budget::CHART)?;
     let found = watched("", |watch| swept::loads(survey, start, budget, threads, watch))?;
-    let table = || csv::loads(survey.axis().parameter.name(), &found);
+    let table = || csv::loads(survey.axis().parameter.name(), &found, &model.units);
     let over = match &survey.axis().parameter {
         Parameter::Speed => "cam speed",
         Parameter::Field(path) => path,
@@ -223,7 +220,7 @@ fn one_row(arguments: &Arguments, survey: &Survey, session: &mut Session<'_>) ->
     let (start, threads) = (arguments.start.start()?, arguments.threads);
     let budget = arguments.budget.budget(Budget::CHART)?;
     let points = watched("", |watch| swept::one_row(survey, start, budget, threads, watch))?;
-    file.write_all(csv::told(&csv::one_row(survey.axis(), &points), &session.units).as_bytes())?;
+    file.write_all(csv::one_row(survey.axis(), &points, survey.units()).as_bytes())?;
     super::commit(vec![file])?;
     let failed = || points.iter().enumerate().filter_map(|(index, point)| Some((index, point.as_ref().err()?)));
     if let Some((index, why)) = failed().next() {

@@ -7,7 +7,6 @@ use clap::ValueEnum;
 
 use super::CommandError;
 use super::start::{positive, range};
-use crate::show::csv;
 use corner_impact::file::Output;
 use corner_impact::model::Units;
 use corner_impact_plot::font::Fonts;
@@ -185,7 +184,7 @@ impl<'a> Target<'a> {
     ) -> Result<(), CommandError> {
         let file = match self {
             Self::Table(mut file) => {
-                file.write_all(csv::told(&table(), units).as_bytes())?;
+                file.write_all(table().as_bytes())?;
                 file
             }
             Self::Picture(canvas) => canvas.draw(figure()?, units)?,

@@ -128,18 +128,17 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let mut lines = String::new();
     let see = |sight: Sight<'_>| -> Result<(), CommandError> {
         lines.clear();
-        let (file, columns) = match sight {
+        let file = match sight {
             Sight::Events(seen) => {
                 let omega = machine.angular_velocity();
-                seen.iter().for_each(|event| csv::event(&mut lines, event, first.cam_angle, omega));
-                (&mut events, csv::EVENTS)
+                seen.iter().for_each(|event| csv::event(&mut lines, event, first.cam_angle, omega, &model.units));
+                &mut events
             }
             Sight::State(motion) => {
                 csv::strobe(&mut lines, machine, motion);
-                (&mut states, csv::STROBE)
+                &mut states
             }
         };
-        let lines = csv::in_units(&lines, columns, &model.units);
         Ok(file.as_mut().map_or(Ok(()), |file| file.write_all(lines.as_bytes()))?)
     };
     let run = watched("", |watch| simulation.run(wanted, watch, see))?;
@@ -148,9 +147,9 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         figures::TracedRun::new(machine, run.before_drawn, drawn.min(arguments.revolutions), points)
     };
     let written = written.map(|mut file| -> Result<_, CommandError> {
-        let (omega, mass) = (machine.angular_velocity(), model.follower.mass);
-        let lines = csv::trace(&seen(figures::TracedRun::WRITTEN)?.samples, first.cam_angle, omega, mass);
-        file.write_all(csv::in_units(&lines, csv::TRACE, &model.units).as_bytes())?;
+        let omega = machine.angular_velocity();
+        let lines = csv::trace(&seen(figures::TracedRun::WRITTEN)?.samples, first.cam_angle, omega, &model);
+        file.write_all(lines.as_bytes())?;
         Ok(file)
     });
     let mut files: Vec<Output<'_>> = [events, states, written.transpose()?].into_iter().flatten().collect();

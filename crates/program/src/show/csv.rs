@@ -1,14 +1,13 @@
 //! Tables as lines of CSV. Numbers have the fewest digits that read back as the same double, without a point if they are
 //! whole and never with a power of ten. The csv crate is not used, because it writes `1.0` and `1e-7`.
 
-use std::borrow::Cow;
 use std::fmt::{Display, Write};
 
 use crate::show::digits::Digits;
 use corner_impact::border_collision::EventCurve;
 use corner_impact::estimate::Estimate;
 use corner_impact::flight::State;
-use corner_impact::model::Units;
+use corner_impact::model::{Model, Units};
 use corner_impact::orbit::Eigenvalue;
 use corner_impact::orbit::branch::{Branch, SpecialKind};
 use corner_impact::orbit::long_run::LongRun;
@@ -21,43 +20,14 @@ use corner_impact::study::speeds::{At, AttractorRow, SpeedSurvey};
 use corner_impact::study::survey::{Axis, Beginning, GridResults, Point, RecordBlock, RecordRow, Section, Seen, Sweep};
 use corner_impact_plot::{Data, Figure};
 
-/// Converts a table to the units of a model.
-pub(crate) fn told<'a>(table: &'a str, units: &Units) -> Cow<'a, str> {
-    in_units(table, table.lines().next().unwrap_or_default(), units)
-}
-
-/// Converts lines under `columns`, or a whole table whose first line is `columns`, to the units of a model.
-pub(crate) fn in_units<'a>(lines: &'a str, columns: &str, units: &Units) -> Cow<'a, str> {
-    if !units.are_given {
-        return lines.into();
-    }
-    let names: Vec<&str> = columns.trim_end().split(',').collect();
-    let mut told = String::with_capacity(lines.len());
-    for line in lines.lines() {
-        if line == columns.trim_end() {
-            told.push_str(&units.columns(line));
-            continue;
-        }
-        for (index, cell) in line.split(',').enumerate() {
-            told.push_str(if index > 0 { "," } else { "" });
-            match (units.converted(names.get(index).copied().unwrap_or_default()), cell.parse()) {
-                // Writing to a string does not fail.
-                (Some(convert), Ok(value)) => _ = write!(told, "{}", convert(units, value)),
-                _ => told.push_str(cell),
-            }
-        }
-        told.push('\n');
-    }
-    told.into()
-}
-
 /// Columns of a run's events.
 pub(crate) const EVENTS: &str =
     "revolution,time_s,cam_angle_rad,event,position_m,velocity_before_m_s,velocity_after_m_s,cam_velocity_m_s\n";
 
 /// Appends an event of a run at `angular_velocity`, rad/s, that started at `start_angle`, rad.
-pub(crate) fn event(line: &mut String, event: &Event, start_angle: f64, angular_velocity: f64) {
-    let Event { revolution, cam_angle, position, velocity_before, velocity_after, cam_velocity, .. } = event;
+pub(crate) fn event(line: &mut String, event: &Event, start_angle: f64, angular_velocity: f64, units: &Units) {
+    let cam_angle = units.angle(event.cam_angle);
+    let Event { revolution, position, velocity_before, velocity_after, cam_velocity, .. } = event;
     let (time, kind) = (event.turned_since(start_angle) / angular_velocity, event.kind.name());
     // Writing to a string does not fail.
     let _ = writeln!(
@@ -79,12 +49,13 @@ pub(crate) fn strobe(line: &mut String, machine: &Machine, motion: &Motion) {
 /// Columns of a run's samples.
 pub(crate) const TRACE: &str = "time_s,cam_angle_rad,position_m,velocity_m_s,gap_m,contact_force_n\n";
 
-/// Samples of a run: time since `start_angle`, rad, and the contact force of the cam on a follower of `mass`, kg.
-pub(crate) fn trace(samples: &[TraceSample], start_angle: f64, angular_velocity: f64, mass: f64) -> String {
-    let mut lines = String::new();
+/// Samples of a run at `angular_velocity`, rad/s: time since `start_angle`, rad, and the contact force of the cam on the follower.
+pub(crate) fn trace(samples: &[TraceSample], start_angle: f64, angular_velocity: f64, model: &Model) -> String {
+    let (mut lines, units) = (String::new(), &model.units);
     for TraceSample { turned, cam_angle, state: State { position, velocity }, gap, pressing, .. } in samples {
         let time = (turned - start_angle) / angular_velocity;
-        let _ = writeln!(lines, "{time},{cam_angle},{position},{velocity},{gap},{}", mass * pressing);
+        let force = units.force.told(model.follower.mass * pressing);
+        let _ = writeln!(lines, "{time},{},{position},{velocity},{gap},{force}", units.angle(*cam_angle));
     }
     lines
 }
@@ -97,12 +68,15 @@ pub(crate) fn diagram(sweep: &Sweep) -> String {
     };
     let growth = sweep.growth.as_ref().map_or("", |_| ",lyapunov_per_revolution,lyapunov_error");
     let motion = if matches!(sweep.starts, Beginning::Found(_)) { ",attractor" } else { "" };
-    format!("{},revolution,{seen}{growth}{motion}\n", sweep.over.axis().parameter.name())
+    sweep.over.units().columns(&format!("{},revolution,{seen}{growth}{motion}\n", sweep.over.axis().parameter.name()))
 }
 
 /// Lines of a diagram, as one worker writes them.
 #[derive(Debug, Default)]
-pub(crate) struct Lines(pub String);
+pub(crate) struct Lines {
+    pub text: String,
+    units: Units,
+}
 
 impl Lines {
     /// Number of characters after which lines are sent on.
@@ -110,13 +84,17 @@ impl Lines {
 }
 
 impl RecordBlock for Lines {
+    fn of(sweep: &Sweep) -> Self {
+        Self { text: String::new(), units: sweep.over.units().clone() }
+    }
+
     fn push(&mut self, row: &RecordRow) {
-        let line = &mut self.0;
+        let line = &mut self.text;
         let RecordRow { value, revolution, motion, seen, growth } = row;
         let _ = match seen {
             Seen::Event(event) => {
-                let Event { cam_angle, position, velocity_before, velocity_after, .. } = event;
-                let kind = event.kind.name();
+                let Event { position, velocity_before, velocity_after, .. } = event;
+                let (cam_angle, kind) = (self.units.angle(event.cam_angle), event.kind.name());
                 write!(line, "{value},{revolution},{cam_angle},{kind},{position},{velocity_before},{velocity_after}")
             }
             Seen::Section(State { position, velocity }) => write!(line, "{value},{revolution},{position},{velocity}"),
@@ -131,7 +109,7 @@ impl RecordBlock for Lines {
     }
 
     fn is_full(&self) -> bool {
-        self.0.len() >= Self::FULL
+        self.text.len() >= Self::FULL
     }
 }
 
@@ -146,8 +124,8 @@ fn multipliers([one, two]: [Eigenvalue; 2]) -> String {
 }
 
 /// Table of starts, a line each, row by row; `ending` is empty if the start is below the cam.
-pub(crate) fn basins(basins: &Basins) -> String {
-    let mut lines = String::from("position_m,velocity_m_s,ending,part,revolutions,impacts,followed\n");
+pub(crate) fn basins(basins: &Basins, units: &Units) -> String {
+    let mut lines = units.columns("position_m,velocity_m_s,ending,part,revolutions,impacts,followed");
     for (index, part) in basins.cells.iter().enumerate() {
         let State { position, velocity } = basins.begun.state(index);
         let ending = part.map(|part| &basins.parts[part].ending);
@@ -200,8 +178,8 @@ fn point(lines: &mut String, point: &Result<Point, String>) {
 
 /// Table of the points of a chart, a line each, row by row.
 pub(crate) fn chart(found: &Charted) -> String {
-    let mut lines = format!("x,y,{POINT}");
-    let Chart { x, y, .. } = &found.chart;
+    let Chart { x, y, model, .. } = &found.chart;
+    let mut lines = model.units.columns(&format!("x,y,{POINT}"));
     for (index, point) in found.points.iter().enumerate() {
         let (x, y) = (x.values[index % x.values.len()], y.values[index / x.values.len()]);
         let _ = write!(lines, "{x},{y},");
@@ -211,8 +189,8 @@ pub(crate) fn chart(found: &Charted) -> String {
 }
 
 /// Table of the motions at each value, a line each.
-pub(crate) fn one_row(over: &Axis, points: &GridResults<Point>) -> String {
-    let mut lines = format!("{},{POINT}", over.parameter.name());
+pub(crate) fn one_row(over: &Axis, points: &GridResults<Point>, units: &Units) -> String {
+    let mut lines = units.columns(&format!("{},{POINT}", over.parameter.name()));
     for (value, point) in over.values.iter().zip(points) {
         let _ = write!(lines, "{value},");
         self::point(&mut lines, point);
@@ -221,12 +199,13 @@ pub(crate) fn one_row(over: &Axis, points: &GridResults<Point>) -> String {
 }
 
 /// Table of the loads on follower and cam, a line for each revolution of a sweep.
-pub(crate) fn loads(over: &str, sweep: &[Vec<Loads>]) -> String {
-    let mut lines = format!("{over},revolution,impact_speed_m_s,gap_m,off_cam_share,energy_lost_j,largest_force_n\n");
+pub(crate) fn loads(over: &str, sweep: &[Vec<Loads>], units: &Units) -> String {
+    let columns = format!("{over},revolution,impact_speed_m_s,gap_m,off_cam_share,energy_lost_j,largest_force_n");
+    let mut lines = units.columns(&columns);
     for (revolution, Loads { place, impact_speed, gap, off_cam, energy, force, .. }) in
         sweep.iter().flat_map(|at| at.iter().enumerate())
     {
-        let value = place.across();
+        let (value, force) = (place.across(), units.force.told(*force));
         let _ = writeln!(lines, "{value},{revolution},{impact_speed},{gap},{off_cam},{energy},{force}");
     }
     lines
@@ -258,11 +237,11 @@ pub(crate) fn speeds(found: &SpeedSurvey) -> String {
 
 /// Table of every orbit of every branch, with its first impact and the state just after that. An orbit without impacts has
 /// the state at angle 0.
-pub(crate) fn branches(parameter: &str, branches: &[Branch]) -> String {
-    let mut lines = String::from(
+pub(crate) fn branches(parameter: &str, branches: &[Branch], units: &Units) -> String {
+    let mut lines = units.columns(
         "rpm,parameter,value,revolutions,impacts,cam_angle_rad,position_m,velocity_m_s,multiplier_1_re,multiplier_1_im,\
          multiplier_2_re,multiplier_2_im,stable,special,branch,jump_order,bracket_low,bracket_high,special_residual,stability,\
-         graze_class\n",
+         graze_class",
     );
     let points = branches.iter().zip(1..).flat_map(|(branch, index)| branch.points.iter().map(move |p| (index, p)));
     for (index, point) in points {
@@ -270,6 +249,7 @@ pub(crate) fn branches(parameter: &str, branches: &[Branch]) -> String {
         let (turns, stable, impacts) = (orbit.revolutions, orbit.is_stable(), orbit.impacts().count());
         let first = orbit.impacts().next().map(|first| (first.cam_angle, first.position, first.velocity_after));
         let (angle, position, velocity) = first.unwrap_or((0.0, orbit.state.position, orbit.state.velocity));
+        let angle = units.angle(angle);
         let (order, class) = match special.map(|special| special.kind) {
             Some(SpecialKind::Corner { jump_order, .. }) => (Some(jump_order), None),
             Some(SpecialKind::Graze { first, .. }) => (None, first.map(|first| first.class)),
@@ -286,15 +266,15 @@ pub(crate) fn branches(parameter: &str, branches: &[Branch]) -> String {
 }
 
 /// Table of every event of every curve; columns for corner impacts only are empty for other events.
-pub(crate) fn curves(parameter: &str, curves: &[EventCurve]) -> String {
-    let mut lines = String::from(
+pub(crate) fn curves(parameter: &str, curves: &[EventCurve], units: &Units) -> String {
+    let mut lines = units.columns(
         "rpm,parameter,value,revolutions,impacts,cam_angle_rad,jump_order,scenario,multiplier_minus_1_re,\
          multiplier_minus_1_im,multiplier_minus_2_re,multiplier_minus_2_im,multiplier_plus_1_re,multiplier_plus_1_im,\
-         multiplier_plus_2_re,multiplier_plus_2_im,special,curve,event\n",
+         multiplier_plus_2_re,multiplier_plus_2_im,special,curve,event",
     );
     let points = curves.iter().zip(1..).flat_map(|(curve, index)| curve.points.iter().map(move |p| (curve, index, p)));
     for (curve, index, point) in points {
-        let (rpm, value, angle, turns) = (point.rpm, point.value, point.cam_angle, point.revolutions);
+        let (rpm, value, angle, turns) = (point.rpm, point.value, units.angle(point.cam_angle), point.revolutions);
         let order = if let SpecialKind::Corner { jump_order, .. } = curve.kind { Some(jump_order) } else { None };
         let (count, order, happening) = (point.impacts, cell(order), cell(point.happening));
         let _ = write!(lines, "{rpm},{parameter},{value},{turns},{count},{angle},{order},{happening}");

@@ -1,46 +1,158 @@
 //! JSON output.
 
-use serde::Serialize;
+use std::io::{self, Write};
 
-use corner_impact::model::Units;
+use corner_impact::model::{Converted, Units};
+use serde::Serialize;
+use serde_json::ser::{CharEscape, Formatter, PrettyFormatter, Serializer};
 
 /// Writes one JSON document, indented, with a line end, in the units of a model.
 pub fn render(document: &impl Serialize, units: &Units) -> Result<String, serde_json::Error> {
-    let text = serde_json::to_string_pretty(document)? + "\n";
-    Ok(if units.are_given { in_units(&text, units) } else { text })
+    let text = if units.are_given {
+        let mut bytes = Vec::new();
+        document.serialize(&mut Serializer::with_formatter(&mut bytes, InUnits::new(units)))?;
+        // serde_json writes nothing but UTF-8.
+        String::from_utf8_lossy(&bytes).into_owned()
+    } else {
+        serde_json::to_string_pretty(document)?
+    };
+    Ok(text + "\n")
 }
 
-/// Converts names and values to the units of a model. Each name begins a line of its own, as does each number of a list.
-fn in_units(text: &str, units: &Units) -> String {
-    let mut told = String::with_capacity(text.len());
-    // Conversion of the numbers of the current list, and the indent of that list.
-    let mut list = None;
-    for line in text.lines() {
-        let body = line.trim_start();
-        let indent = line.len() - body.len();
-        told.push_str(&line[..indent]);
-        let is_name = |name: &str| name.bytes().all(|letter| letter.is_ascii_alphanumeric() || letter == b'_');
-        let entry = body.strip_prefix('"').and_then(|rest| rest.split_once("\": ")).filter(|(name, _)| is_name(name));
-        let (convert, value) = match entry {
-            Some((name, value)) => {
-                let convert = units.converted(name);
-                // A ball stays in the unit in which it is proved.
-                let name = if convert.is_some() && value == "{" { name.to_owned() } else { units.field(name) };
-                list = convert.filter(|_| value == "[").map(|convert| (convert, indent)).or(list);
-                told.push_str(&format!("\"{name}\": "));
-                (convert, value)
-            }
-            None => (list.map(|(convert, _)| convert), body),
-        };
-        list = list.filter(|(_, opened)| indent > *opened || value == "[");
-        let number = value.trim_end_matches(',');
-        match (convert, number.parse()) {
-            (Some(convert), Ok(parsed)) => {
-                told.push_str(&format!("{}{}", convert(units, parsed), &value[number.len()..]));
-            }
-            _ => told.push_str(value),
-        }
-        told.push('\n');
+/// Writes a document with names and numbers in the units of a model.
+struct InUnits<'a> {
+    pretty: PrettyFormatter<'a>,
+    units: &'a Units,
+    /// The name whose value comes next, as it is escaped.
+    name: Option<Vec<u8>>,
+    /// Whether that name is still being written.
+    is_named: bool,
+    /// Conversion of the numbers in each open list; none for an object, whose names decide.
+    open: Vec<Option<Converted>>,
+}
+
+impl<'a> InUnits<'a> {
+    fn new(units: &'a Units) -> Self {
+        Self { pretty: PrettyFormatter::new(), units, name: None, is_named: false, open: Vec::new() }
     }
-    told
+
+    /// Writes the name before a value, and returns the conversion of the numbers in it.
+    fn enter<W: ?Sized + Write>(&mut self, writer: &mut W, is_object: bool) -> io::Result<Option<Converted>> {
+        let Some(name) = self.name.take() else { return Ok(self.open.last().copied().flatten()) };
+        let name = String::from_utf8_lossy(&name);
+        let is_plain = name.bytes().all(|letter| letter.is_ascii_alphanumeric() || letter == b'_');
+        let convert = if is_plain { self.units.converted(&name) } else { None };
+        // A ball stays in the unit in which it is proved.
+        let is_kept = !is_plain || (convert.is_some() && is_object);
+        let told = if is_kept { name.into_owned() } else { self.units.field(&name) };
+        write!(writer, "\"{told}\": ")?;
+        Ok(convert.filter(|_| !is_object))
+    }
+}
+
+/// Numbers that are not converted, and words: none of them is measured.
+macro_rules! as_they_are {
+    ($($write:ident($kind:ty)),+) => {$(
+        fn $write<W: ?Sized + Write>(&mut self, writer: &mut W, value: $kind) -> io::Result<()> {
+            if let (true, Some(name)) = (self.is_named, &mut self.name) {
+                return self.pretty.$write(name, value);
+            }
+            self.enter(writer, false)?;
+            self.pretty.$write(writer, value)
+        }
+    )+};
+}
+
+impl Formatter for InUnits<'_> {
+    as_they_are!(write_bool(bool), write_i8(i8), write_i16(i16), write_i32(i32), write_i64(i64), write_i128(i128));
+    as_they_are!(write_u8(u8), write_u16(u16), write_u32(u32), write_u64(u64), write_u128(u128));
+    as_they_are!(write_number_str(&str), write_raw_fragment(&str));
+
+    fn write_f64<W: ?Sized + Write>(&mut self, writer: &mut W, value: f64) -> io::Result<()> {
+        let convert = self.enter(writer, false)?;
+        self.pretty.write_f64(writer, convert.map_or(value, |convert| convert(self.units, value)))
+    }
+
+    fn write_f32<W: ?Sized + Write>(&mut self, writer: &mut W, value: f32) -> io::Result<()> {
+        self.write_f64(writer, value.into())
+    }
+
+    fn write_null<W: ?Sized + Write>(&mut self, writer: &mut W) -> io::Result<()> {
+        self.enter(writer, false)?;
+        self.pretty.write_null(writer)
+    }
+
+    fn begin_string<W: ?Sized + Write>(&mut self, writer: &mut W) -> io::Result<()> {
+        if self.is_named {
+            return Ok(());
+        }
+        self.enter(writer, false)?;
+        self.pretty.begin_string(writer)
+    }
+
+    fn end_string<W: ?Sized + Write>(&mut self, writer: &mut W) -> io::Result<()> {
+        if self.is_named { Ok(()) } else { self.pretty.end_string(writer) }
+    }
+
+    fn write_string_fragment<W: ?Sized + Write>(&mut self, writer: &mut W, fragment: &str) -> io::Result<()> {
+        match (self.is_named, &mut self.name) {
+            (true, Some(name)) => self.pretty.write_string_fragment(name, fragment),
+            _ => self.pretty.write_string_fragment(writer, fragment),
+        }
+    }
+
+    fn write_char_escape<W: ?Sized + Write>(&mut self, writer: &mut W, escape: CharEscape) -> io::Result<()> {
+        match (self.is_named, &mut self.name) {
+            (true, Some(name)) => self.pretty.write_char_escape(name, escape),
+            _ => self.pretty.write_char_escape(writer, escape),
+        }
+    }
+
+    fn begin_array<W: ?Sized + Write>(&mut self, writer: &mut W) -> io::Result<()> {
+        let convert = self.enter(writer, false)?;
+        self.open.push(convert);
+        self.pretty.begin_array(writer)
+    }
+
+    fn end_array<W: ?Sized + Write>(&mut self, writer: &mut W) -> io::Result<()> {
+        self.open.pop();
+        self.pretty.end_array(writer)
+    }
+
+    fn begin_array_value<W: ?Sized + Write>(&mut self, writer: &mut W, first: bool) -> io::Result<()> {
+        self.pretty.begin_array_value(writer, first)
+    }
+
+    fn end_array_value<W: ?Sized + Write>(&mut self, writer: &mut W) -> io::Result<()> {
+        self.pretty.end_array_value(writer)
+    }
+
+    fn begin_object<W: ?Sized + Write>(&mut self, writer: &mut W) -> io::Result<()> {
+        self.enter(writer, true)?;
+        self.open.push(None);
+        self.pretty.begin_object(writer)
+    }
+
+    fn end_object<W: ?Sized + Write>(&mut self, writer: &mut W) -> io::Result<()> {
+        self.open.pop();
+        self.pretty.end_object(writer)
+    }
+
+    fn begin_object_key<W: ?Sized + Write>(&mut self, writer: &mut W, first: bool) -> io::Result<()> {
+        (self.name, self.is_named) = (Some(Vec::new()), true);
+        self.pretty.begin_object_key(writer, first)
+    }
+
+    fn end_object_key<W: ?Sized + Write>(&mut self, _: &mut W) -> io::Result<()> {
+        self.is_named = false;
+        Ok(())
+    }
+
+    fn begin_object_value<W: ?Sized + Write>(&mut self, _: &mut W) -> io::Result<()> {
+        Ok(())
+    }
+
+    fn end_object_value<W: ?Sized + Write>(&mut self, writer: &mut W) -> io::Result<()> {
+        self.pretty.end_object_value(writer)
+    }
 }
