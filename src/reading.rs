@@ -136,7 +136,7 @@ impl Model {
     /// Refuses numbers from which the computed quantities would leave the range of a double.
     fn sized(&self) -> Result<(), ModelError> {
         let (most, least) = (tolerance::LEAST_SIZE.value.recip(), tolerance::LEAST_SIZE.value);
-        let Follower { mass, damping, stiffness, gravity, rest_position, .. } = self.follower;
+        let Follower { mass, damping, stiffness, gravity, rest_position, restitution: _ } = self.follower;
         let products = [
             ("follower.mass", "mass", mass),
             ("follower.damping", "damping / mass", damping / mass),

@@ -1,4 +1,4 @@
-//! What has to go before a signal ends the program: hidden files, private folders and started programs.
+//! Registry of the hidden files, private folders and started programs that must be removed or ended before a signal ends the program.
 //!
 //! Destructors do not run when a signal ends the program. A program that leaves its signals to itself calls [`clear`] first.
 

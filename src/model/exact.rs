@@ -6,7 +6,7 @@ use serde_json::{Map, Value as Item, json};
 
 use super::fields::{Fields, Value};
 use super::numeral::Numeral;
-use super::{Model, Unit};
+use super::{Follower, Model, Unit};
 
 impl Model {
     /// Tables of the follower and the cam, as in a model file in SI units or in the file's unit of length, with every number as text.
@@ -14,17 +14,18 @@ impl Model {
     /// If the file gives a preload, it replaces the rest position. A number that no field of the file has, such as a lift of
     /// another table, is the shortest decimal that reads back as its double.
     pub fn exact(&self) -> Item {
-        let it = &self.follower;
+        // Without `..`: a number that is left out here would be left out of every proof.
+        let Follower { mass, damping, stiffness, gravity, rest_position, restitution } = self.follower;
         let spring = match self.preload {
             Some(preload) => ("preload", preload),
-            None => ("rest_position", it.rest_position),
+            None => ("rest_position", rest_position),
         };
         let numbers = [
-            ("mass", it.mass),
-            ("damping", it.damping),
-            ("stiffness", it.stiffness),
-            ("gravity", it.gravity),
-            ("restitution", it.restitution),
+            ("mass", mass),
+            ("damping", damping),
+            ("stiffness", stiffness),
+            ("gravity", gravity),
+            ("restitution", restitution),
             spring,
         ];
         let exact = |(name, number): (&str, f64)| {

@@ -1,6 +1,7 @@
-//! The numbers of a model file, one row each: where a number stands, what it is, what it may be and what it is measured in.
+//! Table of the numbers of a model file: path, symbol, meaning, dimension, allowed range and laws of each.
 //!
-//! Reading, limits, "did you mean", units, the axes of figures, reports, `explain` and Python take what they need from here.
+//! Limits, "did you mean", units, the axes of figures, reports and `explain` follow from a row. The code that reads a number and the laws
+//! that use it do not: `docs/extending.md` lists them.
 
 use std::fmt;
 
@@ -45,7 +46,7 @@ impl fmt::Display for Allowed {
     }
 }
 
-/// What a number measures; its unit follows from it.
+/// Dimension of a number, which determines its unit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[doc(hidden)]
 pub enum Dimension {
@@ -90,11 +91,11 @@ pub struct ModelNumber {
     pub path: &'static str,
     /// Symbol in the paper; empty without one.
     pub symbol: &'static str,
-    /// What it is, in words.
+    /// Meaning in words.
     pub meaning: &'static str,
-    /// What it measures.
+    /// Dimension.
     pub dimension: Dimension,
-    /// What it may be.
+    /// Allowed range.
     pub(super) allowed: Allowed,
     /// The laws of the cam that have it; empty for a number of every model.
     pub laws: &'static [&'static str],
@@ -154,14 +155,8 @@ pub static MODEL_NUMBERS: [ModelNumber; 26] = {
 impl ModelNumber {
     /// The number at a path, whatever its places in lists.
     pub fn of(path: &str) -> Option<&'static Self> {
-        let mut plain = String::with_capacity(path.len());
-        let mut inside = false;
-        for c in path.chars() {
-            inside = (inside || c == '[') && c != ']';
-            if !inside && c != ']' {
-                plain.push(c);
-            }
-        }
+        let without_place = |part: &'_ str| part.split_once(']').map_or(part, |(_, rest)| rest).to_owned();
+        let plain: String = path.split('[').map(without_place).collect();
         MODEL_NUMBERS.iter().find(|number| number.path == plain)
     }
 

@@ -1,8 +1,9 @@
-//! What the numbers of a question may be: one rule for the command line and Python.
+//! Limits of the numbers that a user asks with: one rule for the command line and Python.
 
 use corner_impact::orbit::Search;
 use corner_impact::orbit::long_run::Budget;
-use corner_impact::study::survey::{Spacing, Values, range, spaced, speed, thread_count};
+use corner_impact::study::survey::limits::{range, spaced, speed, thread_count};
+use corner_impact::study::survey::{Spacing, Values};
 
 #[test]
 fn a_cam_turns_at_a_finite_speed_above_0() {

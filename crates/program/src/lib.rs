@@ -1,4 +1,4 @@
-//! What people look at: the command line, pages, reports and figures of [`corner_impact`]. It computes nothing of its own.
+//! The command line, pages, reports and figures of [`corner_impact`]. This package computes nothing of its own.
 //!
 //! ```text
 //!  show                  blocks on a terminal, in a browser and as Markdown; JSON, CSV; words and digits, each written once

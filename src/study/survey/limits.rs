@@ -1,5 +1,5 @@
-//! What the numbers of a question may be, for the command line and Python alike. A complaint does not name the number: who asks knows how
-//! it is called there.
+//! Limits of the numbers that a user asks with, for the command line and Python alike. A complaint does not name the number: the caller adds
+//! the name that it has there.
 
 use super::axis::{Spacing, Values};
 use crate::orbit::Search;
@@ -58,10 +58,6 @@ impl Values {
 }
 
 impl Budget {
-    /// The limits of the longest period and of the patience.
-    pub const LIMITS: [(&str, [u64; 2]); 2] =
-        [("longest", [1, Search::MOST_REVOLUTIONS]), ("patience", [0, Self::MOST])];
-
     /// Checks a budget by which motions are judged.
     pub fn judging(self) -> Result<Self, String> {
         match self.record {
@@ -72,7 +68,9 @@ impl Budget {
 
     /// Checks a budget by which runs are only recorded.
     pub fn checked(self) -> Result<Self, String> {
-        for ((name, [low, high]), value) in Self::LIMITS.into_iter().zip([self.longest, self.patience]) {
+        for (name, value, [low, high]) in
+            [("longest", self.longest, [1, Search::MOST_REVOLUTIONS]), ("patience", self.patience, [0, Self::MOST])]
+        {
             if !(low..=high).contains(&value) {
                 return Err(format!("{name} {value}: must be from {low} to {high}"));
             }

@@ -10,7 +10,7 @@
 //! | `ensemble` | the motions on which one start, or several, settle |
 //! | `point` | the motion of one start, in numbers: a point of a chart, a row of a diagram |
 //! | `axis` | the values of a number that a survey goes through |
-//! | `limits` | what the numbers of a question may be |
+//! | `limits` | limits of the numbers that a user asks with |
 //! | `over` | the machines over one number, at any value |
 //! | `grid` | the machines over one number or two, side by side |
 //! | `sweep` | runs over one number, recorded and not judged |
@@ -21,7 +21,8 @@
 mod axis;
 mod ensemble;
 mod grid;
-mod limits;
+#[doc(hidden)]
+pub mod limits;
 mod over;
 mod pipeline;
 mod places;
@@ -40,8 +41,6 @@ pub use axis::{Axis, Place};
 pub use ensemble::{Attractor, Ensemble, Failed, Judged, Wandering, attractors_of, long_run, outlasts};
 #[doc(hidden)]
 pub use grid::{GridResults, RunError, Survey, SurveyError};
-#[doc(hidden)]
-pub use limits::{range, spaced, speed, thread_count};
 #[doc(hidden)]
 pub use pipeline::{Counted, RecordBlock, SweepTally};
 #[doc(hidden)]

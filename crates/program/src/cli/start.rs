@@ -7,7 +7,7 @@ use super::session::Session;
 use corner_impact::cam::within_a_turn;
 use corner_impact::flight::State;
 use corner_impact::orbit::long_run::Budget;
-use corner_impact::study::survey::{self as limits, Placed, Sample, Spacing, Start, Values, speed};
+use corner_impact::study::survey::{Placed, Sample, Spacing, Start, Values, limits};
 use corner_impact::untrusted;
 
 /// Where the run starts, or the runs of a survey.
@@ -141,7 +141,7 @@ pub(super) fn count(text: &str) -> Result<u64, String> {
 
 /// A speed that a simulation can turn at.
 pub(super) fn rpm(text: &str) -> Result<f64, String> {
-    speed(finite(text)?)
+    limits::speed(finite(text)?)
 }
 
 /// `LO:HI` of what `number` takes.

@@ -4,7 +4,7 @@ use std::error::Error;
 
 use super::CommandError;
 use corner_impact::cancel;
-use corner_impact::study::survey::thread_count;
+use corner_impact::study::survey::limits::thread_count;
 use corner_impact::untrusted;
 
 /// Environment variable with the number of threads for all programs that use rayon.

@@ -10,7 +10,8 @@ impl Paged for Summary {
     fn blocks(&self) -> Vec<Block> {
         let Self { model, rpm, basins, wall_s, .. } = self;
         let angle = basins.begun.cam_angle().to_degrees();
-        let mut lines = vec![format!("{model} at {rpm} rpm, {} starts at {angle:.4} deg", basins.starts)];
+        let mut lines =
+            vec![format!("{model} at {rpm} rpm, {} at {angle:.4} deg", words::many(basins.starts as u64, "start"))];
         lines.extend(basins.parts.iter().map(|part| format!("  {}", ending(part))));
         lines.extend(words::transient_chaos(&basins.wandering).map(|words| format!("  {words}")));
         lines.extend(below_cam(basins).map(|words| format!("  {words}")));

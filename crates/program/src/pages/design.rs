@@ -29,7 +29,7 @@ impl Paged for Design {
         if !self.over.is_speed() {
             let name = self.over.own_name();
             page.push(Block::paragraph(format!(
-                "This speed, and those of rounded corners, are with the model's own {name}."
+                "That, and the speeds of rounded corners, are with the model's own {name}."
             )));
         }
         let unknown = self.measured.as_ref().and_then(|measured| measured.noise_unknown.as_deref());
