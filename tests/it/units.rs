@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use corner_impact::model::Model;
+use corner_impact::model::{Model, OSORIO_2008};
+use corner_impact_cli::show::json;
 use serde_json::Value;
 
 use crate::common::{self, corner_impact, program, text};
@@ -54,11 +55,13 @@ fn told(name: &str) -> (String, f64) {
 
 #[test]
 fn tables_are_the_same_in_any_units() {
-    let tables: [(&str, &[&str]); 5] = [
+    let tables: [(&str, &[&str]); 7] = [
         ("simulate", &["--rpm", "4500", "--revolutions", "3", "--events", "-"]),
         ("simulate", &["--rpm", "4500", "--revolutions", "3", "--trace", "-", "--points-per-revolution", "40"]),
         ("simulate", &["--rpm", "4500", "--revolutions", "3", "--strobe", "1", "--strobe-out", "-"]),
         ("diagram", &["--rpm", "4200:4800:3", "--transient", "5", "--record", "2", "--out", "-"]),
+        ("diagram", &["--rpm", "4200:4800:3", "--transient", "5", "--record", "2", "--show", "force", "--out", "-"]),
+        ("continue", &["--from-rpm", "4500", "--parameter", "rpm=4480:4520", "--out", "-"]),
         ("basins", &["--rpm", "4500", "--grid", "3x2", "--revolutions", "3", "--out", "-"]),
     ];
     let [metres, millimetres] = both();
@@ -81,6 +84,44 @@ fn tables_are_the_same_in_any_units() {
             }
         }
     }
+}
+
+/// The angles of events along a curve are in the unit of the model's angles, and nothing else of the table changes.
+#[test]
+fn a_table_of_curves_has_the_angles_of_the_model() {
+    let curves = |model: &str| {
+        printed(model, "curve", &["--rpm", "600:760", "--parameter", "restitution=0.78:0.82", "--out", "-"])
+    };
+    let degrees = OSORIO_2008.replace("[follower]", "[units]\nangle = \"deg\"\n[follower]");
+    let [one, other] = [curves(OSORIO_2008), curves(&degrees)];
+    let rows = |table: &str| table.lines().map(|line| line.split(',').map(String::from).collect()).collect();
+    let [one, other]: [Vec<Vec<String>>; 2] = [rows(&one), rows(&other)];
+    let angle = one[0].iter().position(|name| name == "cam_angle_rad").unwrap();
+    assert_eq!((other[0][angle].as_str(), one.len()), ("cam_angle_deg", other.len()));
+    assert!(one.len() > 3, "{} rows", one.len());
+    for (row, other) in one.iter().zip(&other).skip(1) {
+        let [here, there] = [row, other].map(|row| row[angle].parse::<f64>().unwrap());
+        close(there, here.to_degrees(), "cam_angle");
+        assert_eq!((&row[..angle], &row[angle + 1..]), (&other[..angle], &other[angle + 1..]));
+    }
+}
+
+/// A number of a document is converted by its name, a force from kg mm/s^2; an object keeps the name and the unit that its numbers are proved in, and what is no
+/// plain name is left alone.
+#[test]
+fn a_document_is_converted_by_its_names() {
+    let [_, millimetres] = both();
+    let units = Model::parse("valve.toml", &millimetres).unwrap().units;
+    let document = serde_json::json!({
+        "a_rad": 1.0, "b_n": [1e6, [2e6], {"c_n": 3e6, "d": 4.0}], "c_m": 5.0, "d_rad": {"e": 6.0}, "f_m": {"g": 7.0},
+        "h_n": null, "i \"_n": 8.0, "j_rad": "k", "l_n": 9_000_000, "m": 10,
+    });
+    let told: Value = serde_json::from_str(&json::render(&document, &units).unwrap()).unwrap();
+    let expected = serde_json::json!({
+        "a_deg": 1.0_f64.to_degrees(), "b_kn": [1.0, [2.0], {"c_kn": 3.0, "d": 4.0}], "c_mm": 5.0, "d_rad": {"e": 6.0},
+        "f_mm": {"g": 7.0}, "h_kn": null, "i \"_n": 8.0, "j_deg": "k", "l_kn": 9.0, "m": 10,
+    });
+    assert_eq!(told, expected, "{told:#}");
 }
 
 fn compare(si: &Value, here: &Value, scale: f64, place: &str) {

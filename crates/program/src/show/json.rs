@@ -50,23 +50,31 @@ impl<'a> InUnits<'a> {
     }
 }
 
-/// Numbers that are not converted, and words: none of them is measured.
-macro_rules! as_they_are {
-    ($($write:ident($kind:ty)),+) => {$(
+/// Writes words, which are never converted, and whole numbers, which become others where their name is converted.
+macro_rules! values {
+    ($whole:ident: $($write:ident($kind:ty)),+) => {$(
         fn $write<W: ?Sized + Write>(&mut self, writer: &mut W, value: $kind) -> io::Result<()> {
+            // A name may be a number.
             if let (true, Some(name)) = (self.is_named, &mut self.name) {
                 return self.pretty.$write(name, value);
             }
-            self.enter(writer, false)?;
+            let convert = self.enter(writer, false)?;
+            values!(@$whole self, writer, convert, value);
             self.pretty.$write(writer, value)
         }
     )+};
+    (@words $self:ident, $writer:ident, $convert:ident, $value:ident) => { _ = $convert };
+    (@whole $self:ident, $writer:ident, $convert:ident, $value:ident) => {
+        if let Some(convert) = $convert {
+            return $self.pretty.write_f64($writer, convert($self.units, $value as f64));
+        }
+    };
 }
 
 impl Formatter for InUnits<'_> {
-    as_they_are!(write_bool(bool), write_i8(i8), write_i16(i16), write_i32(i32), write_i64(i64), write_i128(i128));
-    as_they_are!(write_u8(u8), write_u16(u16), write_u32(u32), write_u64(u64), write_u128(u128));
-    as_they_are!(write_number_str(&str), write_raw_fragment(&str));
+    values!(words: write_bool(bool), write_number_str(&str), write_raw_fragment(&str));
+    values!(whole: write_i8(i8), write_i16(i16), write_i32(i32), write_i64(i64), write_i128(i128));
+    values!(whole: write_u8(u8), write_u16(u16), write_u32(u32), write_u64(u64), write_u128(u128));
 
     fn write_f64<W: ?Sized + Write>(&mut self, writer: &mut W, value: f64) -> io::Result<()> {
         let convert = self.enter(writer, false)?;
