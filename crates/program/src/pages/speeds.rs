@@ -177,7 +177,7 @@ fn rests(attractor: &AttractorRow) -> Option<String> {
             rests.revolutions
         ),
         None => format!(
-            "{id} did not rest on the cam once in {} revolutions: if it ever does, it is less than once in {:.0}.",
+            "Where {id} is chaotic, it did not rest on the cam once in {} revolutions: if it ever does there, it is less than once in {:.0}.",
             rests.revolutions,
             1.0 / rests.rate
         ),
