@@ -170,3 +170,13 @@ fn a_thousand_rows_and_the_first_again_keep_their_digits() {
         (0..1000).map(row).map(|(angle, lift)| json!({ "angle_deg": angle, "lift": lift })).collect();
     assert_eq!(told["cam"]["rows"], json!(expected));
 }
+
+/// A number that the program has changed since is the double that it is now, not what the file says.
+#[test]
+fn a_changed_number_is_its_double() {
+    let text = format!("name = \"exact\"\n[follower]\n{FOLLOWER}[cam]\n{CAM}");
+    let mut model = Model::parse("exact.toml", &text).unwrap();
+    model.follower.mass = 0.1;
+    let told = model.exact();
+    assert_eq!((&told["follower"]["mass"], &told["follower"]["stiffness"]), (&json!("0.1"), &json!("100.0")));
+}
