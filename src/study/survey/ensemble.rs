@@ -87,14 +87,13 @@ struct Release {
 /// The end of one run.
 #[derive(Clone, Debug)]
 struct End {
-    run: RunOutcome,
+    /// The outcome, or why the run could not go on.
+    run: Result<RunOutcome, SimulateError>,
     motion: Motion,
     /// Revolution at which the run began.
     begun: u64,
     /// Whether the run had already wandered long enough to forget its start.
     wandered: bool,
-    /// Why the run could not go on.
-    failed: Option<SimulateError>,
 }
 
 /// A judged start.
@@ -153,7 +152,7 @@ fn judged(
         let run = start(index)?.map(|mut motion| -> Result<End, SimulateError> {
             let begun = motion.revolution;
             let run = runs.run(&mut motion, runs.budget.transient)?;
-            Ok(End { run, motion, begun, wandered: false, failed: None })
+            Ok(End { run: Ok(run), motion, begun, wandered: false })
         });
         run.transpose()
     };
@@ -170,8 +169,8 @@ fn judged(
     follow(runs, &ends, &mut releases)?;
     let (outlast, wandering) = wait(runs, &mut ends, &releases, watch);
     for (index, end) in ends.iter_mut().enumerate() {
-        if let Some(error) = end.as_ref().and_then(|end| end.failed) {
-            failed.push((index, error));
+        if let Some(End { run: Err(error), .. }) = end {
+            failed.push((index, *error));
             *end = None;
         }
     }
@@ -188,7 +187,7 @@ fn judged(
     let mut wanderers = wanders.iter().cycle();
     let mut judged = Vec::new();
     for (start, end) in ends.into_iter().enumerate() {
-        let Some(End { run, mut motion, begun, .. }) = end else { continue };
+        let Some(End { run: Ok(run), mut motion, begun, .. }) = end else { continue };
         if runs.is_off_for_good(&motion) {
             ensemble.off_for_good.push(start);
         }
@@ -261,7 +260,7 @@ fn wait(runs: &LongRuns<'_>, ends: &mut [Option<End>], releases: &Releases, watc
         ..Wandering::default()
     };
     loop {
-        let goes_on = |end: &&End| end.run == RunOutcome::Wanders && end.failed.is_none();
+        let goes_on = |end: &&End| end.run == Ok(RunOutcome::Wanders);
         let wanderers = ends.iter().flatten().filter(goes_on).count() as u64;
         if wanderers == 0 || all.is_some_and(|all| all.revolutions >= patience) {
             let all = all.unwrap_or_default();
@@ -269,18 +268,15 @@ fn wait(runs: &LongRuns<'_>, ends: &mut [Option<End>], releases: &Releases, watc
         }
         let told = each(watch, "runs that end on nothing so far", wanderers as usize);
         let stretch = ends.par_iter_mut().map(|end| {
-            let Some(End { run: run @ RunOutcome::Wanders, motion, wandered, failed: failed @ None, .. }) = end else {
+            let Some(End { run: run @ Ok(RunOutcome::Wanders), motion, wandered, .. }) = end else {
                 return Wandering::default();
             };
             told();
             let begun = motion.revolution;
             *wandered = all.is_some();
-            match runs.run(motion, round) {
-                Ok(ended) => *run = ended,
-                Err(error) => *failed = Some(error),
-            }
+            *run = runs.run(motion, round);
             let revolutions = motion.revolution - begun;
-            Wandering { revolutions, left: 0, rested: u64::from(matches!(run, RunOutcome::Released(_))) }
+            Wandering { revolutions, left: 0, rested: u64::from(matches!(run, Ok(RunOutcome::Released(_)))) }
         });
         let found = stretch.reduce(Wandering::default, Wandering::with);
         if all.is_none() {
@@ -296,9 +292,11 @@ fn wait(runs: &LongRuns<'_>, ends: &mut [Option<End>], releases: &Releases, watc
 fn soon_rested(end: &End) -> Wandering {
     /// Revolutions after which the start is forgotten.
     const FORGOTTEN: u64 = 50;
-    let rested = u64::from(matches!(end.run, RunOutcome::Released(_)));
+    let rested = u64::from(matches!(end.run, Ok(RunOutcome::Released(_))));
     match (end.motion.revolution - end.begun).checked_sub(FORGOTTEN) {
-        Some(revolutions) if rested > 0 || end.run == RunOutcome::Wanders => Wandering { revolutions, left: 0, rested },
+        Some(revolutions) if rested > 0 || end.run == Ok(RunOutcome::Wanders) => {
+            Wandering { revolutions, left: 0, rested }
+        }
         _ => Wandering::default(),
     }
 }
@@ -318,7 +316,7 @@ pub fn outlasts(long: Wandering, soon: Wandering) -> bool {
 /// Finds what follows each release that a run has reached and that is not known yet, in the order of the runs.
 fn follow(runs: &LongRuns<'_>, ends: &[Option<End>], releases: &mut Releases) -> Result<(), Failed> {
     for (index, end) in ends.iter().enumerate() {
-        if let Some(End { run: RunOutcome::Released(cam_angle), .. }) = end
+        if let Some(End { run: Ok(RunOutcome::Released(cam_angle)), .. }) = end
             && find(releases, *cam_angle).is_none()
         {
             let known = |other: f64| known(releases, other);
@@ -336,10 +334,10 @@ fn follow(runs: &LongRuns<'_>, ends: &[Option<End>], releases: &mut Releases) ->
 fn exits(ends: &[Option<End>], releases: &Releases) -> Vec<LongRun> {
     let wandered = ends.iter().flatten().filter(|end| end.wandered);
     let left = wandered.filter_map(|end| match &end.run {
-        RunOutcome::Arrives(orbit) => Some(LongRun::Orbit(orbit.clone())),
-        RunOutcome::PermanentContact => Some(LongRun::PermanentContact),
-        RunOutcome::Released(cam_angle) => find(releases, *cam_angle).map(|release| release.ending.clone()),
-        RunOutcome::Wanders => None,
+        Ok(RunOutcome::Arrives(orbit)) => Some(LongRun::Orbit(orbit.clone())),
+        Ok(RunOutcome::PermanentContact) => Some(LongRun::PermanentContact),
+        Ok(RunOutcome::Released(cam_angle)) => find(releases, *cam_angle).map(|release| release.ending.clone()),
+        Ok(RunOutcome::Wanders) | Err(_) => None,
     });
     left.filter(|ending| !ending.wanders()).collect()
 }
@@ -354,7 +352,7 @@ fn told_wandering(
     outlast: bool,
     watch: &dyn Watch,
 ) -> Result<Vec<LongRun>, Failed> {
-    let wanders = |end: &&End| end.run == RunOutcome::Wanders;
+    let wanders = |end: &&End| end.run == Ok(RunOutcome::Wanders);
     let wanderers: Vec<(usize, Motion)> = ends
         .iter()
         .enumerate()
