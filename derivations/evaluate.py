@@ -200,6 +200,9 @@ class Follower:
     def __init__(self, document):
         fields = ("mass", "damping", "stiffness", "gravity", "rest_position", "restitution")
         mass, damping, stiffness, self.gravity, self.rest, self.r = numbers(document, "follower", fields)
+        unknown = sorted(set(section(document, "follower")) - set(fields))
+        if unknown:
+            raise Refused(f"follower.{unknown[0]} is in no law of flight or impact here")
         if not (mass > 0 and damping >= 0 and stiffness >= 0):
             raise Refused("follower: needs mass > 0, damping >= 0 and stiffness >= 0")
         self.zeta, self.omega0_squared = damping / (2 * mass), stiffness / mass

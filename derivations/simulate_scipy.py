@@ -65,6 +65,9 @@ class Follower:
         self.damping, self.stiffness, self.gravity, self.rest, self.restitution = (
             number(numbers, key) for key in ("damping", "stiffness", "gravity", "rest_position", "restitution")
         )
+        unknown = sorted(set(numbers) - {"mass", "damping", "stiffness", "gravity", "rest_position", "restitution"})
+        if unknown:
+            raise CannotCheck(f"follower.{unknown[0]} is in no law of flight or impact here")
         if self.stiffness < 0.0 or self.damping < 0.0 or not 0.0 <= self.restitution <= 1.0:
             raise CannotCheck("stiffness and damping must not be negative, restitution must be in [0, 1]")
 

@@ -15,8 +15,8 @@ macro_rules! named {
 
 #[doc(hidden)]
 #[macro_export]
-/// Writes values of a type into documents: each entry's name, and its value as a formula of the value. An entry that has
-/// `if_any` behind its name is left out where there is none.
+/// Writes values of a type into documents where an entry is computed: each entry's name, and its value as a formula of the value. An entry
+/// that has `if_any` behind its name is left out where there is none. A type whose entries are its fields derives `Serialize`.
 macro_rules! document {
     (@entry $map:ident $name:ident [] $value:expr) => { $map.serialize_entry(stringify!($name), &$value)? };
     (@entry $map:ident $name:ident [if_any] $value:expr) => {

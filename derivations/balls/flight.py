@@ -21,6 +21,9 @@ class Follower:
         missing = [name for name in (*FIELDS, spring) if name not in table]
         if missing:
             raise Refused(f"no follower.{missing[0]}")
+        unknown = sorted(set(table) - {*FIELDS, spring})
+        if unknown:
+            raise Refused(f"follower.{unknown[0]} is in no law of flight or impact here")
         mass, damping, stiffness, gravity, restitution, rest = (decimal(table[name]) for name in (*FIELDS, spring))
         if not (mass > 0 and damping >= 0 and stiffness >= 0 and 0 <= restitution <= 1):
             raise Refused("follower: needs mass > 0, damping >= 0, stiffness >= 0 and restitution from 0 to 1")

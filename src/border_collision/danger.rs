@@ -37,24 +37,18 @@ pub enum DangerKind {
 named!(DangerKind);
 
 /// A danger at a corner impact, as the local map has it.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Danger {
     /// Its kind; dangerous where both apply.
     pub kind: DangerKind,
     /// Evidence for the kind: that of its weakest premise.
     pub known: Evidence,
     /// The motions that diverge at omega*; none where there are several attractors alone.
+    #[serde(rename = "diverges")]
     pub divergence: Option<Divergence>,
     /// The attractors on either side.
     pub attractors: Vec<LocalAttractor>,
 }
-
-document!(Danger as danger {
-    kind: danger.kind,
-    known: danger.known,
-    diverges: danger.divergence,
-    attractors: danger.attractors,
-});
 
 /// Motions of the local map that diverge at omega*.
 #[derive(Clone, Debug, PartialEq)]

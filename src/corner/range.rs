@@ -3,6 +3,8 @@
 
 use std::collections::BTreeMap;
 
+use serde::Serialize;
+
 use super::candidates::{SearchedBranches, candidates};
 use super::confirm::Candidate;
 use super::corner_impact::{CornerImpact, Way};
@@ -17,28 +19,26 @@ use crate::simulate::angular_velocity;
 use crate::tolerance;
 
 /// A root of the equation for T at some corner that is no orbit, and why not.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Rejected {
-    /// Cam angle of the corner, rad.
-    pub cam_angle: f64,
     /// Speed, rpm.
     pub speed_rpm: f64,
+    /// Cam angle of the corner, rad.
+    #[serde(rename = "cam_angle_rad")]
+    pub cam_angle: f64,
     /// Reason why it is no orbit.
     pub why: String,
 }
 
-document!(Rejected as it { speed_rpm: it.speed_rpm, cam_angle_rad: it.cam_angle, why: it.why });
-
 /// Speeds at which enclosures do not decide whether an orbit of one impact has it on a corner.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct UndecidedSpeeds {
     /// Cam angle of the corner, rad.
+    #[serde(rename = "cam_angle_rad")]
     pub cam_angle: f64,
     /// From the lowest to the highest, rpm.
     pub speeds_rpm: [f64; 2],
 }
-
-document!(UndecidedSpeeds as it { cam_angle_rad: it.cam_angle, speeds_rpm: it.speeds_rpm });
 
 /// Corner impacts in a range of speeds, with the record of the search.
 #[derive(Clone, Debug)]

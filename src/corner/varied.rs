@@ -5,7 +5,7 @@ use nalgebra::{Matrix2, Vector2};
 use super::corner_impact::CornerImpact;
 use super::period_equation::at_corner;
 use crate::cam::{Cam, Side};
-use crate::model::{Follower, Model};
+use crate::model::{Follower, Model, ModelNumber};
 use crate::orbit::{Family, FamilyError, Parameter};
 use crate::tolerance;
 
@@ -28,6 +28,9 @@ pub enum NoChange {
     /// No number of that name.
     #[error("the model has no number \"{name}\" to vary")]
     Unknown { name: String },
+    /// The derivatives of the laws of flight and impact by this number are not written down.
+    #[error("the laws of flight and impact have no derivative by {name}")]
+    OfNoLaw { name: String },
     /// The cam has other segments with every number close by.
     #[error("the cam has other segments as soon as {name} moves from {value}")]
     OtherSegments { name: String, value: f64 },
@@ -95,6 +98,9 @@ impl Change {
             "follower.rest_position" => bottom(0.0, 0.0, stiffness / mass),
             "follower.preload" => bottom(0.0, 0.0, -1.0 / mass),
             "follower.restitution" => Self { restitution: 1.0, ..Self::none(impacts) },
+            _ if ModelNumber::of(name).is_some_and(|number| number.path.starts_with("follower.")) => {
+                return Err(NoChange::OfNoLaw { name: name.clone() });
+            }
             _ => {
                 let (mut lifts, mut lift_errors) = lift_changes(model, at, name, side)?;
                 // The last one is that of the lowest lift, which a preload goes with.

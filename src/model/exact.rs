@@ -6,7 +6,7 @@ use serde_json::{Map, Value as Item, json};
 
 use super::fields::{Fields, Value};
 use super::numeral::Numeral;
-use super::{Follower, Model, Unit};
+use super::{Model, Unit};
 
 impl Model {
     /// Tables of the follower and the cam, as in a model file in SI units or in the file's unit of length, with every number as text.
@@ -14,25 +14,18 @@ impl Model {
     /// If the file gives a preload, it replaces the rest position. A number that no field of the file has, such as a lift of
     /// another table, is the shortest decimal that reads back as its double.
     pub fn exact(&self) -> Item {
-        // Without `..`: a number that is left out here would be left out of every proof.
-        let Follower { mass, damping, stiffness, gravity, rest_position, restitution } = self.follower;
-        let spring = match self.preload {
-            Some(preload) => ("preload", preload),
-            None => ("rest_position", rest_position),
-        };
-        let numbers = [
-            ("mass", mass),
-            ("damping", damping),
-            ("stiffness", stiffness),
-            ("gravity", gravity),
-            ("restitution", restitution),
-            spring,
-        ];
-        let exact = |(name, number): (&str, f64)| {
+        let told = |name: &str, number: f64| {
             let text = self.fields.exact(&format!("follower.{name}"), self.units.of_follower(name), number);
-            (name.to_owned(), text.into())
+            (name.to_owned(), Item::from(text))
         };
-        let follower: Map<String, Item> = numbers.into_iter().map(exact).collect();
+        let Item::Object(numbers) = json!(self.follower) else { return Item::Null };
+        let follower: Map<String, Item> = numbers
+            .iter()
+            .map(|(name, number)| match (name.as_str(), self.preload) {
+                ("rest_position", Some(preload)) => told("preload", preload),
+                (name, _) => told(name, number.as_f64().unwrap_or(f64::NAN)),
+            })
+            .collect();
         let mut cam = json!(self.cam);
         self.fields.make_exact("cam", &mut cam);
         if let Some(table) = self.table().filter(|table| !table.reading.written.is_empty()) {

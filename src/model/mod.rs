@@ -21,7 +21,8 @@ mod units;
 
 use std::path::Path;
 
-use serde::Serialize;
+use serde::de::value::{Error as Unread, MapDeserializer};
+use serde::{Deserialize, Serialize};
 
 pub use complaint::ModelError;
 use fields::Fields;
@@ -65,7 +66,8 @@ pub struct Model {
 }
 
 /// `m q'' + b q' + k (q - rest_position) = -m g` while `q > c(theta)`, and Newton's restitution.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Follower {
     /// m, kg, positive.
     pub mass: f64,
@@ -79,6 +81,47 @@ pub struct Follower {
     pub rest_position: f64,
     /// r, 0 (plastic) to 1 (elastic).
     pub restitution: f64,
+}
+
+impl Follower {
+    /// Reads the numbers that the table has of a follower, and the preload if the file gives it instead of the rest position.
+    fn read(fields: &mut Fields, units: &Units) -> Result<(Self, Option<f64>), ModelError> {
+        fields.may_hold("follower.preload");
+        let is_preloaded = fields.has("follower.preload");
+        let (mut numbers, mut preload) = (Vec::new(), None);
+        for name in MODEL_NUMBERS.iter().filter_map(|number| number.path.strip_prefix("follower.")) {
+            match name {
+                "preload" if is_preloaded => preload = Some(units.number(fields, name)?),
+                "preload" => {}
+                // It follows from the cam's lowest lift, which is unknown here.
+                "rest_position" if is_preloaded => {
+                    fields.may_hold("follower.rest_position");
+                    numbers.push((name, f64::NAN));
+                }
+                _ => numbers.push((
+                    name,
+                    units.number(fields, name).map_err(|error| match name {
+                        "rest_position" if !fields.has("follower.rest_position") => {
+                            error.found("; or give follower.preload, the force of the spring where the lift is lowest")
+                        }
+                        _ => error,
+                    })?,
+                )),
+            }
+        }
+        let follower = Self::deserialize(MapDeserializer::<_, Unread>::new(numbers.into_iter()))
+            .map_err(|error| fields.reject("follower", error.to_string()))?;
+        let words = if preload.is_none() {
+            None
+        } else if fields.has("follower.rest_position") {
+            Some("is there beside follower.rest_position: one of them says where the spring is slack")
+        } else if follower.stiffness == 0.0 {
+            Some("needs a spring: follower.stiffness is 0")
+        } else {
+            None
+        };
+        words.map_or(Ok((follower, preload)), |words| Err(fields.reject("follower.preload", words)))
+    }
 }
 
 /// The range of speeds in which the corner impact is looked for, rpm.
@@ -108,40 +151,7 @@ impl Model {
         let name = fields.text_or("name", "unnamed")?;
         let source = fields.text_or("source", "")?;
         let units = Units::read(&mut fields)?;
-        let mass = units.number(&mut fields, "mass")?;
-        let damping = units.number(&mut fields, "damping")?;
-        let stiffness = units.number(&mut fields, "stiffness")?;
-        let gravity = units.number(&mut fields, "gravity")?;
-        fields.may_hold("follower.preload");
-        let preload = if fields.has("follower.preload") {
-            let preload = units.number(&mut fields, "preload")?;
-            fields.may_hold("follower.rest_position");
-            let words = if fields.has("follower.rest_position") {
-                Some("is there beside follower.rest_position: one of them says where the spring is slack")
-            } else if stiffness == 0.0 {
-                Some("needs a spring: follower.stiffness is 0")
-            } else {
-                None
-            };
-            if let Some(words) = words {
-                return Err(fields.reject("follower.preload", words));
-            }
-            Some(preload)
-        } else {
-            None
-        };
-        let rest_position = match preload {
-            // The slack position follows from the cam's lowest lift, which is unknown here.
-            Some(_) => f64::NAN,
-            None => {
-                let meant = "; or give follower.preload, the force of the spring where the lift is lowest";
-                let is_there = fields.has("follower.rest_position");
-                let number = fields.number("follower.rest_position");
-                number.map_err(|error| if is_there { error } else { error.found(meant) })?
-            }
-        };
-        let restitution = fields.number("follower.restitution")?;
-        let follower = Follower { mass, damping, stiffness, gravity, rest_position, restitution };
+        let (follower, preload) = Follower::read(&mut fields, &units)?;
         let cam = profile::read(&mut fields)?;
         fields.may_hold("study.rpm_min");
         let study = if fields.has("study") {

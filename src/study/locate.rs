@@ -76,12 +76,11 @@ document!(Searched<'_> as it {
 });
 
 /// Settings of the shots from corners.
+#[derive(Serialize)]
 struct Shots {
     speed_ratio: f64,
     velocities: usize,
 }
-
-document!(Shots as it { speed_ratio: it.speed_ratio, velocities: it.velocities });
 
 /// A corner impact and its map.
 #[derive(Clone, Debug)]
@@ -187,11 +186,14 @@ struct Told<'a>(&'a Happens, Option<&'a Danger>);
 
 impl Serialize for Told<'_> {
     fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
-        struct Other(String, String);
-        document!(Other as it { scenario: it.0, meaning: it.1 });
+        #[derive(Serialize)]
+        struct Other {
+            scenario: String,
+            meaning: String,
+        }
         match self {
             Self(Happens::BorderCollision(Ok(kind)), danger) => WithDanger { kind, danger: *danger }.serialize(to),
-            Self(other, _) => Other(other.scenario(), other.meaning()).serialize(to),
+            Self(other, _) => Other { scenario: other.scenario(), meaning: other.meaning() }.serialize(to),
         }
     }
 }

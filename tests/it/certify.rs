@@ -1,9 +1,7 @@
 //! Is a certificate what it says: right in every digit, narrow, and refused where there is nothing to certify?
 
 use std::f64::consts::{PI, TAU};
-use std::io::Write;
 use std::path::Path;
-use std::process::{Command, Stdio};
 
 use crate::common::{self, corner_impact, in_one_line, text};
 use corner_impact::corner::range::find_corner_impacts;
@@ -27,18 +25,9 @@ fn certified(arguments: &[&str]) -> Value {
 
 /// What the script says of one place, without the search that leads there.
 fn script(model: &Model, place: Value, bits: u32) -> Value {
-    let python = Path::new(common::ROOT).join(".venv/bin/python");
-    assert!(python.is_file(), "run `make test`, which sets up .venv");
     let document = json!({ "follower": model.follower, "cam": model.cam, "bits": bits, "candidates": [place] });
-    let mut child = Command::new(python)
-        .args(["-B", "derivations/certify.py"])
-        .current_dir(common::ROOT)
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .spawn()
-        .unwrap();
-    child.stdin.take().unwrap().write_all(document.to_string().as_bytes()).unwrap();
-    let answer: Value = serde_json::from_slice(&child.wait_with_output().unwrap().stdout).unwrap();
+    let answer = common::python(&["-B", "derivations/certify.py"], &document);
+    let answer: Value = serde_json::from_slice(&answer.stdout).unwrap();
     answer["results"][0].clone()
 }
 

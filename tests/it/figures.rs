@@ -474,7 +474,7 @@ fn both_fixed_points_of_the_local_map_are_on_the_faster_side() {
         Data::Words(words) => Some(words),
         _ => None,
     });
-    for (name, slope) in [("x^− before the corner", minus.3), ("x^+ after the corner", plus.3)] {
+    for (name, slope) in [("x^- before the corner", minus.3), ("x^+ after the corner", plus.3)] {
         let word = words.unwrap().iter().find(|word| word.text == name).unwrap();
         assert_relative_eq!(word.at[1] / word.at[0] * 1e6, -slope, max_relative = 1e-6);
     }

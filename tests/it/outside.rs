@@ -1,9 +1,7 @@
 //! Do the routes outside of the program know the cams that it knows, each by formulas of its own?
 
 use std::f64::consts::TAU;
-use std::io::Write;
 use std::path::Path;
-use std::process::{Command, Stdio};
 
 use corner_impact::corner::map::RouteName;
 use corner_impact::corner::told;
@@ -52,6 +50,20 @@ fn cams() -> Vec<(String, Model)> {
 }
 
 #[test]
+fn a_number_of_the_follower_that_a_script_has_in_no_law_is_refused() {
+    let model = Model::built_in().unwrap();
+    let mut numbers = told(&model, model.study().unwrap()).unwrap();
+    numbers["follower"]["drag"] = json!(0.5);
+    let mut exact = model.exact();
+    exact["follower"]["drag"] = json!("0.5");
+    for (script, document) in [("evaluate.py", &numbers), ("simulate_scipy.py", &numbers), ("certify.py", &exact)] {
+        let answer = common::python(&["-B", &format!("derivations/{script}")], document);
+        let said = text(answer.stdout) + &text(answer.stderr);
+        assert!(!answer.status.success() && said.contains("follower.drag is in no law"), "{script}: {said}");
+    }
+}
+
+#[test]
 #[ignore = "slow"]
 fn lifts_are_those_of_the_scripts() {
     let models = cams();
@@ -59,13 +71,8 @@ fn lifts_are_those_of_the_scripts() {
     let cams: Vec<Value> = models.iter().map(|(_, model)| told(model, study).unwrap()["cam"].take()).collect();
     // None is where two segments meet.
     let angles: Vec<f64> = (0..240).map(|index| (f64::from(index) + 0.371) * TAU / 240.0).collect();
-    let python = Path::new(common::ROOT).join(".venv/bin/python");
-    let mut command = Command::new(python);
-    command.args(["-c", BOTH]).current_dir(common::ROOT).stdin(Stdio::piped()).stdout(Stdio::piped());
-    let mut child = command.spawn().unwrap();
-    let document = json!({ "cams": cams, "angles": angles }).to_string();
-    child.stdin.take().unwrap().write_all(document.as_bytes()).unwrap();
-    let found: Vec<Vec<[[f64; 3]; 2]>> = serde_json::from_slice(&child.wait_with_output().unwrap().stdout).unwrap();
+    let answer = common::python(&["-c", BOTH], &json!({ "cams": cams, "angles": angles }));
+    let found: Vec<Vec<[[f64; 3]; 2]>> = serde_json::from_slice(&answer.stdout).unwrap();
     assert_eq!(found.len(), models.len());
     for ((name, model), found) in models.iter().zip(found) {
         let cam = common::cam(model);

@@ -6,6 +6,7 @@
 mod density;
 mod element;
 pub mod font;
+pub mod formula;
 mod grid;
 pub mod layout;
 pub mod look;

@@ -3,6 +3,7 @@
 use std::fmt::{self, Write};
 
 use super::element::{escaped, fill, number};
+use super::formula::{Part, sentence};
 use super::layout::TEXT;
 use super::{Beside, Colour, Label};
 
@@ -50,28 +51,17 @@ fn within(beside: Beside, y: f64, height: f64) -> Beside {
     }
 }
 
-/// Converts `_` and `^` to lowered and raised letters.
+/// A label with its formulas set.
 fn marked_up(text: &str) -> String {
-    let (mut out, mut letters, mut shifted) = (String::new(), text.chars().peekable(), 0.0);
-    while let Some(letter) = letters.next() {
-        let to = match letter {
-            '_' => SHIFT,
-            '^' => -SHIFT,
-            _ => 0.0,
+    let (mut out, mut shifted) = (String::new(), 0.0);
+    for part in sentence(text) {
+        let (text, to) = match &part {
+            Part::Plain(text) | Part::Letter(text) => (text, 0.0),
+            Part::Below(text) => (text, SHIFT),
+            Part::Above(text) => (text, -SHIFT),
         };
-        let mut part = String::new();
-        if to == 0.0 {
-            part.push(letter);
-            while let Some(next) = letters.next_if(|next| !"_^".contains(*next)) {
-                part.push(next);
-            }
-        } else if letters.next_if_eq(&'{').is_some() {
-            part.extend(letters.by_ref().take_while(|letter| *letter != '}'));
-        } else {
-            part.extend(letters.next());
-        }
         let (by, size) = (number(to - shifted), if to == 0.0 { "" } else { r#" font-size="9.5""# });
-        out.push_str(&format!(r#"<tspan dy="{by}"{size}>{}</tspan>"#, escaped(&part)));
+        out.push_str(&format!(r#"<tspan dy="{by}"{size}>{}</tspan>"#, escaped(text)));
         shifted = to;
     }
     out

@@ -202,49 +202,39 @@ impl<'a> Changed<'a> {
 const SPEEDS: u32 = 24;
 
 /// The value of one number that meets a need.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 #[doc(hidden)]
 pub struct Answer {
     /// The need, in the user's words.
     pub need: String,
     /// The number to change.
+    #[serde(rename = "parameter")]
     pub lever: Lever,
     /// Present value, in the displayed unit.
     pub now: f64,
     /// Least value that meets the need, or the largest (see `is_upper_bound`); none if no value meets it.
     pub value: Option<f64>,
     /// Uncertainty of `value` for a measured cam, at least the resolution of the runs for a load.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub error: Option<f64>,
+    /// Unit of the values.
+    pub unit: String,
     /// Whether `value` is the largest that meets the need.
     pub is_upper_bound: bool,
     /// Limit on the other side, if there is one: a damper that keeps the follower on the cam's rise may throw it off on the return.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub other: Option<f64>,
     /// Uncertainty of `other`.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub other_error: Option<f64>,
     /// A tried value beyond `other` that meets the load requirement again.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub again: Option<f64>,
-    /// Unit of the values.
-    pub unit: String,
     /// Why there is no value, or a further remark.
     pub note: String,
     /// Computed for a separation; sampled for a load.
     pub known: Evidence,
 }
-
-document!(Answer as it {
-    need: it.need,
-    parameter: it.lever,
-    now: it.now,
-    value: it.value,
-    error if_any: it.error,
-    unit: it.unit,
-    is_upper_bound: it.is_upper_bound,
-    other if_any: it.other,
-    other_error if_any: it.other_error,
-    again if_any: it.again,
-    note: it.note,
-    known: it.known,
-});
 
 /// Finds the value of one number that meets a need, the others kept. `uncertain` is the relative uncertainty of the separation speed.
 pub(super) fn answer(

@@ -3,8 +3,9 @@
 #![allow(dead_code)]
 
 use std::ffi::OsStr;
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 use std::sync::mpsc;
 use std::time::Duration;
 
@@ -62,6 +63,17 @@ pub fn that_signals_end(program: &Command) -> Command {
 /// Runs the program in the project's folder.
 pub fn corner_impact<Word: AsRef<OsStr>>(words: impl IntoIterator<Item = Word>) -> Output {
     program(words).output().unwrap()
+}
+
+/// What the interpreter of `make test` says of a document on standard input, with these arguments, in the project's folder.
+pub fn python(arguments: &[&str], document: &serde_json::Value) -> Output {
+    let interpreter = Path::new(ROOT).join(".venv/bin/python");
+    assert!(interpreter.is_file(), "run `make test`, which sets up .venv");
+    let mut command = Command::new(interpreter);
+    command.args(arguments).current_dir(ROOT);
+    let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    child.stdin.take().unwrap().write_all(document.to_string().as_bytes()).unwrap();
+    child.wait_with_output().unwrap()
 }
 
 pub fn text(bytes: Vec<u8>) -> String {

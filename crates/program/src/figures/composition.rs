@@ -226,14 +226,14 @@ fn figure(title: &str, shown: &Composition) -> Figure {
     let sections = [-0.5, 0.0, 0.5].into_iter().flat_map(|time| [[time, range[0]], [time, range[1]], BREAK]);
     let middle = |line: &[[f64; 2]]| line.get(line.len() / 2).copied().unwrap_or(BREAK);
     let words = [
-        Label::new([-0.5, top + 0.12 * height], "Π_1", Beside::Right),
-        Label::new([0.0, top + 0.12 * height], "Π_D", Beside::Right),
-        Label::new([0.5, top + 0.12 * height], "Π_2", Beside::Right),
+        Label::new([-0.5, top + 0.12 * height], "Pi_1", Beside::Right),
+        Label::new([0.0, top + 0.12 * height], "Pi_D", Beside::Right),
+        Label::new([0.5, top + 0.12 * height], "Pi_2", Beside::Right),
         Label::new([-0.5, star], "x^*", Beside::Above),
         Label::new([0.5, star], "x^*", Beside::Above),
         Label::new([-0.5, first], "x_1", Beside::Left),
         Label::new([0.5, last], "x_2", Beside::Right),
-        Label::new([0.0, minus], "x_d^−", Beside::BelowRight),
+        Label::new([0.0, minus], "x_d^-", Beside::BelowRight),
         Label::new([0.0, plus], "x_d^+", Beside::AboveRight),
         Label::new(middle(&coming), "P_1", Beside::Left),
         Label::new(middle(&going), "P_2", Beside::Right),

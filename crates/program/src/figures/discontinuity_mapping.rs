@@ -54,14 +54,14 @@ fn mapping(shown: &Composition, near: &Neighbour) -> Panel {
         ("position, impact after the corner", &going[1], "back in time", law, sides)
     };
     let words = [
-        Label::new([0.0, range[1] - 0.5 * room], "Π_D", at_impact),
+        Label::new([0.0, range[1] - 0.5 * room], "Pi_D", at_impact),
         Label::new([0.0, minus + 0.25 * (plus - minus)], "P_D", at_section),
-        Label::new([0.0, minus], "x_d^−", at_section),
+        Label::new([0.0, minus], "x_d^-", at_section),
         Label::new([0.0, plus], "x_d^+", at_section),
         // Between the flights before and after the impact, where the cam's law is not drawn.
-        Label::new([hit[0], hit[1] + 0.06 * (high - low)], "x^−, x^+", Beside::Above),
+        Label::new([hit[0], hit[1] + 0.06 * (high - low)], "x^-, x^+", Beside::Above),
         law,
-        Label::new([hit[0], range[0] + 0.5 * room], "−t_i", at_impact),
+        Label::new([hit[0], range[0] + 0.5 * room], "-t_i", at_impact),
     ];
     let (red, jump) = (Colour::Vermilion, [[0.0, minus], [0.0, plus]]);
     let series = vec![

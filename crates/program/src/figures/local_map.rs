@@ -195,7 +195,7 @@ fn panel(shown: &NextToCorner, range: [f64; 2], name: &str, with_names: bool) ->
     });
     let fixed = shown.rays.iter().filter(|ray| ray.positions.len() == 1).filter_map(|ray| {
         let (name, along) =
-            if ray.word == "L" { ("x^− before the corner", 0.5) } else { ("x^+ after the corner", 0.85) };
+            if ray.word == "L" { ("x^- before the corner", 0.5) } else { ("x^+ after the corner", 0.85) };
         let along = along * shown.reach;
         let at = [ray.sign * along * per_second, ray.positions.first()? * along];
         (range[0] < at[1] && at[1] < range[1]).then(|| Label::new(at, name, free_side(shown, at, range)))

@@ -36,8 +36,8 @@ pub enum Span {
     Complex([f64; 2], Digits),
     /// A number with its expected value: a browser underlines the digits that differ.
     Against(f64, f64, Digits),
-    /// A mathematical symbol.
-    Symbol(Symbol),
+    /// A formula, as a terminal shows it: `A_hat_minus`.
+    Formula(String),
     /// A matrix by rows, or a column.
     Matrix(Vec<Vec<f64>>, Digits),
     /// Typed text: a command, a field of a file.
@@ -50,18 +50,6 @@ pub enum Span {
     About(String, Words),
     /// A line break.
     Break,
-}
-
-/// A symbol: a letter with smaller text below and above it, and its form on a terminal.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Symbol {
-    /// Form on a terminal: `A-`, `T*`.
-    pub plain: String,
-    pub letter: &'static str,
-    /// An index; empty where there is none.
-    pub below: String,
-    /// A side, or an asterisk; empty where there is none.
-    pub above: &'static str,
 }
 
 /// A sentence, a cell or a heading.
@@ -84,8 +72,7 @@ impl Words {
         self.0.extend(more.into().0);
     }
 
-    /// Builds a sentence. Each `{}` takes the next of the parts, a mathematical letter is between two underscores with its side
-    /// behind a `^`, and typed text is between two backticks.
+    /// Builds a sentence. Each `{}` takes the next of the parts, and typed text is between two backticks.
     pub(crate) fn prose(sentence: &'static str, parts: impl IntoIterator<Item = Self>) -> Self {
         let (mut prose, mut parts) = (Self::default(), parts.into_iter());
         for (place, text) in sentence.split('`').enumerate() {
@@ -93,16 +80,9 @@ impl Words {
                 prose.push(Span::Code(text.into()));
                 continue;
             }
-            for (place, text) in text.split('_').enumerate() {
-                if place % 2 == 1 {
-                    let (letter, above) = text.split_once('^').unwrap_or((text, ""));
-                    prose.push(Symbol { plain: format!("{letter}{above}"), letter, below: String::new(), above });
-                    continue;
-                }
-                for (place, text) in text.split("{}").enumerate() {
-                    prose.push(if place > 0 { parts.next().unwrap_or_default() } else { Self::default() });
-                    prose.push(text);
-                }
+            for (place, text) in text.split("{}").enumerate() {
+                prose.push(if place > 0 { parts.next().unwrap_or_default() } else { Self::default() });
+                prose.push(text);
             }
         }
         prose
@@ -163,12 +143,6 @@ impl From<(TextMark, &str)> for Words {
 impl From<Span> for Words {
     fn from(span: Span) -> Self {
         Self(vec![span])
-    }
-}
-
-impl From<Symbol> for Words {
-    fn from(symbol: Symbol) -> Self {
-        Span::Symbol(symbol).into()
     }
 }
 

@@ -1,10 +1,10 @@
 //! Blocks in a browser: tables with proper head cells, in boxes that scroll separately.
 
+use corner_impact_plot::formula::{self, Part};
 use maud::{Markup, html};
 
-use crate::show::block::{Block, Column, Span, Symbol, Table, TextMark, Words};
+use crate::show::block::{Block, Column, Span, Table, TextMark, Words};
 use crate::show::digits::{Digits, typeset};
-use crate::show::formula::sentence;
 
 /// Blocks in order.
 pub(crate) fn blocks(blocks: &[Block]) -> Markup {
@@ -69,13 +69,31 @@ fn table(table: &Table) -> Markup {
 /// Words as plain text, without content that only a browser shows.
 fn plain(words: &Words) -> String {
     let part = |span: &Span| match span {
-        Span::Text(text) | Span::Quoted(text) | Span::Code(text) | Span::Marked(_, text) => text.clone(),
-        Span::Symbol(symbol) => symbol.plain.clone(),
+        Span::Text(text) => formula::typed(text).into_owned(),
+        Span::Quoted(text) | Span::Code(text) | Span::Formula(text) | Span::Marked(_, text) => text.clone(),
         Span::Unit(unit) => (*unit).to_owned(),
         Span::About(_, words) => plain(words),
         Span::Number(..) | Span::Complex(..) | Span::Against(..) | Span::Matrix(..) | Span::Break => String::new(),
     };
     words.0.iter().map(part).collect()
+}
+
+/// A sentence with its formulas set.
+pub(crate) fn sentence(text: &str) -> Markup {
+    parts(formula::sentence(text))
+}
+
+fn parts(parts: Vec<Part>) -> Markup {
+    html! {
+        @for part in parts {
+            @match part {
+                Part::Plain(text) => (text),
+                Part::Letter(text) => i { (text) },
+                Part::Below(text) => sub { (text) },
+                Part::Above(text) => sup { (text) },
+            }
+        }
+    }
 }
 
 /// Words as markup for a browser.
@@ -97,9 +115,7 @@ fn span(span: &Span) -> Markup {
                 }
             },
             Span::Against(value, other, digits) => (against(*value, *other, *digits)),
-            Span::Symbol(Symbol { letter, below, above, .. }) => span.symbol {
-                i { (letter) } @if !below.is_empty() { sub { (below) } } @if !above.is_empty() { sup { (above.replace('-', "\u{2212}")) } }
-            },
+            Span::Formula(text) => span.symbol { (parts(formula::formula(text))) },
             Span::Matrix(rows, digits) => table.matrix {
                 tbody { @for row in rows { tr { @for entry in row { td { (digits.markup(*entry)) } } } } }
             },

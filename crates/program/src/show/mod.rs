@@ -6,7 +6,6 @@ pub(crate) mod block;
 pub(crate) mod command;
 pub(crate) mod csv;
 pub(crate) mod digits;
-pub(crate) mod formula;
 pub(crate) mod html;
 pub mod json;
 pub mod markdown;

@@ -11,6 +11,7 @@ use textwrap::{Options, WordSeparator, WordSplitter, WrapAlgorithm};
 
 use crate::show::block::{Block, Span, Table, TextMark, Words};
 use corner_impact::untrusted;
+use corner_impact_plot::formula;
 
 /// Default width of a page, in columns.
 pub(crate) const WIDTH: usize = 100;
@@ -153,14 +154,14 @@ impl Page {
 /// Words as text for a terminal.
 pub(crate) fn text(words: &Words) -> String {
     let of = |span: &Span| match span {
-        Span::Text(text) | Span::Quoted(text) | Span::Code(text) => untrusted::visible(text).into_owned(),
+        Span::Text(text) => untrusted::visible(&formula::typed(text)).into_owned(),
+        Span::Quoted(text) | Span::Code(text) | Span::Formula(text) => untrusted::visible(text).into_owned(),
         Span::Unit(unit) => (*unit).to_owned(),
         Span::Number(value, digits) | Span::Against(value, _, digits) => digits.text(*value),
         Span::Complex([re, im], digits) if *im == 0.0 => digits.text(*re),
         Span::Complex([re, im], digits) => {
             format!("{} {} {}i", digits.text(*re), if *im < 0.0 { '-' } else { '+' }, digits.text(im.abs()))
         }
-        Span::Symbol(symbol) => symbol.plain.clone(),
         Span::Matrix(rows, digits) => {
             let row = |row: &Vec<f64>| match row.as_slice() {
                 [entry] => digits.text(*entry),

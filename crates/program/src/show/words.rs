@@ -4,7 +4,7 @@
 
 use std::borrow::Borrow;
 
-use crate::show::block::{Symbol, TextMark, Words, words};
+use crate::show::block::{Span, TextMark, Words, words};
 use crate::show::digits::Digits;
 use corner_impact::agreement::Quantity;
 use corner_impact::border_collision::conditions::Decides;
@@ -32,30 +32,11 @@ pub(crate) fn route(name: RouteName) -> String {
     spoken(&name.to_string())
 }
 
-/// A quantity as the paper writes it; on a terminal, in plain text.
+/// A quantity by its name in documents, which a browser typesets as the paper writes it.
 pub(crate) fn quantity(quantity: Quantity) -> Words {
-    let (name, side) = quantity.parts();
-    let (letter, above) = match quantity {
-        Quantity::Period => ("T", "∗"),
-        Quantity::State => ("x", "∗"),
-        Quantity::Speed => ("ω", "∗"),
-        Quantity::Eigenvalues(_) => ("λ", ""),
-        Quantity::AHat(_) => ("A\u{302}", ""),
-        Quantity::BHat(_) => ("B\u{302}", ""),
-        Quantity::BTilde => ("B\u{303}", ""),
-        Quantity::ABar(_) => ("A\u{304}", ""),
-        Quantity::BBar => ("B\u{304}", ""),
-        Quantity::CBar => ("C\u{304}", ""),
-        _ => (name, ""),
-    };
-    symbol(&quantity.to_string(), letter, "", side.map_or(above, sign)).into()
-}
-
-/// Sign of a side in the paper.
-pub(crate) fn sign(side: Side) -> &'static str {
-    match side {
-        Side::Minus => "\u{2212}",
-        Side::Plus => "+",
+    match quantity {
+        Quantity::Speed | Quantity::Border => Span::Quoted(quantity.to_string()).into(),
+        _ => Span::Formula(quantity.to_string()).into(),
     }
 }
 
@@ -449,17 +430,6 @@ pub(crate) fn transition(transition: &Transition) -> String {
         Cause::Detachment => "detachment".into(),
         Cause::Runs => "by runs".into(),
     }
-}
-
-/// A letter with an index below and a sign above, for a browser, and its form on a terminal.
-pub(crate) fn symbol(plain: &str, letter: &'static str, below: &str, above: &'static str) -> Symbol {
-    Symbol { plain: plain.into(), letter, below: below.into(), above }
-}
-
-/// An entry of a map, such as `A12`, with its indices and its side.
-pub(crate) fn entry(name: &str, side: Side) -> Symbol {
-    let letter = if name.starts_with('A') { "A" } else { "B" };
-    symbol(name, letter, name.get(1..).unwrap_or_default(), sign(side))
 }
 
 /// Text of a range, or of one number if both ends look alike.

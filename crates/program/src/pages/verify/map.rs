@@ -64,7 +64,7 @@ fn entries(found: &Verification, side: Side, has_room: bool) -> Table {
     for (index, row) in rows.iter().enumerate() {
         let like = if index < 4 { &rows[..4] } else { &rows[4..] };
         let quantity = if index < 4 { Quantity::A(side) } else { Quantity::B(side) }.to_string();
-        let mut cells = vec![words::entry(row.entry, side).into()];
+        let mut cells = vec![Span::Formula(row.entry.into()).into()];
         cells.extend(row.values.iter().enumerate().map(|(route, value)| {
             let digits = match has_room {
                 true => Digits::Aligned(11),

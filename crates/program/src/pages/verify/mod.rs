@@ -41,11 +41,11 @@ pub(crate) fn orbit(found: &Verification) -> Vec<Block> {
     let fixed = |value, places| words![(value, Digits::Fixed(places))];
     let degrees = |angle: f64| fixed(angle.to_degrees(), 6);
     let period = Words::prose(
-        "_T^*_ = {} s   ({} rpm)",
+        "$T*$ = {} s   ({} rpm)",
         [about("T_star", significant(at.period, 14)), about("speed_rpm", fixed(at.speed_rpm(), 9))],
     );
     let x_star = Words::prose(
-        "_x^*_ = ({}, {}){}half a revolution from the impact; position is measured from _q_ = {} {}",
+        "$x*$ = ({}, {}){}half a revolution from the impact; position is measured from $q$ = {} {}",
         [
             about("x_star", significant(state[0], 13)),
             about("x_star", significant(state[1], 13)),
@@ -55,7 +55,7 @@ pub(crate) fn orbit(found: &Verification) -> Vec<Block> {
         ],
     );
     let impact = Words::prose(
-        "at cam angle {} deg, where c'' jumps from {} to {} {}{}_q_ = {} {}, _v_ = {} before and {} after, c' = {} {}",
+        "at cam angle {} deg, where c'' jumps from {} to {} {}{}$q$ = {} {}, $v$ = {} before and {} after, c' = {} {}",
         [
             about("corner", degrees(at.corner.angle)),
             about("cam_acceleration", fixed(acceleration.minus, 4)),
@@ -114,8 +114,8 @@ pub(crate) fn bifurcation(found: &Verification) -> Vec<Block> {
         about(Quantity::Eigenvalues(side).to_string(), words![one, ",  ", two])
     };
     let mut entries: Vec<(Words, Words)> = vec![
-        (Words::prose("eigenvalues of _A^-_", []), eigenvalues(Side::Minus)),
-        (Words::prose("eigenvalues of _A^+_", []), eigenvalues(Side::Plus)),
+        (Words::prose("eigenvalues of $A-$", []), eigenvalues(Side::Minus)),
+        (Words::prose("eigenvalues of $A+$", []), eigenvalues(Side::Plus)),
     ];
     entries.extend(found.normal_form.as_ref().ok().map(|form| ("normal form".into(), normal_form(form))));
     match &found.classification {
@@ -130,8 +130,8 @@ pub(crate) fn bifurcation(found: &Verification) -> Vec<Block> {
     );
     full.extend(found.normal_form.iter().map(|form| {
         let column = |at: nalgebra::Vector2<f64>| Span::Matrix(vec![vec![at[0]], vec![at[1]]], Digits::UpTo(9));
-        let shift = (Words::prose("_B\u{303}_", []), about("B_tilde", column(form.b_tilde)));
-        Block::Entries(20, vec![(Words::prose("_W_", []), about("normal_form", rows(&form.w))), shift])
+        let shift = (Words::prose("$B_tilde$", []), about("B_tilde", column(form.b_tilde)));
+        Block::Entries(20, vec![(Words::prose("$W$", []), about("normal_form", rows(&form.w))), shift])
     }));
     vec![Block::Heading("What happens there".into()), Block::Entries(20, entries), Block::Full(full)]
 }

@@ -9,7 +9,7 @@ use crate::pages::explain::behind;
 use crate::pages::report::html::HtmlError;
 use crate::report::Report;
 use crate::show::block::{Block, PageSection};
-use crate::show::formula::sentence;
+use crate::show::html::sentence;
 use crate::show::html::words;
 use crate::show::words::{slips, verdict, verdict_word};
 use corner_impact::published::Verdict;

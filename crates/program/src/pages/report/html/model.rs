@@ -1,25 +1,23 @@
 //! The model.
 
-use maud::{Markup, html};
-
 use crate::pages::cam;
 use crate::pages::report::html::{HtmlError, plates};
 use crate::report::Report;
-use crate::show::block::{Block, Column, PageSection, Span, Table, Words, about, words};
+use crate::show::block::{Block, Column, PageSection, Span, Table, about, words};
 use crate::show::digits::Digits;
-use crate::show::words::symbol;
 
 /// Most rows of a table that is not folded.
 const LONG: usize = 24;
 
 pub(crate) fn section(report: &Report) -> Result<PageSection, HtmlError> {
     let sheet = &report.model;
-    let motion = "A follower of mass _m_ on a spring, slack at _q₀_, flies above a cam of lift _c_(_θ_), hits it with _v^−_ where the \
-                  cam has the velocity _c′_, and leaves it with _v^+_:";
+    let motion = "A follower of mass $m$ on a spring, slack at $q0$, flies above a cam of lift $c$($theta$), hits it with $v-$ where the \
+                  cam has the velocity $c'$, and leaves it with $v+$:";
     let numbers = Block::Table(numbers(report));
     let source = Span::Quoted(sheet.source.clone());
-    let mut blocks =
-        vec![Block::paragraph(source), Block::paragraph(Words::prose(motion, [])), Block::Markup(formulas())];
+    let laws = ["m q'' + b q' + k (q - q0) = -m g", "v+ = (1 + r) c' - r v-"];
+    let mut blocks = vec![Block::paragraph(source), Block::paragraph(motion)];
+    blocks.extend(laws.map(|law| Block::paragraph(Span::Formula(law.into()))));
     blocks.push(match sheet.quantities.len() {
         count if count > LONG => Block::Details(words![count, " numbers of the model"], vec![numbers]),
         _ => numbers,
@@ -34,21 +32,6 @@ pub(crate) fn section(report: &Report) -> Result<PageSection, HtmlError> {
     Ok(PageSection { id: "model", title: "The model".into(), blocks })
 }
 
-/// The flight and the impact, typeset: `m q'' + b q' + k (q - q0) = -m g` and `v+ = (1 + r) c' - r v-`.
-fn formulas() -> Markup {
-    let above = |letter: &str, sign: &str| html! { msup { mi { (letter) } mo { (sign) } } };
-    html! {
-        math display="block" {
-            mi { "m" } (above("q", "″")) mo { "+" } mi { "b" } (above("q", "′")) mo { "+" } mi { "k" }
-            mo { "(" } mi { "q" } mo { "−" } msub { mi { "q" } mn { "0" } } mo { ")" } mo { "=" } mo { "−" } mi { "m" } mi { "g" }
-        }
-        math display="block" {
-            (above("v", "+")) mo { "=" } mo { "(" } mn { "1" } mo { "+" } mi { "r" } mo { ")" } (above("c", "′"))
-            mo { "−" } mi { "r" } (above("v", "−"))
-        }
-    }
-}
-
 fn numbers(report: &Report) -> Table {
     let [quantity, letter, unit, field] = ["quantity", "", "unit", "in the file"].map(Column::words);
     let columns = [quantity, letter, Column::number("value"), unit, field];
@@ -58,10 +41,9 @@ fn numbers(report: &Report) -> Table {
             "" => (Digits::Significant(12), "follows".into()),
             field => (Digits::All, Span::Code(field.into()).into()),
         };
-        let letter = words![symbol(quantity.symbol, quantity.symbol, "", "")];
         table.row([
             (&quantity.meaning).into(),
-            letter,
+            Span::Formula(quantity.symbol.into()).into(),
             about(quantity.name(), (quantity.value, digits)),
             (&quantity.unit).into(),
             field,

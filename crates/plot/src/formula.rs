@@ -1,35 +1,90 @@
-//! Formulas within sentences, from plain text to markup: `phi_{T/2} x*` with Greek letters, subscripts and superscripts.
+//! Formulas in plain text, as a terminal shows them: `phi_{T/2} x*`, `A_hat_minus`. This parses them, once for browsers and figures.
+//!
+//! `_` and `^` lower and raise a letter, a number or a group in braces. Greek letters are spelled; a side, an asterisk or a prime follows its letter. A word of a
+//! sentence is a formula if it shows that it is one; a letter alone stands between dollars, `$T$`.
 
-use maud::{Markup, html};
+use std::borrow::Cow;
 
 /// Names of Greek letters, and the letters.
-const GREEK: [(&str, &str); 12] = [
+const GREEK: [(&str, &str); 14] = [
     ("alpha", "α"),
     ("delta", "δ"),
     ("omega", "ω"),
     ("Omega", "Ω"),
     ("kappa", "κ"),
+    ("lambda", "λ"),
     ("theta", "θ"),
     ("zeta", "ζ"),
     ("phi", "φ"),
     ("Phi", "Φ"),
+    ("Pi", "Π"),
     ("rho", "ρ"),
     ("tau", "τ"),
     ("mu", "μ"),
 ];
 /// Signs typed with more than one key.
 const SIGNS: [(&str, &str); 4] = [("+-", "±"), ("->", "→"), ("<=", "≤"), (">=", "≥")];
+/// What a name says above or over its letter, in words.
+const SPELLED: [(&str, fn(&str) -> Part, &str); 6] = [
+    ("_minus", above, "−"),
+    ("_plus", above, "+"),
+    ("_star", above, "*"),
+    ("_hat", plain, "\u{302}"),
+    ("_tilde", plain, "\u{303}"),
+    ("_bar", plain, "\u{304}"),
+];
 
-/// A part of a formula.
-enum Part {
+/// A part of a sentence.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// Words, numbers and signs.
     Plain(String),
+    /// A letter of a formula, or a name in its place.
     Letter(String),
+    /// An index.
     Below(String),
+    /// A power, a side or an asterisk.
     Above(String),
 }
 
-/// Typesets the formulas in a sentence. Other parts stay unchanged: words, numbers, names with a colon or an underscore in words.
-pub(crate) fn sentence(text: &str) -> Markup {
+fn plain(text: &str) -> Part {
+    Part::Plain(text.to_owned())
+}
+
+fn above(text: &str) -> Part {
+    Part::Above(text.to_owned())
+}
+
+/// The text of a sentence for a terminal: without the dollars around a formula.
+pub fn typed(text: &str) -> Cow<'_, str> {
+    if text.contains('$') { marked(text).map(|(_, text)| text).collect() } else { Cow::Borrowed(text) }
+}
+
+/// Splits a sentence into parts. Other words than formulas stay unchanged: numbers, units, names with a colon or an underscore in words.
+pub fn sentence(text: &str) -> Vec<Part> {
+    marked(text).flat_map(|(is_formula, text)| if is_formula { formula(text) } else { recognized(text) }).collect()
+}
+
+/// Stretches of a text, and whether each stands between dollars. A dollar that nothing closes stays.
+fn marked(mut text: &str) -> impl Iterator<Item = (bool, &str)> {
+    std::iter::from_fn(move || {
+        if text.is_empty() {
+            return None;
+        }
+        let closed = text.strip_prefix('$').and_then(|rest| rest.split_once('$'));
+        if let Some((inside, rest)) = closed.filter(|(inside, _)| !inside.is_empty() && inside.trim() == *inside) {
+            text = rest;
+            return Some((true, inside));
+        }
+        let end = text.char_indices().skip(1).find(|(_, letter)| *letter == '$').map_or(text.len(), |(at, _)| at);
+        let (stretch, rest) = text.split_at(end);
+        text = rest;
+        Some((false, stretch))
+    })
+}
+
+/// Splits a text in which the words that are formulas are not marked.
+fn recognized(text: &str) -> Vec<Part> {
     // A space in braces does not separate words.
     let mut open = 0;
     let is_gap = |letter: char| {
@@ -38,23 +93,13 @@ pub(crate) fn sentence(text: &str) -> Markup {
     };
     let words = text.split_inclusive(is_gap).flat_map(|word| {
         let bare = word.trim_end();
-        let sign = SIGNS.iter().find(|(typed, _)| *typed == bare);
-        match sign {
+        match SIGNS.iter().find(|(typed, _)| *typed == bare) {
             Some((_, sign)) => vec![Part::Plain(format!("{sign}{}", &word[bare.len()..]))],
-            None if is_formula(bare) => parts(word),
-            None => vec![Part::Plain(word.to_owned())],
+            None if is_formula(bare) => formula(word),
+            None => vec![plain(word)],
         }
     });
-    html! {
-        @for part in words {
-            @match part {
-                Part::Plain(text) => (text),
-                Part::Letter(text) => i { (text) },
-                Part::Below(text) => sub { (text) },
-                Part::Above(text) => sup { (text) },
-            }
-        }
-    }
+    words.collect()
 }
 
 fn letter(name: &str) -> Option<&'static str> {
@@ -80,21 +125,24 @@ fn is_formula(word: &str) -> bool {
     !is_named && names(word).next().is_some() && names(word).all(short) && is_told
 }
 
-/// Splits a formula into parts. `_` and `^` apply to a letter, a number or a group in braces; an asterisk, a prime or a side follows a
-/// name.
-fn parts(word: &str) -> Vec<Part> {
+/// Splits a formula, which needs no dollars, into parts.
+pub fn formula(word: &str) -> Vec<Part> {
     let mut parts = Vec::new();
     let mut rest = word;
     while let Some(first) = rest.chars().next() {
         let taken = |from: &str, is: fn(char) -> bool| from.find(|letter| !is(letter)).unwrap_or(from.len());
-        if first.is_ascii_alphabetic() {
-            let (name, behind) = rest.split_at(taken(rest, |letter| letter.is_ascii_alphabetic()));
+        if first.is_alphabetic() {
+            let (name, behind) = rest.split_at(taken(rest, char::is_alphabetic));
             parts.push(Part::Letter(letter(name).unwrap_or(name).to_owned()));
             let digits = taken(behind, |letter| letter.is_ascii_digit());
             if digits > 0 {
                 parts.push(Part::Below(behind[..digits].to_owned()));
             }
             rest = &behind[digits..];
+            while let Some((spelled, part, sign)) = SPELLED.iter().find(|(spelled, ..)| rest.starts_with(spelled)) {
+                parts.push(part(sign));
+                rest = &rest[spelled.len()..];
+            }
             let primes = taken(rest, |letter| letter == '\'');
             if primes > 0 {
                 parts.push(Part::Plain("′".repeat(primes)));
@@ -131,7 +179,7 @@ fn parts(word: &str) -> Vec<Part> {
             continue;
         }
         let mut end = first.len_utf8();
-        end += taken(&rest[end..], |letter| !letter.is_ascii_alphabetic() && letter != '_' && letter != '^');
+        end += taken(&rest[end..], |letter| !letter.is_alphabetic() && letter != '_' && letter != '^');
         parts.push(Part::Plain(rest[..end].replace('-', "−")));
         rest = &rest[end..];
     }
@@ -147,28 +195,45 @@ fn set(part: &str) -> String {
 
 #[cfg(test)]
 mod tests {
+    use super::{Part, sentence, typed};
+
+    /// Parts as LaTeX would have them, letters between stars.
+    fn set(text: &str) -> String {
+        let parts = sentence(text).into_iter();
+        parts
+            .map(|part| match part {
+                Part::Plain(text) => text,
+                Part::Letter(text) => format!("*{text}*"),
+                Part::Below(text) => format!("_{{{text}}}"),
+                Part::Above(text) => format!("^{{{text}}}"),
+            })
+            .collect()
+    }
+
     #[test]
     fn formulas_are_set_and_words_are_left() {
-        for (text, set) in [
-            (
-                "dP/dx at fixed t_i is phi_{T/2} x*.",
-                "<i>dP</i>/<i>dx</i> at fixed <i>t</i><sub>i</sub> is <i>φ</i><sub>T/2</sub> <i>x</i><sup>*</sup>.",
-            ),
-            ("A- and B- hold", "<i>A</i><sup>−</sup> and <i>B</i><sup>−</sup> hold"),
-            ("det [e; e A-]", "det [e; e <i>A</i><sup>−</sup>]"),
-            ("omega0^2 -> 0", "<i>ω</i><sub>0</sub><sup>2</sup> → 0"),
-            ("c'' is 5.1e-9 m/s^2", "<i>c</i>′′ is 5.1e-9 m/s^2"),
-            (
-                "dP/dt_i: x + g/omega0^2,",
-                "<i>dP</i>/<i>dt</i><sub>i</sub>: x + <i>g</i>/<i>ω</i><sub>0</sub><sup>2</sup>,",
-            ),
+        for (text, as_set) in [
+            ("dP/dx at fixed t_i is phi_{T/2} x*.", "*dP*/*dx* at fixed *t*_{i} is *φ*_{T/2} *x*^{*}."),
+            ("A- and B- hold", "*A*^{−} and *B*^{−} hold"),
+            ("det [e; e A-]", "det [e; e *A*^{−}]"),
+            ("omega0^2 -> 0", "*ω*_{0}^{2} → 0"),
+            ("c'' is 5.1e-9 m/s^2", "*c*′′ is 5.1e-9 m/s^2"),
+            ("dP/dt_i: x + g/omega0^2,", "*dP*/*dt*_{i}: x + *g*/*ω*_{0}^{2},"),
             ("1/s, d/s, N/mm and m/s^2", "1/s, d/s, N/mm and m/s^2"),
             ("as printed, eq:PT in one-impact words", "as printed, eq:PT in one-impact words"),
-            ("phi_t = e^{-zeta t} x*", "<i>φ</i><sub>t</sub> = <i>e</i><sup>−ζ t</sup> <i>x</i><sup>*</sup>"),
-            ("W^{-1} x~", "<i>W</i><sup>−1</sup> <i>x</i>\u{303}"),
-            ("a < b & \"_", "a &lt; b &amp; &quot;_"),
+            ("phi_t = e^{-zeta t} x*", "*φ*_{t} = *e*^{−ζ t} *x*^{*}"),
+            ("W^{-1} x~", "*W*^{−1} *x*\u{303}"),
+            ("x_d^-, x^+", "*x*_{d}^{−}, *x*^{+}"),
+            ("$A_hat_minus$ and $T_star$", "*A*\u{302}^{−} and *T*^{*}"),
+            ("a $T$ and $q0$; $5 is no $ formula", "a *T* and *q*_{0}; $5 is no $ formula"),
+            ("ä$x$ß$", "ä*x*ß$"),
         ] {
-            assert_eq!(super::sentence(text).into_string(), set, "{text}");
+            assert_eq!(set(text), as_set, "{text}");
         }
+    }
+
+    #[test]
+    fn a_terminal_shows_no_dollars() {
+        assert_eq!(typed("at $q$ = 1 with $B_tilde$ for $5"), "at q = 1 with B_tilde for $5");
     }
 }
