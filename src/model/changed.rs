@@ -92,13 +92,13 @@ impl Model {
 
     /// Numeric and text fields of follower, cam, study and units by dotted path, as JSON documents have them.
     pub(crate) fn values(&self) -> BTreeMap<&str, serde_json::Value> {
-        let of = |(path, field): (&'_ String, &Field)| match &field.value {
+        let of = |(path, field): (&'_ std::sync::Arc<str>, &Field)| match &field.value {
             _ if !path.contains('.') => None,
             Value::Number(number) => Some((*number).into()),
             Value::Text(text) => Some(text.as_str().into()),
             _ => None,
         };
-        self.fields.fields.iter().filter_map(|entry| Some((entry.0.as_str(), of(entry)?))).collect()
+        self.fields.fields.iter().filter_map(|entry| Some((&**entry.0, of(entry)?))).collect()
     }
 
     /// The numbers that differ from the file, by dotted path.

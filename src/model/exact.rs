@@ -53,7 +53,7 @@ impl Fields {
         match self.fields.get(path) {
             Some(field) => match field.value {
                 Value::Number(number) if became(number) == inside => {
-                    times(Numeral { number, text: field.written.clone() }.decimal(), unit)
+                    times(Numeral { number, text: field.written.to_string() }.decimal(), unit)
                 }
                 _ => format!("{inside:?}"),
             },

@@ -34,13 +34,13 @@ pub(super) struct Field {
     pub(super) key: Range<usize>,
     /// Range of the value in the text.
     pub(super) span: Range<usize>,
-    pub(super) written: String,
+    pub(super) written: Arc<str>,
     pub(super) value: Value,
 }
 
 impl Field {
     pub(super) fn without_line(written: String, value: Value) -> Self {
-        Self { line: None, is_there: true, key: 0..0, span: 0..0, written, value }
+        Self { line: None, is_there: true, key: 0..0, span: 0..0, written: written.into(), value }
     }
 
     /// The value as written; a list of tables is not shown.
@@ -48,7 +48,7 @@ impl Field {
         match self.value {
             Value::Table => None,
             Value::Array(_) | Value::Rows(_) if self.written.starts_with("[[") || self.written.is_empty() => None,
-            _ => Some(self.written.clone()),
+            _ => Some(self.written.to_string()),
         }
     }
 }
@@ -59,8 +59,10 @@ pub(super) struct Fields {
     file: String,
     /// Text of the file; `None` once a field is changed.
     text: Option<Arc<str>>,
-    pub(super) fields: BTreeMap<String, Field>,
-    known: BTreeSet<String>,
+    pub(super) fields: BTreeMap<Arc<str>, Field>,
+    known: Arc<BTreeSet<String>>,
+    /// Whether the format has all of them: another number in one of them does not change that.
+    is_checked: bool,
 }
 
 impl Fields {
@@ -69,7 +71,8 @@ impl Fields {
 
     /// Empty fields, of a file with a text or of a source that is not a file.
     pub(super) fn none(file: &str, text: Option<&str>) -> Self {
-        Self { file: file.into(), text: text.map(Arc::from), fields: BTreeMap::new(), known: BTreeSet::new() }
+        let (text, known) = (text.map(Arc::from), Arc::default());
+        Self { file: file.into(), text, fields: BTreeMap::new(), known, is_checked: false }
     }
 
     /// Inserts a field, or replaces it.
@@ -90,7 +93,7 @@ impl Fields {
     pub(super) fn numbers_in<'a>(&'a self, tables: &[&str]) -> impl Iterator<Item = (&'a str, f64)> {
         let inside = |path: &str| path.split_once('.').is_some_and(|(table, _)| tables.contains(&table));
         self.fields.iter().filter_map(move |(path, field)| match field.value {
-            Value::Number(number) if inside(path) => Some((path.as_str(), number)),
+            Value::Number(number) if inside(path) => Some((&**path, number)),
             _ => None,
         })
     }
@@ -101,7 +104,7 @@ impl Fields {
         match fields.fields.get_mut(path) {
             Some(field @ Field { value: Value::Number(_), .. }) => {
                 field.value = Value::Number(number.number);
-                field.written = number.text;
+                field.written = number.text.into();
                 field.line = None;
                 fields.text = None;
                 Ok(fields)
@@ -112,7 +115,7 @@ impl Fields {
 
     /// Copy of the fields without the text of a file.
     pub(super) fn without_text(&self) -> Self {
-        Self { text: None, known: BTreeSet::new(), ..self.clone() }
+        Self { text: None, known: Arc::default(), is_checked: false, ..self.clone() }
     }
 
     pub(super) fn has(&self, path: &str) -> bool {
@@ -122,7 +125,7 @@ impl Fields {
     /// The number at a path, within what it may be.
     pub(super) fn number(&mut self, path: &str) -> Result<f64, ModelError> {
         let allowed = ModelNumber::of(path).map_or(Allowed::FINITE, |number| number.allowed);
-        match self.take(path)?.value {
+        match *self.take(path)? {
             Value::Number(number) if allowed.contains(number) => Ok(number),
             _ => Err(self.reject(path, allowed.to_string())),
         }
@@ -133,7 +136,7 @@ impl Fields {
         if !self.has(path) {
             let table = path.rsplit_once('.').and_then(|(table, _)| self.fields.get(table));
             let key = table.map_or(0..0, |table| table.key.clone());
-            let (span, written, value) = (key.clone(), default.to_string(), Value::Number(default));
+            let (span, written, value) = (key.clone(), default.to_string().into(), Value::Number(default));
             self.fields.insert(path.into(), Field { line: None, is_there: false, key, span, written, value });
         }
         self.number(path)
@@ -141,7 +144,7 @@ impl Fields {
 
     /// Length of an array, at least one and at most `most`.
     pub(super) fn length(&mut self, path: &str, what: &str, most: usize) -> Result<usize, ModelError> {
-        match self.take(path)?.value {
+        match *self.take(path)? {
             Value::Array(length) if (1..=most).contains(&length) => Ok(length),
             Value::Array(length) => Err(self.reject(path, format!("has {length} {what}; 1 to {most} are allowed"))),
             _ => Err(self.reject(path, format!("must be a list of {what}"))),
@@ -156,7 +159,7 @@ impl Fields {
 
     /// Pairs of numbers, each with its line, `fewest` to `most` of them.
     pub(super) fn rows(&mut self, path: &str, [fewest, most]: [usize; 2]) -> Result<Vec<Pair>, ModelError> {
-        match self.take(path)?.value {
+        match self.take(path)?.clone() {
             Value::Rows(rows) if (fewest..=most).contains(&rows.len()) => Ok(rows),
             Value::Rows(rows) => {
                 Err(self.reject(path, format!("has {} rows; {fewest} to {most} are allowed", rows.len())))
@@ -176,7 +179,7 @@ impl Fields {
         let length = self.length(path, "tables", most)?;
         let is_table = |field: Option<&Field>| matches!(field, Some(Field { value: Value::Table, .. }));
         for item in (0..length).map(|index| format!("{path}[{index}]")) {
-            if !is_table(self.fields.get(&item)) {
+            if !is_table(self.fields.get(&*item)) {
                 return Err(self.reject(&item, format!("must be a table under [[{path}]]")));
             }
         }
@@ -186,7 +189,7 @@ impl Fields {
     pub(super) fn text(&mut self, path: &str) -> Result<String, ModelError> {
         /// Most characters: every page and figure shows the text.
         const LONGEST: usize = 1000;
-        match self.take(path)?.value {
+        match self.take(path)?.clone() {
             Value::Text(text) if text.chars().count() <= LONGEST => Ok(text),
             Value::Text(_) => Err(self.reject(path, format!("must have {LONGEST} characters or fewer"))),
             _ => Err(self.reject(path, "must be text in quotes")),
@@ -194,16 +197,16 @@ impl Fields {
     }
 
     pub(super) fn text_or(&mut self, path: &str, default: &str) -> Result<String, ModelError> {
-        self.known.insert(path.into());
+        self.may_hold(path);
         if self.has(path) { self.text(path) } else { Ok(default.into()) }
     }
 
-    fn take(&mut self, path: &str) -> Result<Field, ModelError> {
-        self.known.insert(path.into());
-        self.fields.get(path).cloned().ok_or_else(|| {
+    fn take(&mut self, path: &str) -> Result<&Value, ModelError> {
+        self.may_hold(path);
+        self.fields.get(path).map(|field| &field.value).ok_or_else(|| {
             // A mistyped field is missing under its own name, so list the fields of its table.
             let table = path.rsplit_once('.').map_or("", |(table, _)| table);
-            let inside = |(name, field): &(&String, &Field)| {
+            let inside = |(name, field): &(&Arc<str>, &Field)| {
                 let is_there = field.is_there && !name.ends_with(']');
                 is_there && name.rsplit_once('.').map_or("", |(table, _)| table) == table
             };
@@ -232,7 +235,7 @@ impl Fields {
         let stray: Vec<String> = self.fields.keys().filter_map(|path| inside(path)).collect();
         let stray = stray.iter().map(String::as_str).filter(|name| !name.contains(['.', '[']) && !is_name(name));
         let written = stray.filter(|word| nearest(word, [meant]).is_some()).min()?;
-        let field = self.fields.get(&in_table(at, written))?;
+        let field = self.fields.get(&*in_table(at, written))?;
         let (is_table, written) = (shown.starts_with('['), untrusted::value(written));
         let written = if is_table { format!("[{written}]") } else { written.into_owned() };
         let place = field.line.map_or_else(|| "it".into(), |line| format!("line {line}"));
@@ -247,7 +250,9 @@ impl Fields {
 
     /// Registers `path` as a field of the format, whether or not it is present.
     pub(super) fn may_hold(&mut self, path: &str) {
-        self.known.insert(path.into());
+        if !self.is_checked {
+            Arc::make_mut(&mut self.known).insert(path.into());
+        }
     }
 
     /// The complaint about a field, present or not.
@@ -276,17 +281,21 @@ impl Fields {
     }
 
     /// Complains about the first field in the file that the format does not have.
-    pub(super) fn finish(&self) -> Result<(), ModelError> {
+    pub(super) fn finish(&mut self) -> Result<(), ModelError> {
+        if self.is_checked {
+            return Ok(());
+        }
         let table_of = |path: &str| path.rsplit_once('.').map_or("", |(table, _)| table).to_owned();
         let tables: BTreeSet<String> = self.known.iter().map(|path| table_of(path)).collect();
         let unknown = self.fields.iter().filter(|(path, field)| {
-            let expected_table = matches!(field.value, Value::Table) && tables.contains(*path);
-            !expected_table && !self.known.contains(*path)
+            let expected_table = matches!(field.value, Value::Table) && tables.contains(&***path);
+            !expected_table && !self.known.contains(&***path)
         });
         let Some((path, field)) = unknown.min_by_key(|(_, field)| field.line) else {
+            self.is_checked = true;
             return Ok(());
         };
-        if tables.contains(path) {
+        if tables.contains(&**path) {
             return Err(self.reject(path, format!("must be a table, [{path}]")));
         }
         let table = table_of(path);

@@ -3,6 +3,7 @@
 //! Limits, "did you mean", units, the axes of figures, reports and `explain` follow from a row. The code that reads a number and the laws
 //! that use it do not: `docs/extending.md` lists them.
 
+use std::borrow::Cow;
 use std::fmt;
 
 /// A range of finite numbers.
@@ -155,8 +156,10 @@ pub static MODEL_NUMBERS: [ModelNumber; 26] = {
 impl ModelNumber {
     /// The number at a path, whatever its places in lists.
     pub fn of(path: &str) -> Option<&'static Self> {
-        let without_place = |part: &'_ str| part.split_once(']').map_or(part, |(_, rest)| rest).to_owned();
-        let plain: String = path.split('[').map(without_place).collect();
+        let plain = match path.contains('[') {
+            true => path.split('[').map(|part| part.split_once(']').map_or(part, |(_, rest)| rest)).collect(),
+            false => Cow::Borrowed(path),
+        };
         MODEL_NUMBERS.iter().find(|number| number.path == plain)
     }
 

@@ -1,5 +1,7 @@
 //! A model as the text of a self-contained model file.
 
+use std::sync::Arc;
+
 use std::fmt::Write;
 
 use super::fields::{Fields, Value};
@@ -38,9 +40,10 @@ impl Fields {
     /// Writes the contents of the table at `path`. Values come first, because lines after a nested table's header belong to that table.
     fn write(&self, text: &mut String, path: &str) {
         let prefix = if path.is_empty() { String::new() } else { format!("{path}.") };
-        let below = self.fields.range(prefix.clone()..).take_while(|(path, _)| path.starts_with(&prefix));
+        let below =
+            self.fields.range::<Arc<str>, _>(Arc::from(&*prefix)..).take_while(|(path, _)| path.starts_with(&prefix));
         let inside: Vec<(&str, &str, &Value)> = below
-            .map(|(path, field)| (&path[prefix.len()..], path.as_str(), &field.value))
+            .map(|(path, field)| (&path[prefix.len()..], &**path, &field.value))
             .filter(|(name, ..)| !name.contains(['.', '[']))
             .collect();
         for (name, path, value) in &inside {
@@ -68,7 +71,7 @@ impl Fields {
 
     /// Whether the array at `path` is an array of tables.
     fn holds_tables(&self, path: &str) -> bool {
-        self.fields.get(&format!("{path}[0]")).is_some_and(|first| matches!(first.value, Value::Table))
+        self.fields.get(&*format!("{path}[0]")).is_some_and(|first| matches!(first.value, Value::Table))
     }
 
     /// The value in one line; `None` for a table or an array of tables, which have headers of their own.
@@ -85,7 +88,7 @@ impl Fields {
             Value::Array(count) => {
                 let item = |index: usize| {
                     let path = format!("{path}[{index}]");
-                    self.written(&path, &self.fields.get(&path)?.value)
+                    self.written(&path, &self.fields.get(&*path)?.value)
                 };
                 Some(format!("[{}]", (0..*count).map(item).collect::<Option<Vec<_>>>()?.join(", ")))
             }

@@ -124,7 +124,8 @@ impl Fields {
             DeValue::String(text) => Value::Text(text.to_string()),
             other => number(other).map_or(Value::Other, Value::Number),
         };
-        let field = Field { line: Some(line), is_there: true, key, span: spanned.span(), written, value };
+        let field =
+            Field { line: Some(line), is_there: true, key, span: spanned.span(), written: written.into(), value };
         self.fields.insert(path.into(), field);
         Ok(())
     }

@@ -15,7 +15,7 @@ use corner_impact::study::chart::Chart;
 use corner_impact::study::design::loads::Loads;
 use corner_impact::study::diagram::one_row;
 use corner_impact::study::simulate::{RunRequest, Simulation, Until};
-use corner_impact::study::survey::{Axis, Placed, Sample, Start, Survey, Values, growth, long_run};
+use corner_impact::study::survey::{Axis, Placed, Sample, Spacing, Start, Survey, Values, growth, long_run};
 use serde_json::Value;
 
 use crate::common::{self, corner_impact, text};
@@ -269,13 +269,9 @@ fn shares_of_a_speed_are_all_of_it() {
         let [low, high] = corner_impact::study::speeds::usual_range(&model).unwrap();
         let from = low + 0.7 * (high - low);
         let range = [from, 1.01 * from];
-        let found = common::speeds(
-            &model,
-            range,
-            &Resolution::new(Step::for_values(range, 2, corner_impact::study::survey::Spacing::Linear), 12),
-            &Unwatched,
-        )
-        .unwrap();
+        let budget = Budget { patience: 5_000, ..Budget::SURVEY };
+        let resolution = Resolution { budget, ..Resolution::new(Step::for_values(range, 2, Spacing::Linear), 12) };
+        let found = common::speeds(&model, range, &resolution, &Unwatched).unwrap();
         let shares = all_of_each_speed(&found);
         assert!(!shares.is_empty(), "{}", model.name);
         speeds_seen += shares.len();

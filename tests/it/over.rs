@@ -156,8 +156,9 @@ fn attractors_are_matched_over_a_restitution() {
     }
 }
 
-/// Two halves of a range have what the whole has: the kinds of motion and their shares at each value, and the located events. A step that is half
-/// as long has the same at the values of both, and the events of what was seen there. It is asked over every number of the model but the phase and the rounding of corners, of which there are none.
+/// Two halves of a range have what the whole has: the kinds of motion and their shares at each value, and the located events. A step that is
+/// half as long has the same at the values of both, and the events of what was seen there; this is asked of the numbers whose surveys are
+/// quick. All numbers of the model are asked but the phase and the rounding of corners, of which there are none.
 #[test]
 #[ignore = "slow"]
 fn parts_of_a_range_of_any_number_have_their_part_of_the_answer() {
@@ -178,21 +179,21 @@ fn parts_of_a_range_of_any_number_have_their_part_of_the_answer() {
         all.map(|end| (end.cause, end.value())).collect()
     };
     let axes = [
-        ("damping", [0.6, 0.8, 1.0], 0.2),
-        ("stiffness", [100.0, 120.0, 140.0], 20.0),
-        ("mass", [0.6, 0.7, 0.8], 0.1),
-        ("gravity", [-0.1, 0.0, 0.1], 0.1),
-        ("rest_position", [0.004, 0.005, 0.006], 0.001),
-        ("restitution", [0.4, 0.5, 0.6], 0.1),
-        ("amplitudes[0]", [0.008, 0.009, 0.01], 0.001),
-        ("cam.offset", [-0.001, 0.0, 0.001], 0.001),
+        ("damping", [0.6, 0.8, 1.0], 0.2, true),
+        ("stiffness", [100.0, 120.0, 140.0], 20.0, false),
+        ("mass", [0.6, 0.7, 0.8], 0.1, false),
+        ("gravity", [-0.1, 0.0, 0.1], 0.1, true),
+        ("rest_position", [0.004, 0.005, 0.006], 0.001, true),
+        ("restitution", [0.4, 0.5, 0.6], 0.1, true),
+        ("amplitudes[0]", [0.008, 0.009, 0.01], 0.001, true),
+        ("cam.offset", [-0.001, 0.0, 0.001], 0.001, false),
     ];
     let asked: Vec<&str> = axes.iter().map(|(name, ..)| *name).collect();
     let changes_nothing = |path: &str| path.ends_with("phases_deg[0]") || path.ends_with("corner_rounding_deg");
     let is_asked = |path: &str| changes_nothing(path) || asked.iter().any(|name| path.ends_with(name));
     assert!(wall.numbers().all(|(path, _)| is_asked(path)), "{:?}", wall.numbers().collect::<Vec<_>>());
     let mut seen = 0;
-    for (name, [low, middle, high], step) in axes {
+    for (name, [low, middle, high], step, is_halved) in axes {
         let over = Over::new(&wall, Parameter::named(&wall, name).unwrap(), Some(250.0)).unwrap();
         let found = |range, step| {
             let budget = Budget { patience: 2_000, ..Budget::SURVEY };
@@ -200,14 +201,16 @@ fn parts_of_a_range_of_any_number_have_their_part_of_the_answer() {
             speeds(&over, range, &resolution, &Unwatched).unwrap()
         };
         let [whole, lower, upper] = [[low, high], [low, middle], [middle, high]].map(|range| found(range, step));
-        let fine = found([low, high], 0.5 * step);
+        let fine = is_halved.then(|| found([low, high], 0.5 * step));
         let all = values(&whole);
         assert!(all.len() >= 3, "{name}: {all:?}");
         for value in all {
             for part in [&lower, &upper].into_iter().filter(|part| part.range[0] <= value && value <= part.range[1]) {
                 assert_eq!(here(part, value), here(&whole, value), "{name} {value}");
             }
-            assert_eq!(here(&fine, value), here(&whole, value), "{name} {value}, of a step half as long");
+            if let Some(fine) = &fine {
+                assert_eq!(here(fine, value), here(&whole, value), "{name} {value}, of a step half as long");
+            }
         }
         let [of_whole, of_parts] = [events(&[&whole]), events(&[&lower, &upper])];
         seen += of_whole.len();
@@ -216,8 +219,9 @@ fn parts_of_a_range_of_any_number_have_their_part_of_the_answer() {
             attractors: whole.attractors.iter().filter(|row| !row.at.is_empty()).cloned().collect(),
             ..whole.clone()
         };
-        let [of_fine, of_grid] = [events(&[&fine]), events(&[&on_the_grid])];
-        for (one, other) in [(&of_whole, &of_parts), (&of_parts, &of_whole), (&of_grid, &of_fine)] {
+        let of_fine = fine.as_ref().map(|fine| (events(&[&on_the_grid]), events(&[fine])));
+        let asked = [(&of_whole, &of_parts), (&of_parts, &of_whole)];
+        for (one, other) in asked.into_iter().chain(of_fine.as_ref().map(|(of_grid, of_fine)| (of_grid, of_fine))) {
             for (cause, value) in one {
                 let is_same = |(known, at): &(Cause, f64)| known == cause && (at - value).abs() < 1e-9 * (high - low);
                 assert!(other.iter().any(is_same), "{name}: {cause:?} at {value}");
