@@ -112,15 +112,17 @@ pub(crate) fn run<T: serde::de::DeserializeOwned>(script: &str, input: &serde_js
 }
 
 /// Outcome of a child process.
-struct Talk {
+#[derive(Debug)]
+pub struct Talk {
     /// Exit status; none if the child had to be stopped.
-    status: Option<ExitStatus>,
-    stdout: String,
-    stderr: String,
+    pub status: Option<ExitStatus>,
+    pub stdout: String,
+    pub stderr: String,
 }
 
 /// Feeds `input`, collects both streams, and stops a child that exceeds the time `limit`.
-fn talk(mut child: Child, input: Vec<u8>, limit: Duration) -> std::io::Result<Talk> {
+#[doc(hidden)]
+pub fn talk(mut child: Child, input: Vec<u8>, limit: Duration) -> std::io::Result<Talk> {
     let pipes = (child.stdin.take(), child.stdout.take(), child.stderr.take());
     // Ends with whoever waits for it; its pipes are closed then, and those who read them end, too.
     let mut child = Started::new(child);
@@ -174,23 +176,4 @@ fn interpreter() -> PathBuf {
     });
     let of_the_build = || Some(PathBuf::from(OF_THE_BUILD)).filter(|path| path.is_file());
     chosen.or_else(|| HOST.get().cloned()).or_else(of_the_build).unwrap_or_else(|| "python3".into())
-}
-
-#[cfg(test)]
-#[cfg(unix)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_does_not_end_is_stopped_and_told_from_what_failed() {
-        let told = |script: &str| {
-            let mut command = Command::new("sh");
-            let child =
-                command.args(["-c", script]).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
-            talk(child.spawn().unwrap(), Vec::new(), Duration::from_millis(300)).unwrap()
-        };
-        assert!(told("exec sleep 60").status.is_none());
-        let failed = told("echo no >&2; exit 3");
-        assert_eq!((failed.status.and_then(|status| status.code()), failed.stderr.as_str()), (Some(3), "no\n"));
-    }
 }

@@ -66,22 +66,3 @@ pub fn in_place(text: &str) -> String {
     }
     seen
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_steers_is_written_out_and_what_is_long_is_cut() {
-        assert_eq!(visible("a\x1b[31m\0\u{9b}\u{202e}\u{7f}\tb\n"), "a\\u{1b}[31m\\u{0}\\u{9b}\\u{202e}\\u{7f}\tb\n");
-        assert_eq!(value("one\ntwo\r"), "one\\ntwo\\r");
-        assert_eq!(value(&"9".repeat(60)), "9".repeat(60));
-        let long = value(&format!("begin{}end", "\x1b".repeat(1000))).into_owned();
-        assert!(long.starts_with("begin\\u{1b}") && long.ends_with("end") && long.contains("..."), "{long}");
-        assert_eq!(long.chars().count(), 60);
-        assert_eq!(sentence(&"ä".repeat(5000)).chars().count(), 2000);
-        let text = "\u{feff}x\x1b = \u{9b}\u{2029}\r\n\r\t";
-        assert_eq!(in_place(text), "\u{feff}x? = \u{b7}\u{fffd}\r\n?\t");
-        assert_eq!(in_place(text).len(), text.len());
-    }
-}

@@ -35,7 +35,7 @@ pub mod closed_form;
 pub(crate) mod confirm;
 pub(crate) mod corner_impact;
 pub(crate) mod external;
-mod extrapolation;
+pub(crate) mod extrapolation;
 #[doc(hidden)]
 pub mod finite_difference;
 #[doc(hidden)]

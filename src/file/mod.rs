@@ -16,9 +16,9 @@ use std::path::{Path, PathBuf};
 
 pub(crate) use read::{text, text_of_any_age};
 pub(crate) use registry::Started;
-pub use registry::clear;
+pub use registry::{clear, held};
 pub(crate) use scratch::Scratch;
-use unfinished::Unfinished;
+pub use unfinished::Unfinished;
 
 /// Reason why a file was not written.
 #[derive(Debug, thiserror::Error)]

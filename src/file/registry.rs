@@ -10,7 +10,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 /// Hidden files and private folders that a signal has to remove; locked while one of them is created, removed or renamed.
 static HIDDEN: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
 
-pub(super) fn held() -> MutexGuard<'static, BTreeSet<PathBuf>> {
+pub fn held() -> MutexGuard<'static, BTreeSet<PathBuf>> {
     // The set remains valid even if a thread panicked with the lock.
     HIDDEN.lock().unwrap_or_else(PoisonError::into_inner)
 }
@@ -48,7 +48,7 @@ impl Drop for Started {
 }
 
 /// An entry of `HIDDEN`, removed from it with this value.
-pub(super) struct Listed(pub(super) PathBuf);
+pub struct Listed(pub(super) PathBuf);
 
 impl Drop for Listed {
     fn drop(&mut self) {

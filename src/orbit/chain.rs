@@ -14,7 +14,7 @@ use nalgebra::{DVector, Matrix2, Vector2};
 
 /// The equations of one flight.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Link {
+pub struct Link {
     /// L: derivative by the impact that the flight leaves.
     pub leaving: Matrix2<f64>,
     /// N: derivative by the impact at which the flight arrives.
@@ -85,14 +85,14 @@ fn eliminate(links: &[Link], right: &DVector<f64>) -> Option<Eliminated> {
 }
 
 /// Determinant of the equations; 1 if there are none.
-pub(super) fn determinant(links: &[Link]) -> f64 {
+pub fn determinant(links: &[Link]) -> f64 {
     let Some(Eliminated { rows, last, .. }) = eliminate(links, &DVector::zeros(2 * links.len())) else { return 1.0 };
     // Two reflections have the determinant 1, and to bring x_0 to the end moves two columns past pairs of others.
     rows.iter().map(|columns| columns[0][0] * columns[1][1]).product::<f64>() * last.determinant()
 }
 
 /// Solves for the unknowns, two for each impact in turn. Where the equations do not determine them: `None`, or values that are not finite.
-pub(super) fn solve(links: &[Link], right: &DVector<f64>) -> Option<DVector<f64>> {
+pub fn solve(links: &[Link], right: &DVector<f64>) -> Option<DVector<f64>> {
     let Eliminated { rows, last, left } = eliminate(links, right)?;
     let first = last.try_inverse()? * left;
     let mut unknowns = DVector::zeros(2 * links.len());
@@ -106,48 +106,4 @@ pub(super) fn solve(links: &[Link], right: &DVector<f64>) -> Option<DVector<f64>
         unknowns.fixed_rows_mut::<2>(2 * (index + 1)).copy_from(&next);
     }
     Some(unknowns)
-}
-
-#[cfg(test)]
-mod tests {
-    use nalgebra::DMatrix;
-
-    use super::*;
-
-    /// Against the dense matrix, from one impact to many; each flight amplifies a hundredfold in one direction.
-    #[test]
-    fn one_pass_comes_to_what_the_dense_matrix_does() {
-        for count in [1, 2, 3, 7, 40] {
-            let at = |seed: usize| ((seed * 7919 + 13) % 97) as f64 / 97.0 - 0.4;
-            let block = |seed: usize, grown: f64| {
-                Matrix2::new(grown + at(seed), at(seed + 1), at(seed + 2), 1.0 + at(seed + 3))
-            };
-            let links: Vec<Link> =
-                (0..count).map(|i| Link { leaving: block(5 * i, 100.0), coming: block(11 * i + 3, -1.0) }).collect();
-            let mut dense = DMatrix::zeros(2 * count, 2 * count);
-            for (i, link) in links.iter().enumerate() {
-                let next = (i + 1) % count;
-                for (column, by) in [(i, link.leaving), (next, link.coming)] {
-                    let mut view = dense.fixed_view_mut::<2, 2>(2 * i, 2 * column);
-                    view += by;
-                }
-            }
-            let (size, found) = (dense.determinant(), determinant(&links));
-            assert!((found - size).abs() <= 1e-12 * size.abs(), "{count}: {found} {size}");
-            let right = DVector::from_fn(2 * count, |row, _| at(3 * row));
-            let expected = dense.lu().solve(&right).map_or(DVector::zeros(0), |found| found);
-            let found = solve(&links, &right).unwrap_or(DVector::zeros(0));
-            assert!(
-                found.len() == 2 * count && (&found - &expected).norm() <= 1e-12 * expected.norm(),
-                "{count}: {found}"
-            );
-        }
-    }
-
-    #[test]
-    fn equations_that_determine_nothing_are_refused() {
-        let nothing = Link { leaving: Matrix2::zeros(), coming: Matrix2::zeros() };
-        assert_eq!(solve(&[nothing, nothing], &DVector::zeros(4)), None);
-        assert_eq!(solve(&[], &DVector::zeros(0)), None);
-    }
 }

@@ -18,7 +18,7 @@
 //! | [`branch`] | branches of orbits through corners, folds, flips and grazes, with those points located |
 
 pub mod branch;
-mod chain;
+pub(crate) mod chain;
 pub(crate) mod complete;
 pub(crate) mod curve;
 pub(crate) mod cycle;

@@ -6,7 +6,7 @@
 
 /// Gap between follower and cam at an instant, with bounds from then on.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Gap {
+pub struct Gap {
     /// g, m.
     pub value: f64,
     /// Rounding error of `value`, m.
@@ -23,13 +23,18 @@ pub(super) struct Gap {
 
 /// Result of the search.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Outcome {
+pub enum Outcome {
     /// No contact up to the end.
     None,
     /// The first contact, s after the start.
     Contact(f64),
     /// The follower is inside the cam and on the way out of it.
-    Below { depth: f64, time: f64 },
+    Below {
+        /// How far inside, m.
+        depth: f64,
+        /// When, s after the start.
+        time: f64,
+    },
     /// More steps than a window may take, or a step that takes no time; s after the start.
     NoProgress(f64),
     /// The gap is NaN or infinite; s after the start.
@@ -38,7 +43,7 @@ pub(super) enum Outcome {
 
 /// Finds the first contact within `[0, end]`, s, of the gap `gap_at(time)`; `third_bound(time, reach)` bounds `|g'''|` over
 /// `[time, time + reach]`.
-pub(super) fn first_contact(gap_at: impl Fn(f64) -> Gap, third_bound: impl Fn(f64, f64) -> f64, end: f64) -> Outcome {
+pub fn first_contact(gap_at: impl Fn(f64) -> Gap, third_bound: impl Fn(f64, f64) -> f64, end: f64) -> Outcome {
     let mut time = 0.0;
     for _ in 0..super::MOST_STEPS {
         let gap = gap_at(time);
@@ -118,31 +123,4 @@ fn first_root(g: f64, b: f64, c: f64) -> f64 {
     }
     // Each form adds numbers of one sign only.
     if b > 0.0 { (b + discriminant.sqrt()) / -c } else { 2.0 * g / (discriminant.sqrt() - b) }
-}
-
-#[cfg(test)]
-mod tests {
-    use std::cell::Cell;
-
-    use super::*;
-    use crate::elementary;
-
-    /// Damping stops a follower within 1e-12 s of an impact, many digits above the cam, and the cam reaches it in the end.
-    #[test]
-    fn a_flight_that_is_stopped_at_once_takes_few_steps() {
-        let (rate, stops, cam) = (17.0, 1e12, 1e-9);
-        let looks = Cell::new(0);
-        let gap_at = |time: f64| {
-            looks.set(looks.get() + 1);
-            let left = elementary::exp(-stops * time);
-            let (value, third) =
-                (-rate * elementary::exp_m1(-stops * time) / stops - cam * time, rate * stops * stops * left);
-            let (rate, curvature) = (rate * left - cam, -rate * stops * left);
-            Gap { value, rounding: 1e-25, rate, rate_rounding: 1e-14, curvature, third }
-        };
-        let third_bound = |time: f64, _| rate * stops * stops * elementary::exp(-stops * time);
-        let Outcome::Contact(time) = first_contact(gap_at, third_bound, 0.1) else { panic!("no contact") };
-        approx::assert_relative_eq!(time, rate / stops / cam, max_relative = 1e-12);
-        assert!(looks.get() < 200, "{}", looks.get());
-    }
 }

@@ -19,7 +19,8 @@ pub struct Motion {
     pub contact: bool,
     pub(super) segment: usize,
     /// The gap, m, if it is known better than as a difference of two positions.
-    pub(super) gap: Option<f64>,
+    #[doc(hidden)]
+    pub gap: Option<f64>,
     /// The lift under the follower, if it is known.
     pub(super) lift: Option<Lift>,
     /// Angle, rad, at which the next impact is looked for first: the last impact if the one before it was close by, or a contact that a

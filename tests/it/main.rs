@@ -58,6 +58,7 @@ mod global;
 mod growth_numbers;
 mod hostile;
 mod impact_map;
+mod inner;
 mod interrupted;
 mod interval;
 mod judged;

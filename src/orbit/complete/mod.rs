@@ -16,7 +16,7 @@ mod two_impacts;
 use super::cycle::Cycle;
 use crate::interval::Interval;
 pub(crate) use clearance::Struck;
-pub(crate) use one_impact::OneImpact;
+pub use one_impact::OneImpact;
 pub(super) use one_impact::{near_one_impact, of_one_impact};
 pub(super) use two_impacts::of_two_impacts;
 
@@ -54,7 +54,7 @@ pub(super) struct Solved {
 }
 
 /// Merges boxes that touch into their hull, until no two have a point in common. The result is sorted along the first side.
-pub(crate) fn joined<B: AsRef<[Interval]> + AsMut<[Interval]>>(mut boxes: Vec<B>) -> Vec<B> {
+pub fn joined<B: AsRef<[Interval]> + AsMut<[Interval]>>(mut boxes: Vec<B>) -> Vec<B> {
     let low = |place: &B| place.as_ref().first().map_or(f64::NAN, |side| side.low());
     let in_order = |boxes: &mut Vec<B>| boxes.sort_by(|one, two| low(one).total_cmp(&low(two)));
     in_order(&mut boxes);
@@ -71,24 +71,4 @@ pub(crate) fn joined<B: AsRef<[Interval]> + AsMut<[Interval]>>(mut boxes: Vec<B>
     }
     in_order(&mut joined);
     joined
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn place(sides: [[f64; 2]; 2]) -> [Interval; 2] {
-        sides.map(|[low, high]| Interval::new(low, high))
-    }
-
-    /// Three in a row of which the middle one comes last, two that touch at a corner alone, and one that is apart on one side only.
-    #[test]
-    fn boxes_that_touch_are_one_whatever_their_order() {
-        let row = [[[0.0, 1.0], [0.0, 1.0]], [[0.1, 1.0], [2.0, 3.0]], [[0.2, 1.0], [1.0, 2.0]]].map(place);
-        let corner = [[[4.0, 5.0], [4.0, 5.0]], [[5.0, 6.0], [5.0, 6.0]]].map(place);
-        let apart = place([[0.0, 1.0], [7.0, 8.0]]);
-        let all = [&corner[..], &[apart], &row].concat();
-        let expected = [[[0.0, 1.0], [7.0, 8.0]], [[0.0, 1.0], [0.0, 3.0]], [[4.0, 6.0], [4.0, 6.0]]].map(place);
-        assert_eq!(joined(all), expected);
-    }
 }

@@ -20,8 +20,10 @@ use crate::simulate::Machine;
 
 /// The equation of a cam and a follower.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct OneImpact<'a> {
+pub struct OneImpact<'a> {
+    /// The cam.
     pub cam: &'a Cam,
+    /// The law of flight.
     pub flight: &'a Flight,
     /// r, 0 to 1.
     pub restitution: f64,
@@ -30,7 +32,7 @@ pub(crate) struct OneImpact<'a> {
 }
 
 /// E, and its derivatives by the angle, rad, and by the time, s.
-pub(crate) struct Equation {
+pub struct Equation {
     pub value: Interval,
     pub by_angle: Interval,
     pub by_time: Interval,
@@ -45,7 +47,7 @@ impl OneImpact<'_> {
     }
 
     /// Evaluates the equation for the lifts of a range of angles and a range of times, with the responses over these.
-    pub(crate) fn equation(&self, lift: &Lift<Interval>, time: Interval, response: &Response<Interval>) -> Equation {
+    pub fn equation(&self, lift: &Lift<Interval>, time: Interval, response: &Response<Interval>) -> Equation {
         let (r, flight) = (self.restitution, self.flight);
         let (p, s, s1) = (response.step, response.impulse, response.impulse_rate);
         let s2 = flight.impulse_bend(response);
@@ -172,34 +174,4 @@ pub(crate) fn of_one_impact(machine: &Machine, revolutions: u64) -> Vec<Solved> 
         Solved { guess: solution.guess, angles: vec![solution.angle], velocities: vec![before], standing }
     });
     solved.collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::model::{Model, OSORIO_2008};
-
-    /// Between two angles, or two times, E changes at a rate that its derivative has somewhere between them.
-    #[test]
-    fn each_derivative_is_that_of_the_equation() {
-        for damping in ["0.0", "5.0", "500.0"] {
-            let text = OSORIO_2008.replace("damping = 0.0", &format!("damping = {damping}"));
-            let model = Model::parse("damped.toml", &text).unwrap();
-            let (cam, flight) = (Cam::new(&model).unwrap(), Flight::new(&model.follower));
-            let equation = OneImpact { cam: &cam, flight: &flight, restitution: 0.8, revolutions: 1 };
-            for (angle, time) in [(1.6, 0.08), (1.9, 0.1), (2.3, 0.12), (2.7, 0.05), (4.0, 0.09)] {
-                let law = &cam.segments()[cam.segment_at(angle)].law;
-                let (angles, times) = (Interval::new(angle, angle + 1e-4), Interval::new(time, time + 1e-6));
-                let at = |angles: Interval, times: Interval| {
-                    equation.equation(&law.lift_over(angles), times, &flight.response_over(times))
-                };
-                let [from, to] = [angles.low(), angles.high()].map(|angle| at(angle.into(), time.into()).value);
-                let by_angle = (to - from) / (Interval::from(angles.high()) - angles.low());
-                assert!(by_angle.is_inside(at(angles, time.into()).by_angle), "{damping} {angle} {time}: {by_angle:?}");
-                let [from, to] = [times.low(), times.high()].map(|time| at(angle.into(), time.into()).value);
-                let by_time = (to - from) / (Interval::from(times.high()) - times.low());
-                assert!(by_time.is_inside(at(angle.into(), times).by_time), "{damping} {angle} {time}: {by_time:?}");
-            }
-        }
-    }
 }

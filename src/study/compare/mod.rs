@@ -155,7 +155,8 @@ pub struct Change {
 
 impl Change {
     /// Compares the values of both models, with the uncertainty of each. `open` is the uncertainty of the difference from a measured cam.
-    fn new(quantity: &str, [a, b]: [Option<&Value>; 2], errors: [Option<f64>; 2], open: f64) -> Self {
+    #[doc(hidden)]
+    pub fn new(quantity: &str, [a, b]: [Option<&Value>; 2], errors: [Option<f64>; 2], open: f64) -> Self {
         let numbers = a.and_then(Value::as_f64).zip(b.and_then(Value::as_f64));
         let difference = numbers.map(|(a, b)| b - a);
         let rounding = tolerance::ULP.value * numbers.map_or(0.0, |(a, b)| a.abs().max(b.abs()));
@@ -255,33 +256,4 @@ pub fn compare(a: &Model, b: &Model, external: External, watch: &dyn Watch) -> R
     changes.sort_by(|one, other| one.rank().partial_cmp(&other.rank()).unwrap_or(Ordering::Equal));
     let verdict = Pair { a: of_a.verdict, b: of_b.verdict };
     Ok(ModelComparison { models, verdict, fields, changes, unchanged })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn change([a, b]: [f64; 2], errors: [Option<f64>; 2]) -> Change {
-        let found = [a, b].map(Value::from);
-        Change::new("number", found.each_ref().map(Some), errors, 0.0)
-    }
-
-    #[test]
-    fn a_difference_within_the_errors_of_both_is_none() {
-        assert!(!change([1.0, 1.3], [Some(0.1), Some(0.2)]).is_one);
-        let moved = change([1.0, 1.5], [Some(0.1), Some(0.2)]);
-        assert!(moved.is_one && (moved.times_error.unwrap() - 5.0 / 3.0).abs() < 1e-12);
-        assert!((moved.relative.unwrap() - 0.5).abs() < 1e-12);
-        // Without an error, every difference above rounding is reported.
-        assert!(change([1.0, 1.3], [Some(10.0), None]).is_one);
-        assert!(!change([1.0, 1.0 + f64::EPSILON], [None; 2]).is_one);
-        assert!(!change([0.0, 0.0], [Some(0.0); 2]).is_one);
-    }
-
-    #[test]
-    fn a_verdict_says_that_it_is_not_verified() {
-        let verdict = |agrees| CornerVerdict { found: Ok(Scenario::Persistence), agrees }.to_string();
-        assert_eq!(verdict(true), "persistence");
-        assert!(verdict(false).contains("not verified"));
-    }
 }

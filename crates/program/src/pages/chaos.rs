@@ -1,7 +1,7 @@
 //! The page of `chaos`: the theorem first, then its basis, then the places where nothing is proved.
 
 use crate::show::block::{Block, Column, Table, TextMark, words};
-use crate::show::digits::Digits;
+use crate::show::digits::{Digits, at_least};
 use crate::show::{Paged, words};
 use corner_impact::covering::prove::Refused;
 use corner_impact::covering::region::{OpenRegion, Region};
@@ -114,14 +114,6 @@ fn trapped(found: &Trapped, rpm: f64) -> String {
     )
 }
 
-/// Decimals of a number, zero or more, rounded down, as a lower bound must be.
-fn at_least(number: f64, places: usize) -> String {
-    // This many places print a double exactly, so cutting them rounds down.
-    let exact = format!("{number:.1074}");
-    let end = exact.find('.').map_or(exact.len(), |point| point + 1 + places);
-    exact.get(..end).unwrap_or(&exact).to_owned()
-}
-
 /// Ends of a range to four places, rounded outwards.
 fn outwards([low, high]: [f64; 2]) -> [f64; 2] {
     [(1e4 * low).floor() / 1e4, (1e4 * high).ceil() / 1e4]
@@ -214,17 +206,4 @@ fn open(open: &Open) -> Block {
     };
     let refused: Vec<String> = short.refused.iter().map(refused).collect();
     Block::paragraph(format!("Not proved at {speeds}: {tried}. {}", refused.join(" ")))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_bound_from_below_is_rounded_down() {
-        // The double nearest to 0.3 is below it.
-        assert_eq!(at_least(0.3, 5), "0.29999");
-        assert_eq!(at_least(7.58, 1), "7.5");
-        assert_eq!(at_least(2.0, 1), "2.0");
-    }
 }

@@ -77,6 +77,14 @@ pub(crate) fn with_error(error: f64) -> (Digits, f64) {
     (Digits::Fixed(place.clamp(0.0, 12.0) as usize), (error * unit).ceil() / unit)
 }
 
+/// Decimals of a number, zero or more, rounded down, as a lower bound must be.
+pub fn at_least(number: f64, places: usize) -> String {
+    // This many places print a double exactly, so cutting them rounds down.
+    let exact = format!("{number:.1074}");
+    let end = exact.find('.').map_or(exact.len(), |point| point + 1 + places);
+    exact.get(..end).unwrap_or(&exact).to_owned()
+}
+
 /// Typesets digits as in print: a minus as wide as a plus, and a raised power of ten.
 pub(crate) fn typeset(text: &str) -> Markup {
     let signed = |text: &str| text.replace('-', "\u{2212}");

@@ -5,7 +5,7 @@
 pub(crate) mod block;
 pub(crate) mod command;
 pub(crate) mod csv;
-pub(crate) mod digits;
+pub mod digits;
 pub(crate) mod html;
 pub mod json;
 pub mod markdown;
