@@ -1,7 +1,7 @@
 //! Table of the numbers of a model file: path, symbol, meaning, dimension, allowed range and laws of each.
 //!
-//! Limits, "did you mean", units, the axes of figures, reports and `explain` follow from a row. The code that reads a number and the laws
-//! that use it do not: `docs/extending.md` lists them.
+//! Limits, "did you mean", units, the axes of figures, reports and `explain` follow from a row, and how a number of the follower is read.
+//! The laws that use it do not: `docs/extending.md` lists them.
 
 use std::borrow::Cow;
 use std::fmt;

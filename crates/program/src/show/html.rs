@@ -73,9 +73,10 @@ fn plain(words: &Words) -> String {
         Span::Quoted(text) | Span::Code(text) | Span::Formula(text) | Span::Marked(_, text) => text.clone(),
         Span::Unit(unit) => (*unit).to_owned(),
         Span::About(_, words) => plain(words),
-        Span::Number(..) | Span::Complex(..) | Span::Against(..) | Span::Matrix(..) | Span::Break => String::new(),
+        Span::Break => " ".into(),
+        Span::Number(..) | Span::Complex(..) | Span::Against(..) | Span::Matrix(..) => String::new(),
     };
-    words.0.iter().map(part).collect()
+    words.0.iter().map(part).collect::<String>().replace('\n', " ").trim().to_owned()
 }
 
 /// A sentence with its formulas set.

@@ -303,6 +303,8 @@ impl Page {
     }
 
     fn stacked(&mut self, heads: &[String], rows: &[Vec<String>]) -> fmt::Result {
+        // A head of several lines is one here.
+        let heads: Vec<String> = heads.iter().map(|head| head.trim().replace('\n', " ")).collect();
         let longest = heads.iter().map(|head| display_width(head)).max().unwrap_or(0);
         for (number, row) in rows.iter().enumerate() {
             if number > 0 {
