@@ -265,8 +265,8 @@ impl<'a> Rows<'a> {
         let [(with, at, jump), (without, ..)] = [0.0, f64::NAN].map(|rise| self.best(row, reach, rise));
         let rising = RISES.iter().filter_map(|rise| Some(self.fitted(at, row, reach, *rise)?.0));
         let without = rising.fold(without, f64::min);
-        // Two polynomials and where they meet.
-        let freedom = (2 * reach + 1 - 7) as f64;
+        // The rows less two polynomials and where they meet.
+        let freedom = (2 * reach - 6) as f64;
         let gained = (without - with) / (with / freedom).max(self.noise * self.noise);
         // What two cubics cannot follow is no noise, and hides more than one jump.
         let coarse = tolerance::CORNER_MISFIT.value * self.curvature * self.gap * self.gap;

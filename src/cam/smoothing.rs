@@ -17,6 +17,7 @@ use serde::Serialize;
 use super::cyclic::Cyclic;
 use super::law::Law;
 use super::polynomial::Polynomial;
+use super::within_a_turn;
 use crate::tolerance;
 
 /// Corners and dwells of a cam, rad.
@@ -42,10 +43,10 @@ impl Features {
             for end in dwell.iter_mut().filter(|end| is_there(**end)) {
                 *end += by;
             }
-            if dwell[0] < 0.0 {
-                *dwell = dwell.map(|end| end + TAU);
-            }
+            let turn = within_a_turn(dwell[0]) - dwell[0];
+            *dwell = dwell.map(|end| end + turn);
         }
+        moved.dwells.sort_by(|one, two| one[0].total_cmp(&two[0]));
         moved
     }
 }

@@ -242,6 +242,23 @@ fn bounds_on_the_third_derivative() {
             assert!(bound <= slack * largest + 0.1 * reach, "{law:?} {reach}: {largest} {bound}");
         }
     }
+    // A circle that holds the axis is met all round.
+    for (distance, radius) in [(0.02, 0.05), (-0.3, 0.4)] {
+        let arc = Law::Arc(Arc { distance, direction: 0.3, radius });
+        for (middle, reach) in [0.0, 0.9, 2.0, 4.5]
+            .into_iter()
+            .flat_map(|middle| [1.0, 1.7, 2.4, 3.0, PI, 6.0].map(|reach| (middle, reach)))
+        {
+            let at = |sample: i32| middle + reach * f64::from(sample) / 500.0;
+            let largest = |of: &dyn Fn(f64) -> f64| (-500..=500).map(|sample| of(at(sample)).abs()).fold(0.0, f64::max);
+            let (from, to) = (middle - reach, middle + reach);
+            assert!(
+                largest(&|angle| arc.lift(angle).third) <= arc.third_bound(from, to),
+                "{distance} {middle} {reach}"
+            );
+            assert!(largest(&|angle| arc.jet(angle).0[4]) <= arc.fourth_bound(from, to), "{distance} {middle} {reach}");
+        }
+    }
     // A ray misses a circle that does not hold the axis.
     let arc = Law::Arc(Arc { distance: 0.5, direction: 0.0, radius: 0.1 });
     assert!(arc.third_bound(-0.1, 0.1).is_finite());

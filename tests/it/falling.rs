@@ -146,3 +146,43 @@ fn a_throw_from_below_comes_down_after_its_highest_point() {
         assert_abs_diff_eq!(position(time), level, epsilon = 1e-14);
     }
 }
+
+/// In a unit of time that is a power of two times as long every number is that power times another, to the last bit, and so is the time of a fall.
+#[test]
+fn a_fall_takes_as_long_in_any_unit_of_time() {
+    let mut falls = 0;
+    for zeta in [0.05, 0.3, 1.0, 2.0, 7.0, 40.0] {
+        for (w0_squared, gravity) in [(0.0, 10.0), (1.0, 0.0), (1.0, 10.0), (25.0, 3.0)] {
+            for (height, velocity) in [(0.02, 0.0), (0.02, 3.0), (0.3, -2.0), (1.0, -0.1), (5.0, 1.0), (40.0, -90.0)] {
+                let fall = |unit: f64| {
+                    let flight = flight(zeta * unit, w0_squared * unit * unit, gravity * unit * unit);
+                    let (time, state) = flight.fall_to(-0.4, at(height - 0.4, velocity * unit))?;
+                    Some((time * unit, state.velocity / unit))
+                };
+                let expected = fall(1.0);
+                falls += u32::from(expected.is_some());
+                for power in [-40, -8, 8, 40] {
+                    let words = format!("{zeta} {w0_squared} {gravity}, {height} m, {velocity} m/s, 2^{power}");
+                    assert_eq!(fall(2.0_f64.powi(power)), expected, "{words}");
+                }
+            }
+        }
+    }
+    assert!(falls > 50, "{falls}");
+}
+
+/// Damping stops a follower that is thrown down, and it sinks the rest of the way: `q = q0 - s t - w (1 - exp(-k t))/k`, `s = g/k`. While it is being
+/// stopped, Halley's step from the fall so far leads to before the start.
+#[test]
+fn a_follower_that_is_stopped_high_above_a_level_comes_down_to_it() {
+    for turns in [15.0_f64, 16.0, 17.0, 30.0, 31.9, 33.0] {
+        for share in [0.3, 1.0, 3.0] {
+            // With k = 1 and s = 1, so fast that half of the way is left when as much of the velocity is.
+            let fast = share * (0.5 * turns).exp();
+            let drop = turns + fast * -(-turns).exp_m1();
+            let (time, state) = flight(0.5, 0.0, 1.0).fall_to(0.0, at(drop, -1.0 - fast)).unwrap();
+            assert_relative_eq!(time, turns, max_relative = 1e-8);
+            assert_relative_eq!(state.velocity, -1.0 - fast * (-time).exp(), max_relative = 1e-8);
+        }
+    }
+}

@@ -301,6 +301,169 @@ fn corners_and_dwells_are_found() {
     assert_eq!(orders, [3, 2, 2, 3]);
 }
 
+/// Rows of a cam with this second derivative, less its mean, mm/rad^2, at an angle in degrees.
+fn bent(count: u32, second: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
+    const PARTS: u32 = 64;
+    let step = TAU / f64::from(count * PARTS);
+    let second: Vec<f64> =
+        (0..count * PARTS).map(|part| second((f64::from(part) + 0.5) / f64::from(PARTS * count) * 360.0)).collect();
+    let mean = second.iter().sum::<f64>() / second.len() as f64;
+    let (mut slope, mut lift, mut lifts) = (0.0, 0.0, Vec::new());
+    for second in &second {
+        lifts.push(lift);
+        lift += step * (slope + 0.5 * step * (second - mean));
+        slope += step * (second - mean);
+    }
+    let rise = lift / second.len() as f64;
+    let row = |row: u32| {
+        let part = row * PARTS;
+        (360.0 * f64::from(row) / f64::from(count), lifts[part as usize] - rise * f64::from(part))
+    };
+    (0..count).map(row).collect()
+}
+
+/// A second derivative that is one number from each of these angles, degrees, on.
+fn stepped(steps: &[(f64, f64)]) -> impl Fn(f64) -> f64 {
+    move |angle| steps.iter().rev().find(|(from, _)| *from <= angle).map_or(0.0, |(_, second)| *second)
+}
+
+/// Where a cam's acceleration jumps, degrees.
+fn jumps(rows: &[(f64, f64)]) -> Vec<f64> {
+    let cam = Cam::new(&machine(smoothing(rows, &json!({}))).unwrap()).unwrap();
+    let jumps = cam.corners().iter().filter(|corner| corner.jump_order == 2);
+    jumps.map(|corner| corner.angle.to_degrees()).collect()
+}
+
+/// Two jumps of the acceleration within a row are nearly one, which is told; of two that are far from one on so many rows neither is.
+#[test]
+fn corners_that_hide_each_other_are_not_told() {
+    for (apart, first, is_told) in [(4.0, 0.5, true), (7.0, 0.3, false)] {
+        let second =
+            [(0.0, 1.0), (40.7, -1.0), (110.3, 1.0 - first), (110.3 + apart, 1.0), (200.9, -1.0), (290.1, 1.0)];
+        let found = jumps(&bent(180, stepped(&second)));
+        let mut expected = vec![40.7, 111.0, 200.9, 290.1];
+        if !is_told {
+            expected.remove(1);
+        }
+        assert_eq!(found.len(), expected.len(), "{found:?}");
+        for (found, expected) in found.iter().zip(expected) {
+            assert_abs_diff_eq!(*found, expected, epsilon = 0.5);
+        }
+    }
+}
+
+/// A jump that is less than a fifth of the largest acceleration is none, however plain it is.
+#[test]
+fn a_small_jump_is_no_corner() {
+    for (before, is_told) in [(0.8, false), (0.6, true)] {
+        let found = jumps(&bent(180, stepped(&[(0.0, -1.0), (130.3, before), (200.9, 1.0), (270.1, -1.0)])));
+        assert_eq!(found.len(), if is_told { 3 } else { 2 }, "{found:?}");
+    }
+}
+
+/// An acceleration that rises and falls, with bends but without a jump, has no corner.
+#[test]
+fn a_bent_acceleration_is_no_corner() {
+    let near = |angle: f64| {
+        let x = (angle - 180.0) / 45.0;
+        let bends = -1.2781 * f64::max(x + 0.1751, 0.0) + 1.9632 * f64::max(x - 0.0873, 0.0);
+        -0.2399 - 0.7311 * x - 0.3918 * x * x + bends
+    };
+    let second = |angle: f64| {
+        let beyond = if angle < 112.5 { angle + 360.0 } else { angle };
+        let (from, to, level) = (near(247.5), near(112.5), 0.644);
+        match beyond {
+            ..=247.5 => near(beyond),
+            ..=307.5 => from + (level - from) * (beyond - 247.5) / 60.0,
+            ..=432.5 => level,
+            _ => level + (to - level) * (beyond - 432.5) / 40.0,
+        }
+    };
+    assert_eq!(jumps(&bent(96, second)), [0.0; 0]);
+}
+
+/// Six rows at one lift are a dwell, if what noise may hide there is little.
+#[test]
+fn six_rows_at_one_lift_are_a_dwell() {
+    let segments = [("poly345", 80.0, 10.0), ("dwell", 15.0, 0.0), ("poly345", 80.0, -10.0), ("dwell", 185.0, 0.0)];
+    let segments = segments.map(|(motion, span, rise)| match motion {
+        "dwell" => json!({ "motion": motion, "span_deg": span }),
+        _ => json!({ "motion": motion, "span_deg": span, "rise": rise }),
+    });
+    let truth = Cam::new(&machine(json!({ "law": "program", "base": 0, "segment": segments })).unwrap()).unwrap();
+    // From a row at 120 degrees to one at 135.
+    let lift = |angle: f64| truth.lift((angle - 40.0).rem_euclid(360.0).to_radians()).value;
+    let rows: Vec<(f64, f64)> = (0..120).map(|row| 3.0 * f64::from(row)).map(|angle| (angle, lift(angle))).collect();
+    let cam = Cam::new(&machine(smoothing(&rows, &json!({}))).unwrap()).unwrap();
+    let dwells = cam.segments().iter().filter(|segment| matches!(segment.law, Law::Dwell(_)));
+    let within = |dwell: &&Segment| 120_f64.to_radians() <= dwell.start && dwell.end <= 135_f64.to_radians();
+    assert_eq!(dwells.filter(within).count(), 1);
+}
+
+/// Beside one dwell two rows are enough for a cam.
+#[test]
+fn two_rows_beside_a_dwell_are_enough() {
+    // A step of 1 in the lifts would forbid the tolerance.
+    let lift = |angle: f64| if angle > 285.0 { 1.0 } else { 1e-14 * angle };
+    let rows: Vec<(f64, f64)> = (0..12).map(|row| 30.0 * f64::from(row)).map(|angle| (angle, lift(angle))).collect();
+    let of = |dwell: [f64; 2]| {
+        machine(smoothing(&rows, &json!({ "tolerance": 0.1, "dwells_deg": [dwell], "corners_deg": [] })))
+            .and_then(|model| Cam::new(&model).map_err(|error| error.to_string()))
+    };
+    let cam = of([0.0, 270.0]).unwrap();
+    for (angle, lift) in [(0.0, 0.0), (135.0, 0.0), (300.0, 1.0), (330.0, 1.0)] {
+        assert_abs_diff_eq!(cam.lift(f64::to_radians(angle)).value, lift, epsilon = 0.1 + 1e-9);
+    }
+    assert!(of([0.0, 300.0]).unwrap_err().contains("leaves fewer than three rows"));
+}
+
+/// A row is a ten-thousandth of a degree behind a corner that is given: the spline is as far from it as is told.
+#[test]
+fn a_row_beside_a_corner_is_as_far_from_the_cam_as_is_told() {
+    let cam = Cam::new(&machine(program("harmonic", 80.0, 60.0, 60.0)).unwrap()).unwrap();
+    let mut rows = rounded(&cam, 9);
+    rows[100].1 += 0.05;
+    let given = json!({ "tolerance": 0.02, "corners_deg": [99.9995], "dwells_deg": [] });
+    let model = machine(smoothing(&rows, &given)).unwrap();
+    let cam = Cam::new(&model).unwrap();
+    let off = rows.iter().map(|(angle, lift)| (lift - cam.lift(angle.to_radians()).value).abs());
+    assert_abs_diff_eq!(off.fold(0.0, f64::max), 0.02, epsilon = 1e-9);
+}
+
+/// A table whose angles count from elsewhere has the same corners and dwells, wherever angle 0 is: where it is between a corner as it is first found
+/// and where the spline is best as well.
+#[test]
+fn corners_and_dwells_turn_through_angle_0() {
+    let cam = Cam::new(&machine(program("harmonic", 63.689, 13.71, 40.3)).unwrap()).unwrap();
+    let rows: Vec<(f64, f64)> = rounded(&cam, 2).into_iter().step_by(3).collect();
+    let features = |from: f64| {
+        let mut turned: Vec<(f64, f64)> =
+            rows.iter().map(|(angle, lift)| ((angle - from).rem_euclid(360.0), *lift)).collect();
+        turned.sort_by(|one, two| one.0.total_cmp(&two.0));
+        let cam = Cam::new(&machine(smoothing(&turned, &json!({}))).unwrap()).unwrap();
+        let mut corners: Vec<f64> = cam
+            .corners()
+            .iter()
+            .filter(|corner| corner.jump_order < 5)
+            .map(|corner| (corner.angle.to_degrees() + from).rem_euclid(360.0))
+            .collect();
+        corners.sort_by(f64::total_cmp);
+        corners
+    };
+    let expected = features(50.0);
+    assert_eq!(expected.len(), 4);
+    for corner in &expected {
+        for off in -5..=5 {
+            let from = corner + 0.2 * f64::from(off);
+            let found = features(from);
+            assert_eq!(found.len(), expected.len(), "{from}: {found:?}, not {expected:?}");
+            for (found, expected) in found.iter().zip(&expected) {
+                assert_abs_diff_eq!(*found, *expected, epsilon = 0.05);
+            }
+        }
+    }
+}
+
 /// Corners, dwells and lifts of tables of every kind, as they were when the slower tests held them against the cams that the rows are of: coarse,
 /// rounded, noisy, uneven, many, turned so that a dwell and a corner lie on either side of angle 0, and with what a model may give.
 #[test]

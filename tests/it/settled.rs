@@ -364,3 +364,28 @@ fn what_is_found_one_turn_on_is_what_is_found_from_nothing() {
     }
     assert_eq!([flights, repeats], [15020, 2434]);
 }
+
+/// A ball that loses nothing hits a table near its highest place, a little sooner each turn, after it has come from elsewhere: the lift that was known
+/// there is not near. It is on the cam at each impact.
+#[test]
+fn a_motion_that_settles_just_after_angle_0_stays_on_the_cam() {
+    let model = crate::bounds::ball(1.0, 0.0);
+    let machine = Machine::new(common::cam(&model), &model.follower, OMEGA);
+    let gravity = model.follower.gravity;
+    let (first, sooner, start) = (3e-6, 5e-7, 5.0);
+    let lift = machine.cam().lift(first);
+    let rebound = 0.5 * gravity * (TAU - sooner) / OMEGA;
+    let (comes, time) = (2.0 * OMEGA * lift.slope - rebound, (TAU - start + first) / OMEGA);
+    let state =
+        State { position: lift.value - comes * time - 0.5 * gravity * time * time, velocity: comes + gravity * time };
+    let mut motion = machine.start(start, state).unwrap();
+    let mut seen = Repeats::default();
+    let goal = motion.after(5);
+    let _ = machine.advance(&mut motion, goal, &mut seen).unwrap();
+    assert!(seen.repeats > 0);
+    let impacts = impacts(&machine, machine.start(start, state).unwrap(), 4);
+    for (turn, impact) in impacts.iter().enumerate() {
+        assert_abs_diff_eq!(impact.cam_angle, first - turn as f64 * sooner, epsilon = 1e-7);
+        assert_abs_diff_eq!(impact.position, machine.cam().lift(impact.cam_angle).value, epsilon = 1e-15);
+    }
+}

@@ -230,3 +230,54 @@ fn a_run_may_be_stopped_in_the_last_instant_of_a_turn() {
         assert!(met > 0, "{half:?} {restitution}");
     }
 }
+
+/// A cam whose halves were typed to ten digits, with a lift of 0 beside one of 5e-12: the two count as one. A follower that floats over the lower
+/// one, by less than they differ, is over the other by as much.
+#[test]
+fn a_follower_floats_over_a_seam_as_high_as_before_it() {
+    let hump = [0.0, 0.0, 0.16 / (PI * PI), -0.32 / (PI * PI * PI), 0.16 / (PI * PI * PI * PI)];
+    let machine = machine(0.5, 0.0, &[(0.0, &[0.0]), (FRAC_PI_2, &[5e-12]), (PI, &hump)]);
+    let motion = machine.start(1.5, State { position: 2.5e-12, velocity: 1e-13 }).unwrap();
+    let (end, events) = run(&machine, motion, 1.0);
+    assert_abs_diff_eq!(machine.gap(&end.unwrap()), 2.6e-12, epsilon = 1e-16);
+    assert!(events.is_empty(), "{events:?}");
+}
+
+/// The cam `c = 6 - s x + k x^2/2` has a ridge at angle 0. A ball comes down just behind it, a turn after an impact, nearly as fast as the cam falls.
+/// The gap is small and hardly shrinks: Halley's step is a thousandth of the way to the contact.
+#[test]
+fn a_ball_that_hardly_nears_the_cam_a_turn_on_is_not_taken_to_it() {
+    /// Angle behind the ridge, rad; the cam falls more slowly by as much than a ball that returns after exactly a turn.
+    const BEHIND: f64 = 1e-7;
+    let slope = PI - BEHIND;
+    let bend = slope / PI;
+    let machine = machine(0.5, 1.0, &[(0.0, &[6.0, -slope, 0.5 * bend])]);
+    let lift = |angle: f64| -slope * angle + 0.5 * bend * angle * angle;
+    let falls = |angle: f64| -slope + bend * angle;
+    // It leaves for a little more than a turn, with half of the relative velocity that it came with.
+    let higher = 0.3 * BEHIND;
+    let leaves = PI + higher;
+    let comes = falls(BEHIND) - 2.0 * (leaves - falls(BEHIND));
+    // The impact before was five turns earlier, at an angle this much larger; the ball came to it from above.
+    let mut later = 0.0;
+    for _ in 0..60 {
+        let time = 5.0 * TAU - later;
+        later += (comes * time + 0.5 * time * time - lift(BEHIND) + lift(BEHIND + later)) / (6.0 * PI);
+    }
+    let first = BEHIND + later;
+    let leaves_first = comes + 5.0 * TAU - later;
+    let comes_first = falls(first) - 2.0 * (leaves_first - falls(first));
+    let time = 1.0 + first;
+    let position = 6.0 + lift(first) - comes_first * time - 0.5 * time * time;
+    let motion = machine.start(TAU - 1.0, State { position, velocity: comes_first + time }).unwrap();
+    let (_, events) = run(&machine, motion, 8.0 * TAU);
+    let [one, two, three] = [events[0], events[1], events[2]];
+    assert_eq!([one, two, three].map(|event| event.revolution), [1, 6, 7], "{events:?}");
+    assert_abs_diff_eq!(one.cam_angle, first, epsilon = 1e-12);
+    assert_abs_diff_eq!(two.cam_angle, BEHIND, epsilon = 1e-12);
+    assert_abs_diff_eq!(two.velocity_after, leaves, epsilon = 1e-12);
+    // 2 pi h - (1 + k) y^2/2 - (d + k d - h) y = 0 for the angle y from there on.
+    let (half, slows) = (0.5 * (1.0 + bend), BEHIND + bend * BEHIND - higher);
+    let after = ((slows * slows + 4.0 * half * TAU * higher).sqrt() - slows) / (2.0 * half);
+    assert_abs_diff_eq!(three.cam_angle, BEHIND + after, epsilon = 1e-9);
+}
