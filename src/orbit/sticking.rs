@@ -64,21 +64,16 @@ pub fn anchor(events: &[Event], revolutions: u64) -> Option<f64> {
     Some(longest.0.midpoint(longest.1).rem_euclid(TAU)).filter(|angle| *angle < TAU)
 }
 
-/// Stretches on the cam among the events of one period: start and end, rad. The follower leaves the cam where it is released, or where a
-/// corner that turns up throws it off, as an impact does.
+/// Stretches on the cam among the events of one period, in their order: start and end, rad. The next event ends a stretch: the follower
+/// leaves the cam where it is released, or where a corner that turns up throws it off, as an impact does.
 fn stretches(events: &[Event], revolutions: u64) -> impl Iterator<Item = (f64, f64)> {
     let period = revolutions as f64 * TAU;
-    let end = move |stick: f64| {
-        let later = |event: &Event| {
-            let end = event.turned_since(0.0);
-            // The impact that a plastic follower sticks after is at the same angle, and before it.
-            let is_before = end < stick || (end == stick && event.kind == EventKind::Impact);
-            if is_before { end + period } else { end }
-        };
-        events.iter().filter(|event| event.kind != EventKind::Stick).map(later).fold(f64::INFINITY, f64::min)
-    };
-    let sticks = events.iter().filter(|event| event.kind == EventKind::Stick).map(|event| event.turned_since(0.0));
-    sticks.map(move |stick| (stick, end(stick))).filter(|(_, end)| end.is_finite())
+    let again = events.iter().map(move |first| (first.kind, first.turned_since(0.0) + period));
+    let next = events.iter().skip(1).map(|event| (event.kind, event.turned_since(0.0))).chain(again);
+    events.iter().zip(next).filter_map(|(event, (next, end))| match (event.kind, next) {
+        (EventKind::Stick, EventKind::Release | EventKind::Impact) => Some((event.turned_since(0.0), end)),
+        _ => None,
+    })
 }
 
 /// Angle over which the follower sticks in one period, rad.

@@ -38,13 +38,7 @@ fn each_event_that_has_a_curve_is_of_its_kind() {
     let corner = SpecialKind::Corner { impact: 0, segment: 1, jump_order: 2 };
     let kinds = [corner, SpecialKind::Fold, SpecialKind::Flip, graze, SpecialKind::Detachment, SpecialKind::Chatter];
     assert_eq!(kinds.map(|kind| kind.bifurcation().unwrap()), Bifurcation::ALL);
-    let others = [
-        SpecialKind::Branching,
-        SpecialKind::Cusp,
-        SpecialKind::DegenerateGraze,
-        SpecialKind::Place,
-        SpecialKind::Turn,
-    ];
+    let others = [SpecialKind::Branching, SpecialKind::Cusp, SpecialKind::Place, SpecialKind::Turn];
     assert!(others.iter().all(|kind| kind.bifurcation().is_none()));
 }
 

@@ -241,6 +241,31 @@ fn the_flight_after_a_touch_that_comes_down_later_is_none_of_the_cycle() {
     assert_eq!(departure, "Some(Elsewhere { impact: 0 })");
 }
 
+/// Without a rebound a follower that is pressed against the cam begins no flight, wherever the cam lets go of it later.
+#[test]
+fn an_impact_that_a_follower_sticks_after_begins_no_flight() {
+    let paper = common::osorio();
+    let follower = Follower { restitution: 0.0, ..paper.follower.clone() };
+    let plastic = Machine::new(common::cam(&paper), &follower, angular_velocity(700.0));
+    let mut cycle = cycle_of!(orbits(&machine(700.0), 1)[0]);
+    let mut released = 0;
+    for degrees in 0..360 {
+        let angle = f64::from(degrees).to_radians();
+        let mut motion = plastic.start_on_cam(angle, 0.0).unwrap();
+        let is_rising = plastic.cam().lift(angle).slope > 1e-3;
+        if !(motion.contact && is_rising) {
+            continue;
+        }
+        plastic.watch(&mut motion, 1, |event| released += u64::from(event.kind == EventKind::Release)).unwrap();
+        let impact = &mut cycle.impacts[0];
+        (impact.cam_angle, impact.segment) = (angle, plastic.cam().segment_at(angle));
+        impact.velocity_before = 0.0;
+        let departure = format!("{:?}", cycle.departure(&plastic).unwrap());
+        assert_eq!(departure, "Some(Elsewhere { impact: 0 })", "{degrees}");
+    }
+    assert!(released > 10, "{released}");
+}
+
 /// A run from the state at angle 0 has the orbit's impacts and comes back, but for rounding as often as deviations grow: also where nothing is
 /// left of an impact, and the cam falls away at once.
 #[test]

@@ -327,7 +327,7 @@ fn a_point_of_a_branch_is_a_cause() {
         [2, 3].map(|order| cause(at(order))),
         [2, 3].map(|jump_order| Cause::CornerImpact { cam_angle: angle, jump_order })
     );
-    let kinds = [Event::Chatter, Event::Cusp, Event::DegenerateGraze, Event::Place, Event::Turn];
+    let kinds = [Event::Chatter, Event::Cusp, Event::Place, Event::Turn];
     assert!(kinds.into_iter().all(|kind| cause(kind) == Cause::Runs));
     assert_eq!(cause(Event::Type { after_corner: None, multiplier: 1.0 }), Cause::Runs);
     let plain = branch.points.iter().find(|it| it.special.is_none()).unwrap();

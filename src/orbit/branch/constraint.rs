@@ -97,11 +97,4 @@ impl Held {
             Self::Multiplier(_) => cycle.clone().in_order().impacts.first().map_or(f64::NAN, |first| first.cam_angle),
         }
     }
-
-    /// Acceleration of the gap where a flight touches the cam, m/s^2. Unless it is above 0, the gap does not open again.
-    pub(super) fn opening(self, cycle: &Cycle, machine: &Machine) -> Option<f64> {
-        let Self::Touch(impact) = self else { return None };
-        let rates = cycle.rates(machine, impact);
-        Some(rates.acceleration_after - rates.cam_acceleration)
-    }
 }

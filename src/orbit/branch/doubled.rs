@@ -6,6 +6,7 @@ use nalgebra::DVector;
 use super::problem::{BranchScales, Problem};
 use super::switch::{self, Exit};
 use super::{Branch, Following, SpecialKind};
+use crate::cam;
 use crate::orbit::curve::{self, Equations, NoPoint};
 use crate::orbit::cycle::lift_size;
 use crate::orbit::{Course, Cycle, Family, FamilyError, Impact, PeriodicOrbit};
@@ -101,12 +102,11 @@ fn stepped(
 /// Exits over the corner that starts `segment`, one for each impact on it: where branches meet there may be several.
 fn on_corner(cycle: &Cycle, machine: &Machine, segment: usize) -> impl Iterator<Item = Exit> {
     let segments = machine.cam().segments();
-    let before = (segment + segments.len() - 1) % segments.len();
-    let near = |one: f64, other: f64| (one - other).abs() <= tolerance::SAME_ORBIT.value;
+    let corner = segments[segment].start;
     cycle.impacts.iter().enumerate().filter_map(move |(impact, Impact { segment: on, cam_angle, .. })| {
-        let past_end = *on == before && near(*cam_angle, segments[before].end);
-        let past_start = *on == segment && near(*cam_angle, segments[segment].start);
-        (past_end || past_start).then_some(Exit::Corner { impact, past_end })
+        let past_end = *cam_angle > segments[*on].start.midpoint(segments[*on].end);
+        let is_there = cam::apart(*cam_angle, corner) <= tolerance::SAME_ORBIT.value;
+        is_there.then_some(Exit::Corner { impact, past_end })
     })
 }
 

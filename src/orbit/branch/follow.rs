@@ -160,7 +160,7 @@ impl Walk<'_> {
                         let end = match (error, self.fresh) {
                             (NoPoint::Outside(why), _) => self.edge(&why),
                             _ if self.chatters() => End::Chatter,
-                            (_, Some(Exit::Touch { .. } | Exit::Tangent { .. })) => End::Graze,
+                            (_, Some(Exit::Tangent { .. })) => End::Graze,
                             _ if self.grazes() => End::Graze,
                             _ => End::Lost,
                         };
@@ -169,13 +169,8 @@ impl Walk<'_> {
                 }
             }
             let home = &begin.1.unknowns;
-            let alike = begin.0.impacts.len() == self.stride.pattern.impacts.len()
-                && begin
-                    .0
-                    .impacts
-                    .iter()
-                    .zip(&self.stride.pattern.impacts)
-                    .all(|(one, other)| one.segment == other.segment);
+            let [one, other] = [&begin.0, &self.stride.pattern].map(|cycle| cycle.impacts.iter().map(|it| it.segment));
+            let alike = one.eq(other);
             if alike && self.points.len() > 20 {
                 let away = &self.stride.from.unknowns - home;
                 // Behind a fold it may pass its start the other way, a step beside it.
@@ -383,7 +378,6 @@ impl Walk<'_> {
         match first {
             Some(Located { cut: Cut::Range(_), .. }) => Ok(Some(End::Range)),
             Some(Located { cut: Cut::Halved, .. }) => Ok(Some(End::Shorter)),
-            Some(Located { cut: Cut::Degenerate, .. }) => Ok(Some(End::Degenerate)),
             Some(Located { cut: Cut::Exit(exit), .. }) => self.go_over(exit),
             _ => {
                 self.fresh = None;
@@ -424,9 +418,6 @@ impl Walk<'_> {
         }
         if beyond.impacts.len() > MOST_IMPACTS * beyond.revolutions as usize {
             return Ok(Some(End::Chatter));
-        }
-        if held.and_then(|held| held.opening(&beyond, &machine)).is_some_and(|opening| opening <= 0.0) {
-            return Ok(Some(End::Degenerate));
         }
         (self.stride.pattern, self.stride.held) = (beyond.clone(), held);
         let problem = self.stride.problem();

@@ -25,7 +25,7 @@ pub(super) fn least(cycle: &Cycle, machine: &Machine, index: usize, turned: f64)
         let lift = machine.cam().lift(if angle < TAU { angle } else { 0.0 });
         machine.flight().fly(start, turned / omega).1.position - lift.value
     };
-    let inside = |turned: f64| turned > 0.0 && turned < whole;
+    let inside = |turned: f64| (0.0..whole).contains(&turned);
     if !inside(turned) {
         return None;
     }

@@ -123,8 +123,6 @@ pub enum End {
     Kink,
     /// The follower goes another way to its rest, or does not rest.
     OtherWay,
-    /// A touch at which the gap does not open again.
-    Degenerate,
     /// Orbits of many amplitudes at one value, as far as a few steps show: it changes no more than rounding.
     Continuum,
     /// The requested number of points.
@@ -165,7 +163,6 @@ impl End {
             Self::Endless => "impacts without number before the follower rests".into(),
             Self::Kink => "an impact on the way to the rest at a corner, from where it is not followed on".into(),
             Self::OtherWay => "a place from which the follower goes another way".into(),
-            Self::Degenerate => "a degenerate graze: the flight that touches does not leave the cam again".into(),
             Self::Continuum => "what looks like a continuum of orbits: over the last steps amplitudes change and the value stays the same".into(),
             Self::MostPoints => "the number of points that was asked for".into(),
             Self::Chatter => "the onset of chattering".into(),

@@ -87,10 +87,10 @@ fn renamed(cycle: &Cycle, held: Held, here: &Machine, there: &Machine) -> Option
                 is_before = (at_end && order == 1).then_some(at_start);
             }
             _ => {
-                let turns = (impact.cam_angle / TAU).floor();
-                impact.cam_angle = (impact.cam_angle - TAU * turns).clamp(0.0, TAU);
-                impact.revolution += turns as i64;
-                impact.segment = there.cam().segment_at(impact.cam_angle);
+                let cam_angle = within_a_turn(impact.cam_angle);
+                impact.revolution += ((impact.cam_angle - cam_angle) / TAU).round() as i64;
+                impact.cam_angle = cam_angle;
+                impact.segment = there.cam().segment_at(cam_angle);
             }
         }
     }

@@ -48,8 +48,6 @@ pub enum SpecialKind {
     Cusp,
     /// Along a curve of grazes of orbits without impacts: the class of the graze is undecided there, and may change.
     Class(UndecidedGraze),
-    /// Along a curve of grazes: follower and cam have the same acceleration at the touch.
-    DegenerateGraze,
     /// Along a curve of detachment: the place where the follower first leaves the cam changes to another.
     Place,
     /// A curve turns round in the followed parameter.
@@ -114,7 +112,6 @@ impl SpecialKind {
             Self::Graze { .. } => "graze",
             Self::Type { .. } => "type",
             Self::Cusp => "cusp",
-            Self::DegenerateGraze => "degenerate-graze",
             Self::Class(_) => "class",
             Self::Place => "place",
             Self::Turn => "turn",

@@ -31,8 +31,6 @@ pub(super) enum Cut {
     Type { side: usize, multiplier: f64 },
     /// Along a curve of folds: the curve turns back in both numbers.
     Cusp,
-    /// Along a curve of grazes: the gap does not open again.
-    Degenerate,
 }
 
 pub(super) struct Located {
@@ -153,9 +151,6 @@ impl Stride<'_> {
                 cuts.push(Cut::Exit(Exit::Tangent { impact: index }));
             }
         }
-        if self.held.and_then(|held| held.opening(&cycle, &machine)).is_some_and(|opening| opening <= 0.0) {
-            cuts.push(Cut::Degenerate);
-        }
         Ok(cuts)
     }
 
@@ -195,7 +190,6 @@ impl Stride<'_> {
                 let numbers = |tangent: &DVector<f64>| tangent.rows(tangent.len() - 2, 2).into_owned();
                 numbers(&at.tangent).dot(&numbers(&self.from.tangent).normalize())
             }
-            Cut::Degenerate => self.held.and_then(|held| held.opening(&cycle, &machine)).ok_or(NoPoint::NotClosed)?,
         })
     }
 
@@ -254,7 +248,6 @@ impl Stride<'_> {
             Cut::Fold if self.held.is_some() => SpecialKind::Turn,
             Cut::Fold => SpecialKind::Fold,
             Cut::Cusp => SpecialKind::Cusp,
-            Cut::Degenerate => SpecialKind::DegenerateGraze,
             Cut::Flip | Cut::Halved => SpecialKind::Flip,
             Cut::Branching => SpecialKind::Branching,
             Cut::Type { side, multiplier } => {

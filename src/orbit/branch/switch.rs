@@ -71,8 +71,11 @@ pub(super) fn held(kind: SpecialKind, cycle: &Cycle, machine: &Machine) -> Optio
 /// Condition in the cycle beyond `exit`; `None` where it applies to the impact that the exit removes.
 pub(super) fn held_beyond(held: Held, exit: Exit) -> Option<Held> {
     let moved = |index: usize| match exit {
-        Exit::Tangent { impact } if impact < index => Some(index - 1),
-        Exit::Tangent { impact } if impact == index => None,
+        Exit::Tangent { impact } => match index.cmp(&impact) {
+            Ordering::Less => Some(index),
+            Ordering::Equal => None,
+            Ordering::Greater => Some(index - 1),
+        },
         Exit::Touch { impact, .. } if impact < index => Some(index + 1),
         _ => Some(index),
     };

@@ -66,30 +66,28 @@ impl Hop {
 
     /// Whether the flight is clear of the cam. `None` where this cannot be decided.
     pub(super) fn is_clear(&self, cam: &Cam, flight: &Flight) -> Option<bool> {
-        /// Most boxes. A flight next to a graze takes some hundreds.
+        /// Most boxes that are halved. A flight next to a graze takes some hundreds.
         const MOST: usize = 100_000;
         let narrowest = tolerance::NARROWEST_BOX.value * TAU;
         let mut left: VecDeque<_> = self.stretches(cam).into();
-        let (mut is_decided, mut boxes) = (true, 0);
+        let (mut is_decided, mut halvings) = (true, 0..MOST);
         while let Some(stretch @ Stretch { segment, turns, angles, .. }) = left.pop_front() {
-            boxes += 1;
             let middle = angles.middle();
             let whole = self.gap(cam, flight, segment, turns, angles);
             let centre = self.gap(cam, flight, segment, turns, middle.into());
             let away = angles - middle;
-            let slope = whole.slope.and(centre.slope + away * whole.curvature);
             let value = centre.value + away * centre.slope + away.squared().half() * whole.curvature;
             let is_past = !stretch.is_first || middle > self.from.angle.high();
             let is_before = !stretch.is_last || middle < self.to.angle.low();
             if is_past && is_before && centre.value.is_negative() {
                 return Some(false);
             }
-            let rises = stretch.is_first && slope.is_positive();
-            let falls = stretch.is_last && slope.is_negative();
+            let rises = stretch.is_first && whole.slope.is_positive();
+            let falls = stretch.is_last && whole.slope.is_negative();
             if rises || falls || value.is_positive() {
                 continue;
             }
-            if angles.width() <= narrowest || boxes > MOST {
+            if halvings.next().filter(|_| angles.width() > narrowest).is_none() {
                 is_decided = false;
                 continue;
             }

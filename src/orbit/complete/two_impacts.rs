@@ -148,12 +148,10 @@ impl Pair<'_> {
         BoxValues { values: [at_x.value, at_y.value], derivatives: [at_x.by, at_y.by], is_wanted }
     }
 
-    /// Decides whether a solution is an orbit.
+    /// Decides whether a solution is an orbit. One across an end of its segment is not proved: a flight passes over what is beyond that end,
+    /// up to the impact, where the gap is 0.
     fn standing(&self, place: &[Interval; 2]) -> Standing {
-        let segments = self.segments.map(|segment| &self.machine.cam().segments()[segment]);
-        let is_inside =
-            (0..2).all(|which| place[which].is_inside(Interval::new(segments[which].start, segments[which].end)));
-        if !is_inside || self.machine.restitution() == 0.0 {
+        if self.machine.restitution() == 0.0 {
             return Standing::Undecided;
         }
         let flights = self.flights(place);
@@ -220,6 +218,7 @@ impl Flights {
             }
         }
         let is_broken = (0..2).any(|which| {
+            // By the law of impact what leaves into the cam comes out of it: asked as well, it is seen in wider boxes.
             (cam[which] - before[which]).is_negative()
                 || (after[which] - cam[which]).is_negative()
                 || thrown(which, before[which]).common(after[which]).is_none()
@@ -232,7 +231,7 @@ impl Flights {
 pub(crate) fn of_two_impacts(machine: &Machine, watch: &dyn Watch) -> Vec<Solved> {
     let segments = machine.cam().segments();
     let count = segments.len();
-    let (mut all, mut boxes) = (Vec::new(), 0);
+    let (mut all, mut most) = (Vec::new(), MOST_BOXES);
     for first in 0..count {
         watch.at("two impacts: segments of the cam", first as u64, count as u64);
         for later in 0..=count {
@@ -244,9 +243,8 @@ pub(crate) fn of_two_impacts(machine: &Machine, watch: &dyn Watch) -> Vec<Solved
             }
             let pair = Pair { machine, segments: [first, second], turns };
             let place = [first, second].map(|segment| Interval::new(segments[segment].start, segments[segment].end));
-            let found = isolate(place, MOST_BOXES.saturating_sub(boxes), |place| pair.over(place));
-            boxes += found.boxes;
-            let Isolated { roots, undecided, .. } = found;
+            let Isolated { roots, undecided, boxes } = isolate(place, most, |place| pair.over(place));
+            most = most.saturating_sub(boxes);
             let mut add = |place: [Interval; 2], standing: Standing| {
                 // Half a turn apart either impact may be called the first: what is there already by the other name is the same,
                 // since each is alone in a box far wider than its own.

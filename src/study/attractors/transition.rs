@@ -105,7 +105,6 @@ impl Transition {
             (
                 SpecialKind::Type { .. }
                 | SpecialKind::Cusp
-                | SpecialKind::DegenerateGraze
                 | SpecialKind::Class(_)
                 | SpecialKind::Place
                 | SpecialKind::Turn,

@@ -66,7 +66,6 @@ fn mark(kind: &SpecialKind) -> usize {
         // These kinds belong to another figure.
         SpecialKind::Type { .. }
         | SpecialKind::Cusp
-        | SpecialKind::DegenerateGraze
         | SpecialKind::Class(_)
         | SpecialKind::Place
         | SpecialKind::Turn => MARKED.len(),

@@ -25,10 +25,9 @@ const EVENTS: [(Bifurcation, &str, Colour, Stroke); 5] = [
 ];
 
 /// Points where a curve changes its type, by the name of the quantity that changes.
-const MARKED: [(&str, &str, Marker); 4] = [
+const MARKED: [(&str, &str, Marker); 3] = [
     ("type", "a multiplier is 1 or -1", Marker::Ring),
     ("cusp", "cusp", Marker::Diamond),
-    ("degenerate-graze", "degenerate graze", Marker::Triangle),
     ("class", "class of a graze", Marker::Square),
 ];
 

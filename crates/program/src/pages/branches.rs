@@ -44,7 +44,6 @@ fn passed(point: &BranchPoint, kind: SpecialKind) -> String {
         }
         SpecialKind::Type { .. }
         | SpecialKind::Cusp
-        | SpecialKind::DegenerateGraze
         | SpecialKind::Class(_)
         | SpecialKind::Place
         | SpecialKind::Turn => on_curve(kind),
@@ -71,9 +70,6 @@ fn on_curve(kind: SpecialKind) -> String {
         SpecialKind::Class(UndecidedGraze::Resonance(passages)) => {
             let passages = words::many(passages, "passage");
             format!("resonance: {passages} of the cam's top after an impact the follower is at its equilibrium again")
-        }
-        SpecialKind::DegenerateGraze => {
-            "degenerate graze: follower and cam have one acceleration where they touch".into()
         }
         SpecialKind::Place => "the follower leaves the cam at two places at once".into(),
         SpecialKind::Turn => "the curve turns round".into(),
