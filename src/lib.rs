@@ -129,13 +129,11 @@ pub mod paper;
 #[doc(hidden)]
 pub mod inner {
     pub use crate::corner::extrapolation::{Powers, extrapolate};
-    pub use crate::corner::least_squares::Solver;
     pub use crate::file::Unfinished;
     pub use crate::file::held;
     pub use crate::orbit::chain::{Link, determinant, solve};
     pub use crate::orbit::complete::{OneImpact, joined};
     pub use crate::simulate::contact::{Gap, Outcome, first_contact};
-    pub use crate::study::routes::{Log, split_by_knowledge};
 }
 
 /// The program on the page about the theory is a test.

@@ -79,7 +79,8 @@ impl CornerImpact {
 
     /// Whether both are at the same corner, up to a small shift: a corner found in the rows of a table
     /// moves a little when the rows are replaced by others.
-    pub(crate) fn is_near(&self, other: &Self) -> bool {
+    #[doc(hidden)]
+    pub fn is_near(&self, other: &Self) -> bool {
         apart(self.corner.angle, other.corner.angle) <= tolerance::NEIGHBOURING.value
     }
 

@@ -5,8 +5,9 @@
 //! linear coefficients is then of the fifth degree. Standard errors come from the residual. The bias, which no residual shows in
 //! full, comes from a cube twice as wide.
 
+use faer::Conj;
+pub use faer::Mat;
 use faer::linalg::solvers::{Qr, SolveLstsqCore};
-use faer::{Conj, Mat};
 use nalgebra::{Matrix2, RowVector2, Vector2, Vector3};
 
 use super::corner_impact::CornerImpact;

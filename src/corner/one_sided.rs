@@ -91,9 +91,9 @@ impl SampledArc {
 
     /// One stretch for each impact, from the middle of the flight before it to that of the flight after.
     fn pieces(at: &CornerImpact, machine: &Machine) -> Vec<Self> {
-        let (flights, last) = at.course();
+        let flights = at.course().0;
         let count = flights.len();
-        // The middle of the flight that ends at each impact: its angle, the follower, and the angle left to the impact.
+        // The middle of the flight that ends at each impact: its angle, the follower, and the angle from there to either impact.
         let middle = |index: usize| {
             if index.is_multiple_of(count) {
                 return (at.section_angle(), at.state, flights[0].0);
@@ -104,8 +104,7 @@ impl SampledArc {
             (angle, machine.flight().fly(leaving, 0.5 * turn / TAU * at.period).1, 0.5 * turn)
         };
         let piece = |index: usize| {
-            let ((section, start, to), (cam_angle, end, _)) = (middle(index), middle(index + 1));
-            let from = if index + 1 == count { last } else { 0.5 * flights[index + 1].0 };
+            let ((section, start, to), (cam_angle, end, from)) = (middle(index), middle(index + 1));
             let impact = flights[index].1;
             let revolution = ((section + to + from - cam_angle) / TAU).round() as u64;
             let goal = Goal { revolution, cam_angle };

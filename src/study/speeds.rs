@@ -459,30 +459,39 @@ pub fn kinds(at: &[At]) -> Vec<(Kind, usize)> {
 
 /// Finds the dangers at corner impacts that attractors pass, begin or end with.
 fn dangers(over: &Over<'_>, families: &[AttractorFamily], range: [f64; 2]) -> Vec<PassedDanger> {
-    let mut found: Vec<(f64, CornerImpact, Vec<String>)> = Vec::new();
+    let mut passed = Vec::new();
     for (index, family) in families.iter().enumerate() {
         for point in family.corner_impacts(range) {
             let Ok((model, cam)) = over.model(point.value) else { continue };
             let Some(at) = on_branch(&cam, point).and_then(|at| at.confirmed(&model, &cam).ok()) else { continue };
             let value = if over.is_speed() { at.speed_rpm() } else { point.value };
-            let same = |(other, known, _): &&mut (f64, CornerImpact, Vec<String>)| {
-                known.corner.angle == at.corner.angle
-                    && (other - value).abs() <= tolerance::SAME_ORBIT.value * value.abs()
-            };
-            match found.iter_mut().find(same) {
-                Some((.., names)) => names.push(name(index)),
-                None => found.push((value, at, vec![name(index)])),
-            }
+            passed.push((value, at, name(index)));
+        }
+    }
+    let danger = |(value, at, attractors): (f64, CornerImpact, Vec<String>)| {
+        let (model, cam) = over.model(value).ok()?;
+        let danger = routes::danger(&model, &cam, &at)?;
+        Some(PassedDanger { attractors, at: over.place(value), cam_angle: at.corner.angle, danger })
+    };
+    passed_once(passed).into_par_iter().filter_map(danger).collect()
+}
+
+/// Returns each corner impact once, by rising value, with the names of the attractors that pass it.
+#[doc(hidden)]
+pub fn passed_once(passed: Vec<(f64, CornerImpact, String)>) -> Vec<(f64, CornerImpact, Vec<String>)> {
+    let mut found: Vec<(f64, CornerImpact, Vec<String>)> = Vec::new();
+    for (value, at, name) in passed {
+        let same = |(other, known, _): &&mut (f64, CornerImpact, Vec<String>)| {
+            known.corner.angle == at.corner.angle && (other - value).abs() <= tolerance::SAME_ORBIT.value * value.abs()
+        };
+        match found.iter_mut().find(same) {
+            Some((.., names)) => names.push(name),
+            None => found.push((value, at, vec![name])),
         }
     }
     found.sort_by(|(one, ..), (other, ..)| one.total_cmp(other));
-    let danger = |(value, at, mut attractors): (f64, CornerImpact, Vec<String>)| {
-        let (model, cam) = over.model(value).ok()?;
-        let danger = routes::danger(&model, &cam, &at)?;
-        attractors.dedup();
-        Some(PassedDanger { attractors, at: over.place(value), cam_angle: at.corner.angle, danger })
-    };
-    found.into_par_iter().filter_map(danger).collect()
+    found.iter_mut().for_each(|(.., names)| names.dedup());
+    found
 }
 
 /// Shift of an attractor's transition that the noise of a measured cam may cause, rpm: by the event's equations, or by runs if it is

@@ -13,13 +13,15 @@ use corner_impact::estimate::{ErrorIs, Estimate};
 use corner_impact::model::Model;
 use corner_impact::orbit::long_run::{Budget, Kind, LongRun, Recorded, StickingOrbit};
 use corner_impact::orbit::runs::{AfterRelease, LongRuns, RunOutcome};
-use corner_impact::orbit::{Course, PeriodicOrbit, Search, search};
+use corner_impact::orbit::{Course, Parameter, PeriodicOrbit, Search, search};
 use corner_impact::progress::Unwatched;
 use corner_impact::simulate::{Event, EventKind, ImpactTally, Machine, Motion, SimulateError, angular_velocity};
-use corner_impact::study::attractors::{AttractorsAtValue, AttractorsError, Cause, Resolution, Step, Transition};
+use corner_impact::study::attractors::{
+    AttractorsAtValue, AttractorsError, Cause, GridValue, Resolution, StableRange, Step, Transition, attractors,
+};
 use corner_impact::study::basins::{Grid, SectionStarts};
 use corner_impact::study::speeds::{At, AttractorRow, SpeedSurvey, usual_range};
-use corner_impact::study::survey::{Sample, Starts};
+use corner_impact::study::survey::{Over, Sample, Spacing, Starts};
 
 /// A ball on a table that goes up and down by a millimetre.
 pub fn ball() -> Model {
@@ -438,7 +440,7 @@ fn is_on(machine: &Machine, mut motion: Motion, ending: &LongRun) -> bool {
 #[ignore = "slow"]
 fn plain_runs_end_on_what_is_listed() {
     static LOOKED_AT: AtomicU32 = AtomicU32::new(0);
-    check(8, |case| {
+    check(10, |case| {
         // Each of thousands of revolutions would be as many swings.
         let swings = case.machine.flight().omega0_squared().sqrt() / case.machine.angular_velocity();
         if swings > 30.0 {
@@ -653,4 +655,85 @@ fn orbits_below_the_end_of_another_are_found() {
         assert_abs_diff_eq!(one.range()[0], rpm[0], epsilon = 1e-3);
         assert_abs_diff_eq!(one.range()[1], rpm[1], epsilon = 1e-3);
     }
+}
+
+/// A step leads from one value of a grid to the next, of logarithms as well.
+#[test]
+fn a_step_leads_from_one_value_to_the_next() {
+    for (spacing, ends) in [(Spacing::Linear, [100.0, 101.0]), (Spacing::Logarithmic, [2.0, 2.1])] {
+        let step = Step::at_most(0.01, spacing);
+        let values: Vec<f64> = step.over(ends).collect();
+        assert!(values.len() > 8, "{values:?}");
+        for pair in values.windows(2) {
+            assert_relative_eq!(step.near(pair[0]), pair[1] - pair[0], max_relative = 1e-9);
+        }
+    }
+}
+
+/// The stable orbit of one impact at a value.
+fn one_impact(over: &Over<'_>, value: f64) -> PeriodicOrbit {
+    let machine = over.machine(value).unwrap();
+    LongRuns::new(&machine, Budget::SURVEY).unwrap().known().next().unwrap().clone()
+}
+
+/// A range of stable orbits has none beyond its ends.
+#[test]
+fn a_stable_range_has_no_orbit_beyond_its_ends() {
+    let paper = common::osorio();
+    let over = Over::speed(&paper).unwrap();
+    let stable = StableRange::all(&over, 700.0, &one_impact(&over, 700.0), [700.0; 2], 1.0).unwrap();
+    let [low, high] = stable.ends();
+    assert!(low < 700.0 && 700.0 < high);
+    for (value, is_there) in [(low - 1e-3, false), (low + 1e-3, true), (high - 1e-3, true), (high + 1e-3, false)] {
+        assert_eq!(stable.near(value).is_some(), is_there, "{value}");
+    }
+    // Beyond the flip one of twice the period begins, whatever the steps of the grid.
+    let next = stable.beyond(&over, 1e-9);
+    let is_doubled = |orbit: &PeriodicOrbit| (orbit.revolutions, orbit.impacts().count()) == (2, 2);
+    assert!(next.iter().any(|(rpm, orbit)| *rpm > high && is_doubled(orbit)), "{next:?}");
+}
+
+/// A branch that nothing ends is followed for 64 times the margin of three steps, and no farther.
+#[test]
+fn a_stable_range_that_nothing_ends_is_followed_no_farther() {
+    let paper = common::osorio();
+    let over = Over::new(&paper, Parameter::Field("follower.gravity".into()), Some(700.0)).unwrap();
+    let stable = StableRange::all(&over, 0.0, &one_impact(&over, 0.0), [0.0; 2], 1e-6).unwrap();
+    assert_eq!(stable.ends, [None, None]);
+    let [low, high] = stable.ends();
+    assert_abs_diff_eq!(low, -64.0 * 3e-6, epsilon = 1e-9);
+    assert_abs_diff_eq!(high, 64.0 * 3e-6, epsilon = 1e-9);
+}
+
+/// The same end is found once more on the same machine, of an attractor that runs alone tell, and from one value to the next it may be told to be of
+/// another kind: a motion that rests in every few revolutions is one with chaos, unless there are both.
+#[test]
+fn an_end_by_runs_is_found_once_more() {
+    let paper = common::osorio();
+    let over = Over::speed(&paper).unwrap();
+    let budget = Budget { transient: 300, record: 50, longest: 8, patience: 0 };
+    let resolution = Resolution { budget, ..Resolution::new(common::step(5.0), 4) };
+    let found = attractors(&over, [190.0, 245.0], &resolution, &Unwatched).unwrap();
+    let runs = (&Sample::Spread(4), budget);
+    let (mut ends, mut of_another_kind) = (0, 0);
+    for family in &found.families {
+        for (side, place) in [family.at.iter().next(), family.at.iter().next_back()].into_iter().enumerate() {
+            let (Some(end), Some((index, attractor))) = (&family.ends[side], place) else { continue };
+            let width = end.bracket[1] - end.bracket[0];
+            let is_found = |grid: &[GridValue]| {
+                let moved = family.moved(&over.machine(200.0).unwrap(), grid, runs, side);
+                moved.is_some_and(|rpm| (rpm - end.value()).abs() < 2.0 * width)
+            };
+            assert!(end.cause == Cause::Runs && is_found(&found.grid), "{side}: {end:?}");
+            ends += 1;
+            let mut grid = found.grid.clone();
+            let here = grid[*index].found.as_mut().unwrap();
+            if matches!(&here.attractors[*attractor].ending, LongRun::Sticking(resting) if resting.revolutions > 1) {
+                here.attractors[*attractor].ending = by_growth(1.0, 0.1);
+                assert!(is_found(&grid), "{side}: {end:?}");
+                of_another_kind += 1;
+            }
+        }
+    }
+    assert!(ends >= 4 && of_another_kind >= 2, "{ends} {of_another_kind}");
 }

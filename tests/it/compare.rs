@@ -1,5 +1,6 @@
 //! Does `compare` tell what moved, as `verify` and `design` have it of either model, and by how much more than it may be off?
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
@@ -10,7 +11,7 @@ use crate::common;
 use corner_impact::agreement::Quantity;
 use corner_impact::model::Model;
 use corner_impact::progress::Unwatched;
-use corner_impact::study::compare::{ModelComparison, NoVerdict, compare};
+use corner_impact::study::compare::{ModelComparison, NoVerdict, compare, spreads};
 use corner_impact::study::verify::{External, verify};
 
 const PAPER: &str = "models/osorio-2008.toml";
@@ -327,4 +328,18 @@ fn a_range_that_is_too_wide_is_told_as_that() {
         matches!(&found.verdict.a.found, Err(NoVerdict::NotThere(why)) if why.to_string().contains("spans too much"))
     );
     assert_eq!(found.verdict.b.found, Err(NoVerdict::NotLookedFor));
+}
+
+/// The spread of a number is that between routes: a number of one route alone has none.
+#[test]
+fn a_number_of_one_route_has_no_spread() {
+    let model = common::osorio();
+    let mut found = verify(&model, External::LeftOut).unwrap();
+    let of_maps = |all: &BTreeMap<String, f64>| all.keys().filter(|name| name.starts_with("A_minus")).count();
+    assert_eq!(of_maps(&spreads(&found, &model.units)), 4);
+    found.routes.truncate(2);
+    assert_eq!(of_maps(&spreads(&found, &model.units)), 4);
+    found.routes.truncate(1);
+    let alone = spreads(&found, &model.units);
+    assert!(of_maps(&alone) == 0 && alone.contains_key("T_star"), "{alone:?}");
 }

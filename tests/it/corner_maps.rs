@@ -1,12 +1,14 @@
 //! Are the corner maps of any orbit, by any number of the model, those that simulations show?
 
+use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::OnceLock;
 
 use crate::common;
 use corner_impact::agreement::{Quantity, compare_routes};
-use corner_impact::cam::{Cam, Side};
+use corner_impact::cam::{Cam, Corner, Side};
+use corner_impact::corner::least_squares::{Mat, Solver};
 use corner_impact::corner::map::RouteName;
 use corner_impact::corner::map::Uncertainty;
 use corner_impact::corner::one_sided::{OneSidedMap, SampleError};
@@ -333,5 +335,44 @@ fn differences_know_their_errors_where_impacts_amplify_rounding() {
             }
         }
         assert!(amplified > 1e-8, "{name}: {amplified:e}");
+    }
+}
+
+/// A line through four points, by the textbook: x = 0, 1, 2, 3 and y = 1, 3, 4, 4 give slope 1, intercept 1.5,
+/// residuals -1/2, 1/2, 1/2, -1/2, sigma^2 = 1/2, se(slope)^2 = sigma^2/5, se(intercept)^2 = sigma^2 (1/4 + 9/20).
+#[test]
+fn standard_errors_are_those_of_the_textbook() {
+    let design = Mat::from_fn(4, 2, |row, column| if column == 0 { 1.0 } else { row as f64 });
+    let response = Mat::from_fn(4, 1, |row, _| [1.0, 3.0, 4.0, 4.0][row]);
+    let solver = Solver::new(&design).unwrap();
+    let fit = solver.fit(&response);
+    approx::assert_relative_eq!(fit.coefficients[(0, 0)], 1.5, epsilon = 1e-14);
+    approx::assert_relative_eq!(fit.coefficients[(1, 0)], 1.0, epsilon = 1e-14);
+    approx::assert_relative_eq!(fit.standard_errors[(0, 0)], (0.5_f64 * 0.7).sqrt(), epsilon = 1e-14);
+    approx::assert_relative_eq!(fit.standard_errors[(1, 0)], (0.5_f64 / 5.0).sqrt(), epsilon = 1e-14);
+    // X'X = [[4, 6], [6, 14]] has eigenvalues 9 +- sqrt(61).
+    let ratio = (9.0 + 61.0_f64.sqrt()) / (9.0 - 61.0_f64.sqrt());
+    approx::assert_relative_eq!(solver.condition_number, ratio.sqrt(), epsilon = 1e-13);
+}
+
+/// Two columns that are 1, and 1 but for d up and down: the ratio of the singular values is d/2. The rounding of a thousand rows is 2.2e-13.
+#[test]
+fn a_design_whose_rank_is_rounding_alone_is_refused() {
+    let is_refused = |apart: f64| {
+        let entry = |row: usize, column: usize| 1.0 + if row % 2 == 0 { apart } else { -apart } * column as f64;
+        Solver::new(&Mat::from_fn(1000, 2, entry)).is_err()
+    };
+    assert_eq!([0.0, 2e-14, 2e-12, 1.0].map(is_refused), [true, true, false, false]);
+}
+
+/// A corner of a table moves a little as the rows change. It is the same corner up to 0.05 rad, on either side of angle 0 as well.
+#[test]
+fn a_corner_is_the_same_corner_where_it_has_moved_a_little() {
+    let Case { at, .. } = case(common::osorio(), 673.234445, 1);
+    let on = |angle: f64| CornerImpact { corner: Corner { angle, ..at.corner }, ..at.clone() };
+    for (one, other, is_same) in
+        [(1.0, 1.0, true), (1.0, 1.04, true), (1.0, 0.94, false), (1.0, 4.0, false), (0.01, TAU - 0.01, true)]
+    {
+        assert_eq!(on(one).is_near(&on(other)), is_same, "{one} {other}");
     }
 }

@@ -8,15 +8,11 @@ use std::process::{Command, Stdio};
 use std::time::Duration;
 
 use approx::assert_relative_eq;
-use corner_impact::agreement::{Quantity, compare_routes};
 use corner_impact::border_collision::feigin::Scenario;
-use corner_impact::cam::{Cam, Side};
-use corner_impact::corner::map::{Own, RouteName, Uncertainty};
-use corner_impact::corner::{CornerMap, Route, SideMap};
+use corner_impact::cam::Cam;
 use corner_impact::flight::{Flight, State};
 use corner_impact::inner::{
-    Gap, Link, Log, OneImpact, Outcome, Powers, Solver, Unfinished, determinant, extrapolate, first_contact, held,
-    joined, solve, split_by_knowledge,
+    Gap, Link, OneImpact, Outcome, Powers, Unfinished, determinant, extrapolate, first_contact, held, joined, solve,
 };
 use corner_impact::interval::Interval;
 use corner_impact::model::{Model, OSORIO_2008};
@@ -27,7 +23,6 @@ use corner_impact::study::compare::{Change, CornerVerdict};
 use corner_impact::{elementary, tolerance, untrusted};
 use corner_impact_cli::show::digits::at_least;
 use corner_impact_plot::formula::{self, Part};
-use faer::Mat;
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
 use serde_json::Value;
 
@@ -235,29 +230,6 @@ fn a_follower_below_the_cam_is_an_error_with_its_state_and_speed() {
     assert!(matches!(entered, Err(SimulateError::PassedThrough { .. })), "{entered:?}");
 }
 
-/// A line through four points, by the textbook: x = 0, 1, 2, 3 and y = 1, 3, 4, 4 give slope 1, intercept 1.5,
-/// residuals -1/2, 1/2, 1/2, -1/2, sigma^2 = 1/2, se(slope)^2 = sigma^2/5, se(intercept)^2 = sigma^2 (1/4 + 9/20).
-#[test]
-fn standard_errors_are_those_of_the_textbook() {
-    let design = Mat::from_fn(4, 2, |row, column| if column == 0 { 1.0 } else { row as f64 });
-    let response = Mat::from_fn(4, 1, |row, _| [1.0, 3.0, 4.0, 4.0][row]);
-    let Ok(solver) = Solver::new(&design) else { unreachable!("four points determine a line") };
-    let fit = solver.fit(&response);
-    assert_relative_eq!(fit.coefficients[(0, 0)], 1.5, epsilon = 1e-14);
-    assert_relative_eq!(fit.coefficients[(1, 0)], 1.0, epsilon = 1e-14);
-    assert_relative_eq!(fit.standard_errors[(0, 0)], (0.5_f64 * 0.7).sqrt(), epsilon = 1e-14);
-    assert_relative_eq!(fit.standard_errors[(1, 0)], (0.5_f64 / 5.0).sqrt(), epsilon = 1e-14);
-    // X'X = [[4, 6], [6, 14]] has eigenvalues 9 +- sqrt(61).
-    let ratio = (9.0 + 61.0_f64.sqrt()) / (9.0 - 61.0_f64.sqrt());
-    assert_relative_eq!(solver.condition_number, ratio.sqrt(), epsilon = 1e-13);
-}
-
-#[test]
-fn a_design_without_rank_is_refused() {
-    let design = Mat::from_fn(4, 2, |_, _| 1.0);
-    assert!(Solver::new(&design).is_err());
-}
-
 #[test]
 fn extrapolation_recovers_a_derivative_to_rounding() {
     let difference = |h: f64| {
@@ -305,26 +277,6 @@ fn a_verdict_says_that_it_is_not_verified() {
     let verdict = |agrees| CornerVerdict { found: Ok(Scenario::Persistence), agrees }.to_string();
     assert_eq!(verdict(true), "persistence");
     assert!(verdict(false).contains("not verified"));
-}
-
-fn sides(a: f64) -> CornerMap {
-    let side = SideMap { a: nalgebra::Matrix2::repeat(a), b: nalgebra::Vector2::repeat(1.0) };
-    CornerMap { minus: side, plus: side }
-}
-
-#[test]
-fn an_estimate_that_misses_by_more_than_it_says_disagrees() {
-    let exact = Route { name: RouteName::Variational, map: sides(1.0), own: Own::default(), uncertainty: None };
-    for (off, said, is_kept) in [(1e-4, 2e-4, false), (2e-4, 1e-4, true), (1e-12, 2e-4, true)] {
-        let uncertainty = Some(Uncertainty::Extrapolation(sides(said)));
-        let estimate =
-            Route { name: RouteName::FiniteDifference, map: sides(1.0 + off), own: Own::default(), uncertainty };
-        let routes = [exact.clone(), estimate];
-        let mut log = Log::default();
-        let kept = split_by_knowledge(compare_routes(&routes), &routes, &mut log);
-        assert_eq!(kept.iter().any(|item| item.quantity == Quantity::A(Side::Minus)), is_kept, "{off} {said}");
-        assert_eq!(log.0.is_empty(), is_kept);
-    }
 }
 
 #[test]

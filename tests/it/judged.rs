@@ -1,6 +1,8 @@
 //! Are runs followed for as long, and told by as much, as the budget and the rules of the long run say?
 
 use approx::assert_relative_eq;
+use corner_impact::cam::Corner;
+use corner_impact::corner::CornerImpact;
 use corner_impact::estimate::{ErrorIs, Estimate};
 use corner_impact::flight::State;
 use corner_impact::model::Model;
@@ -8,10 +10,12 @@ use corner_impact::orbit::long_run::{Budget, Kind, LongRun, Recorded, StickingOr
 use corner_impact::orbit::runs::{AfterRelease, LongRuns, RunOutcome};
 use corner_impact::progress::Unwatched;
 use corner_impact::simulate::{ImpactTally, Machine, Motion, SimulateError};
-use corner_impact::study::attractors::{AttractorsAtValue, Cause, Resolution};
+use corner_impact::study::attractors::{AttractorsAtValue, Cause, Resolution, has_reached};
 use corner_impact::study::design::contact::Separation;
-use corner_impact::study::speeds::{Off, SpeedSurvey};
-use corner_impact::study::survey::{Ensemble, Place, Sample, Wandering, attractors_of, long_run, outlasts};
+use corner_impact::study::speeds::{Off, SpeedSurvey, passed_once};
+use corner_impact::study::survey::{
+    Ensemble, Place, Placed, Sample, Start, Wandering, attractors_of, long_run, outlasts, soon_rested,
+};
 
 use crate::attractors::ball;
 use crate::common;
@@ -383,5 +387,92 @@ fn what_follows_a_known_release_is_not_asked_again() {
     };
     for runs in [&long, &short] {
         assert_eq!(runs.by_growth(start, 3, &recurs).unwrap().period().map(|(turns, _)| turns), Some(77));
+    }
+}
+
+/// The first rests are counted over the revolutions in which a run that has forgotten its start might have rested: 50 later, and of runs that
+/// rested or wander. What has settled or could not go on rests no more.
+#[test]
+fn the_first_rests_are_counted_over_the_runs_that_may_rest() {
+    let machine = machine(&common::osorio(), 700.0);
+    let orbit = LongRuns::new(&machine, Budget::SURVEY).unwrap().known().next().unwrap().clone();
+    let seen = |revolutions, rested| Wandering { revolutions, left: 0, rested };
+    for (run, revolutions, wanted) in [
+        (Ok(RunOutcome::Released(1.0)), 75, seen(25, 1)),
+        (Ok(RunOutcome::Released(1.0)), 49, seen(0, 0)),
+        (Ok(RunOutcome::Wanders), 400, seen(350, 0)),
+        (Ok(RunOutcome::Arrives(orbit)), 400, seen(0, 0)),
+        (Ok(RunOutcome::PermanentContact), 400, seen(0, 0)),
+        (Err(SimulateError::NoProgress { events: 1, revolution: 1, cam_angle: 1.0 }), 400, seen(0, 0)),
+    ] {
+        assert_eq!(soon_rested(&run, revolutions), wanted, "{run:?}");
+    }
+}
+
+/// Releases that chaos follows count by the revolutions that they were followed for, which two of them are as long as eight hundred. Half of
+/// the patience is for the runs themselves: 600, and three times 3 x 100 are left.
+#[test]
+fn releases_take_half_of_the_patience_at_most() {
+    let budget = Budget { transient: 400, record: 50, longest: 8, patience: 1200 };
+    let here = AttractorsAtValue::new(&machine(&common::osorio(), 671.0), &Sample::Spread(3), budget).unwrap();
+    assert_eq!(here.wandering, Wandering { revolutions: 1200, left: 0, rested: 0 });
+}
+
+/// A ball that loses nothing bounces on a level table for ever, and nothing tells what it does: that is no motion that another value has.
+#[test]
+fn what_is_undecided_is_not_come_to() {
+    let text = "[follower]\nmass = 1.0\ndamping = 0.0\nstiffness = 0.0\ngravity = 9.81\nrest_position = 0.0\nrestitution = 1.0\n\
+                [cam]\nlaw = \"program\"\nbase = 0.05\n[[cam.segment]]\nmotion = \"dwell\"\nspan_deg = 360.0\nrise = 0.0\n";
+    let machine = machine(&Model::parse("level.toml", text).unwrap(), 60.0);
+    let budget = Budget { transient: 10, record: 16, longest: 4, patience: 0 };
+    let high = Start { cam_angle: 0.0, follower: Placed::At(State { position: 0.3713, velocity: 0.0 }) };
+    let here = AttractorsAtValue::new(&machine, &Sample::Given(vec![high]), budget).unwrap();
+    let [undecided] = &here.attractors[..] else { panic!("{here:?}") };
+    assert_eq!(undecided.ending.kind(), Kind::Undecided);
+    assert_eq!(here.come_to(&machine, &undecided.motion).unwrap(), None);
+}
+
+/// A motion that a run has reached is not asked of a neighbour once more. What only a run that began on it has is.
+#[test]
+fn what_runs_have_reached_is_known_by_its_class() {
+    let mut here =
+        AttractorsAtValue::new(&machine(&common::osorio(), 700.0), &Sample::Spread(4), Budget::SURVEY).unwrap();
+    let ending = here.attractors.iter().find(|it| it.ending.kind() == Kind::Periodic).unwrap().ending.clone();
+    assert!(has_reached(&here, &ending) && !has_reached(&here, &LongRun::PermanentContact));
+    let begun_on = here.sampled + here.rests;
+    here.attractors.iter_mut().for_each(|it| it.starts = vec![begun_on]);
+    assert!(!has_reached(&here, &ending));
+}
+
+/// A corner impact that several attractors pass is told once, with each of them. At another value, or at another corner at the same value, as of
+/// a cam of equal lobes, it is another.
+#[test]
+fn a_corner_impact_is_told_once() {
+    let model = common::osorio();
+    let at = corner_impact::corner::locate(&model, &common::cam(&model)).unwrap().0;
+    let passed = |value: f64, angle: f64, name: &str| {
+        (value, CornerImpact { corner: Corner { angle, ..at.corner }, ..at.clone() }, name.to_owned())
+    };
+    let told = passed_once(vec![
+        passed(700.0, 1.0, "A1"),
+        passed(700.0, 4.0, "A1"),
+        passed(700.0005, 1.0, "A1"),
+        passed(699.9995, 1.0, "A2"),
+        passed(690.0, 1.0, "A2"),
+        passed(0.0, 1.0, "A3"),
+        passed(0.0, 1.0, "A4"),
+    ]);
+    let told: Vec<(f64, f64, &[String])> =
+        told.iter().map(|(value, at, names)| (*value, at.corner.angle, &names[..])).collect();
+    let names = |all: &[&str]| all.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>();
+    let expected = [
+        (0.0, 1.0, names(&["A3", "A4"])),
+        (690.0, 1.0, names(&["A2"])),
+        (700.0, 1.0, names(&["A1", "A2"])),
+        (700.0, 4.0, names(&["A1"])),
+    ];
+    assert_eq!(told.len(), expected.len(), "{told:?}");
+    for (told, (value, angle, names)) in told.iter().zip(&expected) {
+        assert_eq!((told.0, told.1, told.2), (*value, *angle, &names[..]));
     }
 }

@@ -1,11 +1,13 @@
 //! Do the routes agree on every model, and do they know how well?
 
 use crate::common;
+use corner_impact::agreement::{Quantity, compare_routes};
 use corner_impact::cam::Side;
-use corner_impact::corner::map::{CornerMap, SideMap, Uncertainty};
+use corner_impact::corner::map::{CornerMap, Own, Route, RouteName, SideMap, Uncertainty};
 use corner_impact::corner::one_sided::OneSidedMap;
+use corner_impact::study::routes::{Log, split_by_knowledge};
 use corner_impact::study::verify::{External, verify};
-use nalgebra::Vector3;
+use nalgebra::{Matrix2, Vector2, Vector3};
 
 const MAPS: [&str; 4] = ["A_minus", "A_plus", "B_minus", "B_plus"];
 
@@ -100,4 +102,45 @@ fn the_printed_region_condition_has_the_wrong_sign() {
     let map = &found.map;
     let (c, d) = (map.c(), map.d());
     assert!((c * e.transpose())[0] + d * f < 0.0, "(C, D) and (e, f) point opposite ways");
+}
+
+/// A route to a map with A = a everywhere.
+fn route(name: RouteName, a: f64, uncertainty: Option<Uncertainty>) -> Route {
+    Route { name, map: sides(a), own: Own::default(), uncertainty }
+}
+
+fn sides(a: f64) -> CornerMap {
+    let side = SideMap { a: Matrix2::repeat(a), b: Vector2::repeat(1.0) };
+    CornerMap { minus: side, plus: side }
+}
+
+/// Whether A is still compared with what is exact once the quantities are left out that a route does not know, and whether that is told.
+fn is_compared(estimate: Route) -> (bool, bool) {
+    let routes = [route(RouteName::Variational, 1.0, None), estimate];
+    let mut log = Log::default();
+    let kept = split_by_knowledge(compare_routes(&routes), &routes, &mut log);
+    (kept.iter().any(|item| item.quantity == Quantity::A(Side::Minus)), !log.0.is_empty())
+}
+
+#[test]
+fn an_estimate_that_misses_by_more_than_it_says_disagrees() {
+    for (off, said, is_kept) in [(1e-4, 2e-4, false), (2e-4, 1e-4, true), (1e-12, 2e-4, true)] {
+        let estimate = route(RouteName::FiniteDifference, 1.0 + off, Some(Uncertainty::Extrapolation(sides(said))));
+        assert_eq!(is_compared(estimate), (is_kept, !is_kept), "{off} {said}");
+    }
+}
+
+/// A is to agree to 1e-8. A fit knows it to three standard errors and the bias together.
+#[test]
+fn a_fit_is_compared_where_it_knows_enough() {
+    let none = CornerMap { minus: SideMap { a: Matrix2::zeros(), b: Vector2::zeros() }, ..sides(0.0) };
+    let error = |a: f64| CornerMap { minus: SideMap { a: Matrix2::repeat(a), ..none.minus }, plus: none.minus };
+    for (standard, bias, is_kept) in
+        [(2e-9, 3e-9, true), (2e-9, 5e-9, false), (4e-9, 0.0, false), (0.0, 9e-9, true), (0.0, 2e-8, false)]
+    {
+        let (standard_error, systematic) = (error(standard), Some(error(bias)));
+        let fit = Uncertainty::Fit { standard: standard_error, systematic, condition_number: 10.0 };
+        let (kept, told) = is_compared(route(RouteName::LeastSquares, 1.0, Some(fit)));
+        assert_eq!((kept, told), (is_kept, !is_kept), "{standard} {bias}");
+    }
 }

@@ -375,3 +375,49 @@ fn an_angle_is_turned_to_the_nearest() {
         assert_relative_eq!(nearest_turn(angle, other), wanted, max_relative = 1e-14);
     }
 }
+
+/// A damper that holds the follower back on the way down to a dwell, which a preload P presses on. A parabola comes down as `a x^2`, where N is
+/// least at `x = b w/k`: `P = a w^2 (b^2/k - 2 m)`. Of a cycloid it is the least root of all places. The less the preload, the nearer to the
+/// dwell that is.
+#[test]
+fn a_damper_pulls_as_near_to_the_lowest_lift_as_the_preload_lets_it() {
+    let [mass, stiffness, rise, span] = [0.5, 1000.0, 0.02, 0.5 * PI];
+    let cam = |motion: &str| {
+        let segment = |motion: &str, span: f64, rise: f64| {
+            format!("[[cam.segment]]\nmotion = \"{motion}\"\nspan_deg = {span:?}\nrise = {rise:?}\n")
+        };
+        let turns = [(motion, 90.0, rise), ("dwell", 60.0, 0.0), (motion, 90.0, -rise), ("dwell", 120.0, 0.0)];
+        let segments: String = turns.iter().map(|(motion, span, rise)| segment(motion, *span, *rise)).collect();
+        format!("law = \"program\"\nbase = 0.0\n{segments}")
+    };
+    for damping in [50.0, 60.0, 200.0] {
+        for power in 2..=8 {
+            let preload = 10.0_f64.powi(-power);
+            let found = |motion: &str| {
+                let lines = format!("preload = {preload:?}\ngravity = 0.0");
+                separation(&machine([mass, damping, stiffness], &lines, &cam(motion))).speed()
+            };
+            // What the lift is rounded by, over the preload.
+            let known = 1e-8 + 1e-13 / preload;
+            let bend = 2.0 * rise / (span * span);
+            let parabola = (preload / (bend * (damping * damping / stiffness - 2.0 * mass))).sqrt();
+            assert_relative_eq!(found("parabolic"), rpm(parabola), max_relative = known);
+            // c = r (z - sin z)/(2 pi) of z = 2 pi x/span, N = still - 2 fall w + bent w^2.
+            let root = |z: f64| {
+                let series = z.powi(3) / 6.0 * (1.0 - z * z / 20.0 * (1.0 - z * z / 42.0 * (1.0 - z * z / 72.0)));
+                let lift = rise / TAU * if z < 0.3 { series } else { z - z.sin() };
+                let fall = damping * rise / span * (0.5 * z).sin().powi(2);
+                let (still, bent) = (preload + stiffness * lift, mass * rise * TAU / (span * span) * z.sin());
+                let square = fall * fall - bent * still;
+                if square > 0.0 { still / (fall + square.sqrt()) } else { f64::INFINITY }
+            };
+            let least = |middle: f64, apart: f64| {
+                let places = (-2000..=2000).map(|index| (middle + apart * f64::from(index)).exp());
+                places.map(|z| (root(z), z)).min_by(|one, other| one.0.total_cmp(&other.0)).unwrap()
+            };
+            let near = least(-9.0, 5e-3).1;
+            let cycloid = least(near.ln(), 5e-6).0;
+            assert_relative_eq!(found("cycloidal"), rpm(cycloid), max_relative = known);
+        }
+    }
+}

@@ -310,12 +310,11 @@ impl AttractorFamily {
         /// Halvings of the step that contains the end.
         const HALVINGS: u32 = 3;
         let change = self.ends[side].as_ref().filter(|_| self.class != Class::Undecided)?;
-        let index = if side == 0 { self.at.keys().next() } else { self.at.keys().last() };
+        let (index, outward) = if side == 0 { (self.at.keys().next(), -1.0) } else { (self.at.keys().last(), 1.0) };
         let (wanted, _) = self.wanted(grid, *index?, runs)?;
         let mut motion = None;
         let mut is_there = |rpm: f64| wanted.is_there(&other.at_speed(angular_velocity(rpm)), &mut motion);
         let was_there = is_there(change.at.rpm).ok()?;
-        let outward = if side == 0 { -1.0 } else { 1.0 };
         let mut step = (if was_there { outward } else { -outward }) * FIRST * (change.bracket[1] - change.bracket[0]);
         let mut from = change.at.rpm;
         for _ in 0..DOUBLED {
@@ -440,6 +439,6 @@ impl Wanted {
 }
 
 /// Whether runs have reached a motion of the same class as `ending`.
-pub(super) fn has_reached(here: &AttractorsAtValue, ending: &LongRun) -> bool {
+pub fn has_reached(here: &AttractorsAtValue, ending: &LongRun) -> bool {
     here.attractors.iter().any(|it| Class::of(&it.ending) == Class::of(ending) && here.is_reached(it))
 }

@@ -35,7 +35,7 @@ use crate::study::survey::{Attractor, Over, OverError, RunError, Sample, Spacing
 use crate::tolerance;
 pub use at_value::AttractorsAtValue;
 pub use detachment::detachment;
-pub use family::{AttractorFamily, GridValue, StartsAndBudget, ValueGrid, families};
+pub use family::{AttractorFamily, GridValue, StartsAndBudget, ValueGrid, families, has_reached};
 #[doc(hidden)]
 pub use stable_range::StableRange;
 pub use step::Step;
@@ -236,7 +236,7 @@ fn exchange(over: &Over<'_>, grid: &mut [GridValue]) {
             .flat_map_iter(|(from, to)| {
                 let (Some(from), Some(at)) = (grid.get(*from), grid.get(*to)) else { return Vec::new() };
                 let (Ok(from), Ok(here)) = (&from.found, &at.found) else { return Vec::new() };
-                let mut missing = from.attractors.iter().filter(|it| !family::has_reached(here, &it.ending)).peekable();
+                let mut missing = from.attractors.iter().filter(|it| !has_reached(here, &it.ending)).peekable();
                 if missing.peek().is_none() {
                     return Vec::new();
                 }

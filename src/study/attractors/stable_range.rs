@@ -178,7 +178,8 @@ fn located(over: &Over<'_>, end: &mut Option<Transition>, points: &mut Vec<Branc
     }
 }
 
-/// Collects the points while orbits stay of one kind and the value moves one way. Returns the transition that ends this.
+/// Collects the points while orbits are stable and the value moves one way. Returns the transition that ends this. The numbers of revolutions
+/// and impacts change only at a graze or a flip, which ends it.
 fn walk<'a>(
     over: &Over<'_>,
     middle: &[BranchPoint],
@@ -186,13 +187,11 @@ fn walk<'a>(
     end: &End,
     taken: &mut Vec<BranchPoint>,
 ) -> Option<Transition> {
-    let numbers = |orbit: &PeriodicOrbit| (orbit.revolutions, orbit.impacts().count());
     let of_point = |point: &BranchPoint| Transition::of_point(&over.parameter, point);
     let ended = |pending: Option<&BranchPoint>, between, taken: &mut Vec<BranchPoint>| {
         taken.extend(pending.cloned());
         pending.map_or_else(|| by_runs(over, between), of_point)
     };
-    let kind = middle.first().map(|point| numbers(&point.orbit))?;
     let mut last = middle.first()?.value;
     // Where the value turns back without a change of stability, the orbits beyond are those of a lost symmetry.
     let (begun, mut onward) = (last, 0.0);
@@ -211,7 +210,7 @@ fn walk<'a>(
             pending = Some(point);
             continue;
         }
-        if is_unstable(&point.orbit) || numbers(&point.orbit) != kind {
+        if is_unstable(&point.orbit) {
             return Some(ended(pending, [last, point.value], taken));
         }
         if onward == 0.0 {

@@ -42,7 +42,8 @@ impl Step {
     }
 
     /// Distance from one value of the grid to the next, near a value.
-    pub(super) fn near(self, value: f64) -> f64 {
+    #[doc(hidden)]
+    pub fn near(self, value: f64) -> f64 {
         match self.spacing {
             Spacing::Linear => self.width(),
             Spacing::Logarithmic => value * (elementary::powf(10.0_f64, self.width()) - 1.0),

@@ -24,7 +24,7 @@ use crate::study::design::contact::{Contact, Separation};
 use crate::study::verify::{External, Verification, Whole, verify_watched};
 
 /// Numbers by name.
-pub(super) type Numbers = BTreeMap<String, f64>;
+pub type Numbers = BTreeMap<String, f64>;
 
 /// Numbers and words by name.
 pub type NamedValues = BTreeMap<String, Value>;
@@ -175,8 +175,10 @@ fn besides(found: &Verification) -> Vec<Value> {
     ]
 }
 
-/// Returns the spread between the routes in each number that follows from the map and its border, and in the orbit.
-fn spreads(found: &Verification, units: &Units) -> Numbers {
+/// Returns the spread between the routes in each number that follows from the map and its border, and in the orbit. A number of one route
+/// alone has none.
+#[doc(hidden)]
+pub fn spreads(found: &Verification, units: &Units) -> Numbers {
     let mut ranges: BTreeMap<String, (usize, [f64; 2])> = BTreeMap::new();
     for route in &found.routes {
         for (name, value) in flattened(&follows(route, found.border, true), units) {

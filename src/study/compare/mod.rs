@@ -23,6 +23,8 @@ use crate::measured::PlausibleCams;
 use crate::model::Model;
 use crate::progress::Watch;
 use crate::tolerance;
+#[doc(hidden)]
+pub use findings::spreads;
 use findings::{Findings, differences, numbers, open};
 pub use findings::{NamedValues, values};
 

@@ -220,12 +220,13 @@ impl<'a> Contact<'a> {
                 let found = at(before);
                 (self.root(segment, &found.lift, from), found)
             });
-            if one.0 < two.0 {
-                high -= third
+            let nearer = if one.0 < two.0 {
+                high -= third;
+                one
             } else {
-                low += third
-            }
-            let nearer = if one.0 < two.0 { one } else { two };
+                low += third;
+                two
+            };
             best = if nearer.0 < best.0 { nearer } else { best };
         }
         best

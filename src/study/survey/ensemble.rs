@@ -280,7 +280,8 @@ fn wait(runs: &LongRuns<'_>, ends: &mut [Option<End>], releases: &Releases, watc
         });
         let found = stretch.reduce(Wandering::default, Wandering::with);
         if all.is_none() {
-            soon = ends.iter().flatten().map(soon_rested).fold(soon, Wandering::with);
+            let first = |end: &End| soon_rested(&end.run, end.motion.revolution - end.begun);
+            soon = ends.iter().flatten().map(first).fold(soon, Wandering::with);
         }
         all = Some(all.map_or(released, |all| all.with(found)));
         let left = patience.saturating_sub(all.map_or(0, |all| all.revolutions));
@@ -288,17 +289,19 @@ fn wait(runs: &LongRuns<'_>, ends: &mut [Option<End>], releases: &Releases, watc
     }
 }
 
-/// Revolutions that a run has wandered, and whether it rested, without the revolutions needed to forget its start.
-fn soon_rested(end: &End) -> Wandering {
+/// Revolutions that a run of so many has wandered, and whether it rested, without the revolutions needed to forget its start.
+#[doc(hidden)]
+pub fn soon_rested(run: &Result<RunOutcome, SimulateError>, revolutions: u64) -> Wandering {
     /// Revolutions after which the start is forgotten.
     const FORGOTTEN: u64 = 50;
-    let rested = u64::from(matches!(end.run, Ok(RunOutcome::Released(_))));
-    match (end.motion.revolution - end.begun).checked_sub(FORGOTTEN) {
-        Some(revolutions) if rested > 0 || end.run == Ok(RunOutcome::Wanders) => {
-            Wandering { revolutions, left: 0, rested }
-        }
-        _ => Wandering::default(),
-    }
+    let rested = match run {
+        Ok(RunOutcome::Released(_)) => 1,
+        Ok(RunOutcome::Wanders) => 0,
+        // A run that has settled can no longer rest.
+        Ok(RunOutcome::Arrives(_) | RunOutcome::PermanentContact) | Err(_) => return Wandering::default(),
+    };
+    let wandered = revolutions.checked_sub(FORGOTTEN);
+    wandered.map_or_else(Wandering::default, |revolutions| Wandering { revolutions, left: 0, rested })
 }
 
 /// Whether the long wandering runs rest so much less often than they did `soon` that they are on another motion than the runs that rested

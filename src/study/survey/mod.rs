@@ -38,7 +38,7 @@ pub use starts::{Placed, Sample, Start};
 #[doc(hidden)]
 pub use axis::{Axis, Place};
 #[doc(hidden)]
-pub use ensemble::{Attractor, Ensemble, Failed, Judged, Wandering, attractors_of, long_run, outlasts};
+pub use ensemble::{Attractor, Ensemble, Failed, Judged, Wandering, attractors_of, long_run, outlasts, soon_rested};
 #[doc(hidden)]
 pub use grid::{GridResults, RunError, Survey, SurveyError};
 #[doc(hidden)]
