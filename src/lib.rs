@@ -133,7 +133,7 @@ pub mod inner {
     pub use crate::file::held;
     pub use crate::orbit::chain::{Link, determinant, solve};
     pub use crate::orbit::complete::{OneImpact, joined};
-    pub use crate::simulate::contact::{Gap, Outcome, first_contact};
+    pub use crate::simulate::contact::{GapAt, Outcome, first_contact};
 }
 
 /// The program on the page about the theory is a test.

@@ -48,9 +48,9 @@ impl Drop for Started {
 }
 
 /// An entry of `HIDDEN`, removed from it with this value.
-pub struct Listed(pub(super) PathBuf);
+pub struct HeldPath(pub(super) PathBuf);
 
-impl Drop for Listed {
+impl Drop for HeldPath {
     fn drop(&mut self) {
         held().remove(&self.0);
     }

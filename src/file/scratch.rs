@@ -6,7 +6,7 @@ use std::path::Path;
 
 use tempfile::{Builder, TempDir};
 
-use super::registry::{self, Listed};
+use super::registry::{self, HeldPath};
 
 /// Prefix of the folder's name, and the file in it that the program keeps locked while it runs.
 const NAME: &str = "corner-impact.";
@@ -18,7 +18,7 @@ const UNNAMED: &str = ".alive.new";
 pub(crate) struct Scratch {
     // Dropped before the signals forget the folder.
     folder: TempDir,
-    _listed: Listed,
+    _listed: HeldPath,
     _alive: File,
 }
 
@@ -42,7 +42,7 @@ impl Scratch {
             fs::write(path, text)?;
         }
         held.insert(folder.path().to_owned());
-        Ok(Self { _listed: Listed(folder.path().to_owned()), folder, _alive: alive })
+        Ok(Self { _listed: HeldPath(folder.path().to_owned()), folder, _alive: alive })
     }
 
     pub(crate) fn path(&self) -> &Path {

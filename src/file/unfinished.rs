@@ -15,7 +15,7 @@ use std::path::PathBuf;
 
 use tempfile::{Builder, NamedTempFile};
 
-use super::registry::{self, Listed};
+use super::registry::{self, HeldPath};
 
 /// A file that does not have its name yet.
 pub enum Unfinished {
@@ -23,7 +23,7 @@ pub enum Unfinished {
     #[cfg(target_os = "linux")]
     Nameless(File, PathBuf),
     /// File with a hidden name.
-    Hidden(NamedTempFile, Listed),
+    Hidden(NamedTempFile, HeldPath),
 }
 
 /// Builder of hidden names, which are as short as possible: any valid file name is longer.
@@ -56,7 +56,7 @@ impl Unfinished {
         let mut held = registry::held();
         let file = builder.tempfile_in(folder)?;
         held.insert(file.path().to_owned());
-        let listed = Listed(file.path().to_owned());
+        let listed = HeldPath(file.path().to_owned());
         Ok(Self::Hidden(file, listed))
     }
 

@@ -331,7 +331,7 @@ impl Flight {
         }
         let guess = peak + short;
         let mut low = peak;
-        let mut time = if (low..high).contains(&guess) { guess } else { 0.5 * (low + high) };
+        let mut time = if (low.next_up()..high).contains(&guess) { guess } else { 0.5 * (low + high) };
         while high - low > tolerance::ROOT_WIDTH.value * high {
             let state = at(time);
             if state.position >= level {
@@ -350,7 +350,7 @@ impl Flight {
                 return Some((time + step, State { position: level, velocity }));
             }
             let better = time + step;
-            time = if (low..high).contains(&better) { better } else { 0.5 * (low + high) };
+            time = if (low.next_up()..high).contains(&better) { better } else { 0.5 * (low + high) };
         }
         Some((time, State { position: level, ..at(time) }))
     }

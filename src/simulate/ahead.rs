@@ -51,24 +51,11 @@ pub(super) struct Leap {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Passage {
     /// No contact up to the end.
-    Free {
-        state: State,
-        gap: Option<f64>,
-    },
+    Free { state: State, gap: Option<f64> },
     /// The first contact, s after the start, with the velocity at that moment.
-    Contact {
-        time: f64,
-        velocity: f64,
-        lift: Lift,
-    },
-    Below {
-        depth: f64,
-        time: f64,
-    },
+    Contact { time: f64, velocity: f64, lift: Lift },
     /// More steps than a window may take; s after the start.
-    NoProgress {
-        time: f64,
-    },
+    NoProgress { time: f64 },
     /// A number is NaN or infinite.
     NotFinite,
 }

@@ -6,7 +6,7 @@
 
 /// Gap between follower and cam at an instant, with bounds from then on.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Gap {
+pub struct GapAt {
     /// g, m.
     pub value: f64,
     /// Rounding error of `value`, m.
@@ -28,30 +28,25 @@ pub enum Outcome {
     None,
     /// The first contact, s after the start.
     Contact(f64),
-    /// The follower is inside the cam and on the way out of it.
-    Below {
-        /// How far inside, m.
-        depth: f64,
-        /// When, s after the start.
-        time: f64,
-    },
-    /// More steps than a window may take, or a step that takes no time; s after the start.
+    /// More steps than a search may take, or a step that takes no time; s after the start.
     NoProgress(f64),
     /// The gap is NaN or infinite; s after the start.
     NotFinite(f64),
 }
 
 /// Finds the first contact within `[0, end]`, s, of the gap `gap_at(time)`; `third_bound(time, reach)` bounds `|g'''|` over
-/// `[time, time + reach]`.
-pub fn first_contact(gap_at: impl Fn(f64) -> Gap, third_bound: impl Fn(f64, f64) -> f64, end: f64) -> Outcome {
+/// `[time, time + reach]`. A follower that is inside the cam and moves out of it leaves it as from its surface.
+pub fn first_contact(
+    gap_at: impl Fn(f64) -> GapAt,
+    third_bound: impl Fn(f64, f64) -> f64,
+    end: f64,
+    most_steps: u32,
+) -> Outcome {
     let mut time = 0.0;
-    for _ in 0..super::MOST_STEPS {
+    for _ in 0..most_steps {
         let gap = gap_at(time);
         if !(gap.value.is_finite() && gap.rate.is_finite() && gap.curvature.is_finite()) {
             return Outcome::NotFinite(time);
-        }
-        if gap.value < -gap.rounding && gap.rate >= 0.0 {
-            return Outcome::Below { depth: -gap.value, time };
         }
         if gap.value <= gap.rounding && gap.rate < -gap.rate_rounding {
             return Outcome::Contact(polish(&gap_at, time, &gap, end));
@@ -61,8 +56,8 @@ pub fn first_contact(gap_at: impl Fn(f64) -> Gap, third_bound: impl Fn(f64, f64)
             return Outcome::None;
         }
         if time + step == time {
-            // Contact to the last digit if the follower approaches it.
-            return if gap.rate < 0.0 { Outcome::Contact(time) } else { Outcome::NoProgress(time) };
+            // Contact to the last digit if the follower approaches it, or does not move away.
+            return if gap.rate <= gap.rate_rounding { Outcome::Contact(time) } else { Outcome::NoProgress(time) };
         }
         time += step;
     }
@@ -70,14 +65,14 @@ pub fn first_contact(gap_at: impl Fn(f64) -> Gap, third_bound: impl Fn(f64, f64)
 }
 
 /// Takes one Newton step from a contact known to rounding, but not past the bottom of a graze, where the follower moves away already.
-fn polish(gap_at: impl Fn(f64) -> Gap, time: f64, gap: &Gap, end: f64) -> f64 {
+fn polish(gap_at: impl Fn(f64) -> GapAt, time: f64, gap: &GapAt, end: f64) -> f64 {
     let better = (time - gap.value / gap.rate).clamp(0.0, end);
     let there = gap_at(better);
     if there.rate < 0.0 && there.value.abs() <= gap.value.abs() { better } else { time }
 }
 
 /// Returns a time, at most `end`, before which the gap is certainly open.
-fn free_time(gap: &Gap, third_bound: impl Fn(f64) -> f64, end: f64) -> f64 {
+fn free_time(gap: &GapAt, third_bound: impl Fn(f64) -> f64, end: f64) -> f64 {
     /// Ratio of root to reach above which the reach is too short.
     const FAR: f64 = 16.0;
     // Down to a depth of its rounding the gap is open: a flight that leaves a tangency gets a first step out of it.

@@ -40,7 +40,7 @@ use crate::flight::{Flight, State};
 use crate::impact::relative_rebound;
 use crate::model::Follower;
 use crate::tolerance;
-use ahead::{Ahead, Passage};
+use ahead::{Again, Ahead, Leap, Passage};
 pub use event::{Event, EventKind, ImpactTally, Observer, SimulateError, Unobserved, Work};
 pub use growth::{Record, growth};
 use motion::{Chatter, LastLift, Stopped};
@@ -63,6 +63,7 @@ pub struct Machine {
     restitution: f64,
     angular_velocity: f64,
     turn: Turn,
+    most_steps: u32,
 }
 
 /// Converts revolutions per minute to radians per second.
@@ -84,6 +85,7 @@ impl Machine {
             restitution: follower.restitution,
             angular_velocity,
             turn: Turn::new(&flight, angular_velocity),
+            most_steps: MOST_STEPS,
         }
     }
 
@@ -95,6 +97,12 @@ impl Machine {
     /// Returns this follower at this speed over another cam.
     pub fn with_cam(&self, cam: Cam) -> Self {
         Self { terrain: Arc::new(CamBounds::new(cam)), ..self.clone() }
+    }
+
+    /// Returns this machine with searches that are given up after so many steps.
+    #[doc(hidden)]
+    pub fn giving_up_after(&self, most_steps: u32) -> Self {
+        Self { most_steps, ..self.clone() }
     }
 
     /// The lift profile.
@@ -388,24 +396,21 @@ impl Machine {
             None => self.ahead(motion, left, observer),
         };
         let until = match &ahead {
-            Ahead::Again(again) => omega * again.time,
-            Ahead::Top { time, .. } => omega * time,
-            Ahead::Leap(leap) => omega * leap.time,
+            Ahead::Again(Again { time, .. })
+            | Ahead::Top { time, .. }
+            | Ahead::Leap(Leap { time, .. })
+            | Ahead::Over { passage: Passage::Contact { time, .. } | Passage::NoProgress { time }, .. } => omega * time,
             Ahead::Never => f64::INFINITY,
             Ahead::Over { passage: Passage::Free { .. }, .. } => {
                 let within = self.cam().segments()[motion.segment].end - motion.cam_angle;
                 if left < within { within } else { f64::NEG_INFINITY }
             }
-            Ahead::Over { passage, .. } => match passage {
-                Passage::Contact { time, .. } | Passage::Below { time, .. } | Passage::NoProgress { time } => {
-                    omega * time
-                }
-                Passage::Free { .. } | Passage::NotFinite => f64::NEG_INFINITY,
-            },
+            Ahead::Over { passage: Passage::NotFinite, .. } => f64::NEG_INFINITY,
         };
         if !(until < left) {
             return Ok(Step::Reached { until, ahead: Some(ahead).filter(|_| motion.chatter != Chatter::WithinRun) });
         }
+        let after = left - until;
         match ahead {
             Ahead::Again(again) => {
                 if O::COUNTS {
@@ -414,11 +419,11 @@ impl Machine {
                 self.flown(motion, again.time, observer);
                 motion.revolution += 1;
                 motion.cam_angle = again.cam_angle;
-                Ok(self.strike(motion, again.velocity, &again.lift, left - omega * again.time, observer))
+                Ok(self.strike(motion, again.velocity, &again.lift, after, observer))
             }
             Ahead::Top { time, state } => {
                 self.flown(motion, time, observer);
-                self.turn_over(motion, omega * time);
+                self.turn_over(motion, until);
                 (motion.state, motion.gap, motion.lift) = (state, None, None);
                 // A follower exactly at the top would count as above it once more.
                 if state.position <= self.terrain.top { Ok(Step::Moved) } else { Err(self.not_finite(motion)) }
@@ -445,15 +450,10 @@ impl Machine {
                     self.flown(motion, time, observer);
                     // A contact found at the segment's end belongs to it, whatever the last bit says.
                     let last = self.cam().segments()[motion.segment].end;
-                    motion.cam_angle = (motion.cam_angle + omega * time).min(last);
-                    Ok(self.strike(motion, velocity, &lift, left - omega * time, observer))
+                    motion.cam_angle = (motion.cam_angle + until).min(last);
+                    Ok(self.strike(motion, velocity, &lift, after, observer))
                 }
-                Passage::Below { depth, time } => Err(SimulateError::BelowCam {
-                    depth,
-                    revolution: motion.revolution,
-                    cam_angle: motion.cam_angle + omega * time,
-                }),
-                Passage::NoProgress { time } => Err(no_progress(motion, omega * time)),
+                Passage::NoProgress { .. } => Err(self.no_progress(motion.revolution, motion.cam_angle, until)),
                 Passage::NotFinite => Err(self.not_finite(motion)),
             },
         }
@@ -494,6 +494,11 @@ impl Machine {
             Window::new(self, motion, ()).pass(end, expected)
         };
         Ahead::Over { end, passage }
+    }
+
+    /// Error of a search that took all its steps from `angle`, rad, and ended `turn`, rad, further on.
+    fn no_progress(&self, revolution: u64, angle: f64, turn: f64) -> SimulateError {
+        SimulateError::NoProgress { events: self.most_steps, revolution, cam_angle: angle + turn }
     }
 
     fn not_finite(&self, motion: &Motion) -> SimulateError {
@@ -638,12 +643,6 @@ impl Machine {
 /// State of a follower that moves with the cam.
 fn on_cam(lift: &Lift, omega: f64) -> State {
     State { position: lift.value, velocity: omega * lift.slope }
-}
-
-/// Error of a search that took all its steps and ended `turn`, rad, further on.
-fn no_progress(motion: &Motion, turn: f64) -> SimulateError {
-    let (revolution, cam_angle) = (motion.revolution, motion.cam_angle + turn);
-    SimulateError::NoProgress { events: MOST_STEPS, revolution, cam_angle }
 }
 
 /// Result of one step of the loop.

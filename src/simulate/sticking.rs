@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use super::motion::Chatter;
 use super::terrain::Entry;
-use super::{EventKind, MOST_STEPS, Machine, Motion, Observer, SimulateError, Step, no_progress, on_cam};
+use super::{EventKind, Machine, Motion, Observer, SimulateError, Step, on_cam};
 use crate::cam::{Lift, Segment};
 use crate::flight::State;
 use crate::tolerance;
@@ -107,7 +107,9 @@ impl Machine {
         let within = segment.end - motion.cam_angle;
         let turn = match self.turn_to_sign(1.0, motion.cam_angle, segment, within) {
             Ok(turn) => turn,
-            Err(turn) if turn < left => return Err(no_progress(motion, turn)),
+            Err(turn) if turn < left => {
+                return Err(self.no_progress(motion.revolution, motion.cam_angle, turn));
+            }
             Err(turn) => return Ok(Step::Reached { until: turn, ahead: None }),
         };
         if let Some(turn) = turn.filter(|turn| *turn < left) {
@@ -171,12 +173,8 @@ impl Machine {
             from = from.or((!lifts(segment)).then_some(angle));
             loop {
                 let sign = if from.is_some() { 1.0 } else { -1.0 };
-                let given_up = |turn: f64| {
-                    let cam_angle = angle + turn;
-                    SimulateError::NoProgress { events: MOST_STEPS, revolution: 0, cam_angle }
-                };
-                let turn = self.turn_to_sign(sign, angle, segment, segment.end - angle).map_err(given_up)?;
-                let Some(turn) = turn else { break };
+                let turn = self.turn_to_sign(sign, angle, segment, segment.end - angle);
+                let Some(turn) = turn.map_err(|turn| self.no_progress(0, angle, turn))? else { break };
                 angle += turn;
                 match from.take() {
                     Some(begun) => rests.push([begun, angle]),
@@ -222,33 +220,34 @@ impl Machine {
         }
         let end = span / omega;
         let (mut time, mut hover, mut widest) = (0.0, 0.0, end);
-        for _ in 0..MOST_STEPS {
+        for _ in 0..self.most_steps {
             if !(time < end) {
                 return Ok(None);
             }
-            let lift = segment.law.lift(angle + omega * time);
+            let turned = omega * time;
+            let from = angle + turned;
+            let lift = segment.law.lift(from);
             let lifting = sign * self.lifting(&lift);
             let (rate, rounding) = self.lifting_rate(&lift);
             let steepest = |reach: f64| {
                 let turn = omega * reach;
-                let from = angle + omega * time;
-                let third = segment.law.third_bound(from, from + turn).min(bounds.third);
+                let to = from + turn;
+                let third = segment.law.third_bound(from, to).min(bounds.third);
                 let curvature = lift.curvature.abs() + third * turn;
                 let slope = lift.slope.abs() + curvature * turn;
                 let sum = 2.0 * zeta * omega * omega * curvature + w * omega * slope + omega.powi(3) * third;
-                (sum, third, curvature)
+                (sum, third, curvature, to)
             };
             // |d lifting/dt| over a reach: its terms at their largest, or from here by the second derivative where less.
             let fastest = |reach: f64| {
-                let (sum, third, curvature) = steepest(reach);
-                let from = angle + omega * time;
-                let fourth = segment.law.fourth_bound(from, from + omega * reach);
+                let (sum, third, curvature, to) = steepest(reach);
+                let fourth = segment.law.fourth_bound(from, to);
                 let bend = omega * omega * (2.0 * zeta * omega * third + w * curvature + omega * omega * fourth);
                 let of_rate = tolerance::GAP_ROUNDING.value * (sum + omega.powi(3) * bounds.third);
                 sum.min(rate.abs() + of_rate + bend * reach)
             };
             if lifting > rounding {
-                return Ok(Some(omega * time));
+                return Ok(Some(turned));
             }
             if lifting > -rounding {
                 // Where rounding decides, look further ahead each time: it may only touch 0, or stay there.

@@ -8,7 +8,7 @@
 use std::cell::Cell;
 
 use super::ahead::Passage;
-use super::contact::{self, Gap, Outcome};
+use super::contact::{self, GapAt, Outcome};
 use super::{Machine, Motion, Work};
 use crate::cam::{Lift, Segment};
 use crate::flight::{Flight, State};
@@ -149,7 +149,7 @@ impl<'a, T: Tally> Window<'a, T> {
                 }
                 time += step;
             }
-            if !(0.0 < time && time < end) {
+            if !(0.0..end).contains(&time) {
                 break;
             }
             now = self.at(time);
@@ -211,7 +211,8 @@ impl<'a, T: Tally> Window<'a, T> {
                 (high, high_is_closed) = (time, true);
             }
             let next = time + step;
-            time = if low < next && next < high && now.rate < 0.0 {
+            // Where the gap opens the step leads out of the bracket.
+            time = if low < next && next < high {
                 next
             } else if !high_is_closed {
                 reach
@@ -289,20 +290,19 @@ impl<'a, T: Tally> Window<'a, T> {
             // Rounding of the two positions, however well their difference is known: no dip below that is an impact.
             let rounding = self.machine.gap_rounding(now.state.position);
             let rate_rounding = self.machine.velocity_rounding();
-            Gap { value: now.value, rounding, rate: now.rate, rate_rounding, curvature: now.curvature, third }
+            GapAt { value: now.value, rounding, rate: now.rate, rate_rounding, curvature: now.curvature, third }
         };
         let third_bound = |time: f64, reach: f64| {
             let state = if time == 0.0 { self.start } else { self.flight.fly(self.start, time).1 };
             let angle = self.angle + omega * time;
             self.flight.jerk_bound(state) + omega.powi(3) * self.segment.law.third_bound(angle, angle + omega * reach)
         };
-        match contact::first_contact(gap_at, third_bound, end) {
+        match contact::first_contact(gap_at, third_bound, end, self.machine.most_steps) {
             Outcome::None => self.free(end),
             Outcome::Contact(time) => {
                 let now = if time == 0.0 { self.at_start() } else { self.at(time) };
                 Passage::Contact { time, velocity: now.state.velocity, lift: now.lift }
             }
-            Outcome::Below { depth, time } => Passage::Below { depth, time },
             Outcome::NoProgress(time) => Passage::NoProgress { time },
             Outcome::NotFinite(_) => Passage::NotFinite,
         }

@@ -12,7 +12,7 @@ use corner_impact::border_collision::feigin::Scenario;
 use corner_impact::cam::Cam;
 use corner_impact::flight::{Flight, State};
 use corner_impact::inner::{
-    Gap, Link, OneImpact, Outcome, Powers, Unfinished, determinant, extrapolate, first_contact, held, joined, solve,
+    GapAt, Link, OneImpact, Outcome, Powers, Unfinished, determinant, extrapolate, first_contact, held, joined, solve,
 };
 use corner_impact::interval::Interval;
 use corner_impact::model::{Model, OSORIO_2008};
@@ -193,10 +193,10 @@ fn a_flight_that_is_stopped_at_once_takes_few_steps() {
         let (value, third) =
             (-rate * elementary::exp_m1(-stops * time) / stops - cam * time, rate * stops * stops * left);
         let (rate, curvature) = (rate * left - cam, -rate * stops * left);
-        Gap { value, rounding: 1e-25, rate, rate_rounding: 1e-14, curvature, third }
+        GapAt { value, rounding: 1e-25, rate, rate_rounding: 1e-14, curvature, third }
     };
     let third_bound = |time: f64, _| rate * stops * stops * elementary::exp(-stops * time);
-    let Outcome::Contact(time) = first_contact(gap_at, third_bound, 0.1) else { panic!("no contact") };
+    let Outcome::Contact(time) = first_contact(gap_at, third_bound, 0.1, 200) else { panic!("no contact") };
     assert_relative_eq!(time, rate / stops / cam, max_relative = 1e-12);
     assert!(looks.get() < 200, "{}", looks.get());
 }

@@ -98,6 +98,7 @@ mod roots;
 mod rounded;
 mod routes;
 mod scales;
+mod searched;
 mod second_order;
 mod section_numbers;
 mod separation;

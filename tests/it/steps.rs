@@ -118,6 +118,24 @@ fn no_start_is_fast_enough_for_a_step() {
     }
 }
 
+/// A flight that is as high as the lift behind a step, to rounding, goes over it; a lower one is below the cam.
+#[test]
+fn a_flight_as_high_as_a_step_goes_over_it() {
+    let machine = continued(&machine(0.0, 30.0, &HILL), 0, Side::Minus, 1.0);
+    let at = machine.cam().segments()[1].start;
+    let lift = machine.cam().lift(at);
+    // Rounding: four ulps of the follower's 2/3 and the cam's 4/3.
+    for share in [-0.25, 0.0, 0.25] {
+        let state = State { position: lift.value + share * 8.0 * f64::EPSILON, velocity: 1.5 * lift.slope };
+        run(&machine, machine.start(at.next_down(), state).unwrap(), 0.01).0.unwrap();
+        let lower = State { position: state.position - 1e-9, ..state };
+        match run(&machine, machine.start(at.next_down(), lower).unwrap(), 0.01).0 {
+            Err(SimulateError::BelowCam { depth, .. }) => assert_abs_diff_eq!(depth, 1e-9, epsilon = 1e-14),
+            other => panic!("{other:?}"),
+        }
+    }
+}
+
 /// Flights over a step find their contacts where a scan does, and know their gap; who is below it is as deep as the lift is higher.
 #[test]
 #[ignore = "slow"]
