@@ -122,24 +122,20 @@ impl Fields {
         self.fields.contains_key(path)
     }
 
-    /// The number at a path, within what it may be.
+    /// The number at a path, within what it may be. One that is left out has its default, and can still be changed.
     pub(super) fn number(&mut self, path: &str) -> Result<f64, ModelError> {
-        let allowed = ModelNumber::of(path).map_or(Allowed::FINITE, |number| number.allowed);
-        match *self.take(path)? {
-            Value::Number(number) if allowed.contains(number) => Ok(number),
-            _ => Err(self.reject(path, allowed.to_string())),
-        }
-    }
-
-    /// The number at a path. A missing field gets `default` and can still be changed.
-    pub(super) fn number_or(&mut self, path: &str, default: f64) -> Result<f64, ModelError> {
-        if !self.has(path) {
+        let row = ModelNumber::of(path);
+        let allowed = row.map_or(Allowed::FINITE, |number| number.allowed);
+        if let Some(default) = row.and_then(|number| number.default).filter(|_| !self.has(path)) {
             let table = path.rsplit_once('.').and_then(|(table, _)| self.fields.get(table));
             let key = table.map_or(0..0, |table| table.key.clone());
             let (span, written, value) = (key.clone(), default.to_string().into(), Value::Number(default));
             self.fields.insert(path.into(), Field { line: None, is_there: false, key, span, written, value });
         }
-        self.number(path)
+        match *self.take(path)? {
+            Value::Number(number) if allowed.contains(number) => Ok(number),
+            _ => Err(self.reject(path, allowed.to_string())),
+        }
     }
 
     /// Length of an array, at least one and at most `most`.

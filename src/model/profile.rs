@@ -216,7 +216,7 @@ pub const CORNER_ROUNDING: &str = "cam.corner_rounding_deg";
 pub(super) fn read(fields: &mut Fields) -> Result<CamProfile, ModelError> {
     let read = fields.choice("cam.law", &CAM_LAWS)?;
     let (path, least) = (CORNER_ROUNDING, tolerance::LEAST_ROUNDING.value);
-    let corner_rounding_deg = fields.number_or(path, 0.0)?;
+    let corner_rounding_deg = fields.number(path)?;
     if 0.0 < corner_rounding_deg && corner_rounding_deg < least {
         return Err(fields.reject(path, format!("must be 0, or from {least} on")));
     }

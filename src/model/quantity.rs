@@ -100,6 +100,8 @@ pub struct ModelNumber {
     pub(super) allowed: Allowed,
     /// The laws of the cam that have it; empty for a number of every model.
     pub laws: &'static [&'static str],
+    /// Its value where the file leaves it out; `None` for a number that is needed.
+    pub(super) default: Option<f64>,
 }
 
 const fn number(
@@ -110,7 +112,7 @@ const fn number(
     allowed: Allowed,
     laws: &'static [&'static str],
 ) -> ModelNumber {
-    ModelNumber { path, symbol, meaning, dimension, allowed, laws }
+    ModelNumber { path, symbol, meaning, dimension, allowed, laws, default: None }
 }
 
 /// Every number of the format, in the order in which reports have them.
@@ -140,7 +142,7 @@ pub static MODEL_NUMBERS: [ModelNumber; 26] = {
         number("cam.amplitude", "", "amplitude of the lift", Length, FINITE, &["rectified-sine"]),
         number("cam.base", "", "lift at angle 0", Length, FINITE, &["program"]),
         number("cam.tolerance", "", "largest distance of a smoothing spline from a row", Pure, POSITIVE, &["table"]),
-        number("cam.corner_rounding_deg", "", "angle that corners are rounded over", Degrees, A_TURN, &[]),
+        number("cam.corner_rounding_deg", "", "angle that corners are rounded over", Degrees, A_TURN, &[]).or(0.0),
         number("cam.amplitudes", "", "amplitudes", Length, FINITE, &["harmonic"]),
         number("cam.phases_deg", "", "phases", Degrees, FINITE, &["harmonic"]),
         number("cam.segment.span_deg", "", "span", Degrees, Allowed::above(0.0, 360.0), &["program"]),
@@ -154,6 +156,11 @@ pub static MODEL_NUMBERS: [ModelNumber; 26] = {
 };
 
 impl ModelNumber {
+    /// The number as one that a file may leave out.
+    const fn or(self, default: f64) -> Self {
+        Self { default: Some(default), ..self }
+    }
+
     /// The number at a path, whatever its places in lists.
     pub fn of(path: &str) -> Option<&'static Self> {
         let plain = match path.contains('[') {
