@@ -245,7 +245,7 @@ fn the_flight_after_a_touch_that_comes_down_later_is_none_of_the_cycle() {
 #[test]
 fn an_impact_that_a_follower_sticks_after_begins_no_flight() {
     let paper = common::osorio();
-    let follower = Follower { restitution: 0.0, ..paper.follower.clone() };
+    let follower = Follower { restitution: 0.0, ..paper.follower };
     let plastic = Machine::new(common::cam(&paper), &follower, angular_velocity(700.0));
     let mut cycle = cycle_of!(orbits(&machine(700.0), 1)[0]);
     let mut released = 0;

@@ -24,15 +24,9 @@ const GREEK: [(&str, &str); 14] = [
 ];
 /// Signs typed with more than one key.
 const SIGNS: [(&str, &str); 4] = [("+-", "±"), ("->", "→"), ("<=", "≤"), (">=", "≥")];
-/// What a name says above or over its letter, in words.
-const SPELLED: [(&str, fn(&str) -> Part, &str); 6] = [
-    ("_minus", above, "−"),
-    ("_plus", above, "+"),
-    ("_star", above, "*"),
-    ("_hat", plain, "\u{302}"),
-    ("_tilde", plain, "\u{303}"),
-    ("_bar", plain, "\u{304}"),
-];
+/// What a name says over its letter, and above it, in words.
+const ACCENTS: [(&str, &str); 3] = [("_hat", "\u{302}"), ("_tilde", "\u{303}"), ("_bar", "\u{304}")];
+const SIDES: [(&str, &str); 3] = [("_minus", "−"), ("_plus", "+"), ("_star", "*")];
 
 /// A part of a sentence.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -49,10 +43,6 @@ pub enum Part {
 
 fn plain(text: &str) -> Part {
     Part::Plain(text.to_owned())
-}
-
-fn above(text: &str) -> Part {
-    Part::Above(text.to_owned())
 }
 
 /// The text of a sentence for a terminal: without the dollars around a formula.
@@ -139,9 +129,11 @@ pub fn formula(word: &str) -> Vec<Part> {
                 parts.push(Part::Below(behind[..digits].to_owned()));
             }
             rest = &behind[digits..];
-            while let Some((spelled, part, sign)) = SPELLED.iter().find(|(spelled, ..)| rest.starts_with(spelled)) {
-                parts.push(part(sign));
-                rest = &rest[spelled.len()..];
+            for (spelled, part) in [(&ACCENTS, Part::Plain as fn(String) -> Part), (&SIDES, Part::Above)] {
+                if let Some((word, sign)) = spelled.iter().find(|(word, _)| rest.starts_with(word)) {
+                    parts.push(part((*sign).to_owned()));
+                    rest = &rest[word.len()..];
+                }
             }
             let primes = taken(rest, |letter| letter == '\'');
             if primes > 0 {
