@@ -359,7 +359,8 @@ fn standard_errors_are_those_of_the_textbook() {
 #[test]
 fn a_design_whose_rank_is_rounding_alone_is_refused() {
     let is_refused = |apart: f64| {
-        let entry = |row: usize, column: usize| 1.0 + if row.is_multiple_of(2) { apart } else { -apart } * column as f64;
+        let entry =
+            |row: usize, column: usize| 1.0 + if row.is_multiple_of(2) { apart } else { -apart } * column as f64;
         Solver::new(&Mat::from_fn(1000, 2, entry)).is_err()
     };
     assert_eq!([0.0, 2e-14, 2e-12, 1.0].map(is_refused), [true, true, false, false]);
