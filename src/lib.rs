@@ -125,7 +125,7 @@ pub mod study;
 #[doc(hidden)]
 pub mod paper;
 
-/// What tests ask and no public function shows alone.
+/// Internal functions that the tests call directly. Nothing else uses this module.
 #[doc(hidden)]
 pub mod inner {
     pub use crate::corner::extrapolation::{Powers, extrapolate};

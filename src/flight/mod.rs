@@ -331,6 +331,7 @@ impl Flight {
         }
         let guess = peak + short;
         let mut low = peak;
+        // Strictly inside of the bracket: at its lower end the search would stand still.
         let mut time = if (low.next_up()..high).contains(&guess) { guess } else { 0.5 * (low + high) };
         while high - low > tolerance::ROOT_WIDTH.value * high {
             let state = at(time);

@@ -705,8 +705,8 @@ fn a_stable_range_that_nothing_ends_is_followed_no_farther() {
     assert_abs_diff_eq!(high, 64.0 * 3e-6, epsilon = 1e-9);
 }
 
-/// The same end is found once more on the same machine, of an attractor that runs alone tell, and from one value to the next it may be told to be of
-/// another kind: a motion that rests in every few revolutions is one with chaos, unless there are both.
+/// An attractor that is found by runs alone ends at one value, and a second search on the same machine finds that end again. A motion that rests
+/// every few revolutions counts as one with chaos, unless both are there at a value.
 #[test]
 fn an_end_by_runs_is_found_once_more() {
     let paper = common::osorio();

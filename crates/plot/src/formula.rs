@@ -1,7 +1,7 @@
-//! Formulas in plain text, as a terminal shows them: `phi_{T/2} x*`, `A_hat_minus`. This parses them, once for browsers and figures.
+//! Parser of formulas in plain text, `phi_{T/2} x*` or `A_hat_minus`, for browsers and figures. A terminal shows them as they are.
 //!
-//! `_` and `^` lower and raise a letter, a number or a group in braces. Greek letters are spelled; a side, an asterisk or a prime follows its letter. A word of a
-//! sentence is a formula if it shows that it is one; a letter alone stands between dollars, `$T$`.
+//! `_` and `^` lower and raise a letter, a number or a group in braces. Greek letters are spelled. A side, an asterisk or a prime follows its
+//! letter. A word with such a sign, or with a Greek letter, is a formula wherever it stands; any other formula stands between dollars, `$T$`.
 
 use std::borrow::Cow;
 
@@ -24,7 +24,7 @@ const GREEK: [(&str, &str); 14] = [
 ];
 /// Signs typed with more than one key.
 const SIGNS: [(&str, &str); 4] = [("+-", "±"), ("->", "→"), ("<=", "≤"), (">=", "≥")];
-/// What a name says over its letter, and above it, in words.
+/// Spelled accents, which stand over the letter, and spelled sides, which are raised.
 const ACCENTS: [(&str, &str); 3] = [("_hat", "\u{302}"), ("_tilde", "\u{303}"), ("_bar", "\u{304}")];
 const SIDES: [(&str, &str); 3] = [("_minus", "−"), ("_plus", "+"), ("_star", "*")];
 
@@ -55,7 +55,7 @@ pub fn sentence(text: &str) -> Vec<Part> {
     marked(text).flat_map(|(is_formula, text)| if is_formula { formula(text) } else { recognized(text) }).collect()
 }
 
-/// Stretches of a text, and whether each stands between dollars. A dollar that nothing closes stays.
+/// Splits a text at its dollars, and tells of each stretch whether it stands between two. A dollar that nothing closes stays.
 fn marked(mut text: &str) -> impl Iterator<Item = (bool, &str)> {
     std::iter::from_fn(move || {
         if text.is_empty() {

@@ -65,7 +65,7 @@ pub fn corner_impact<Word: AsRef<OsStr>>(words: impl IntoIterator<Item = Word>) 
     program(words).output().unwrap()
 }
 
-/// What the interpreter of `make test` says of a document on standard input, with these arguments, in the project's folder.
+/// Runs the interpreter of `make test` in the project's folder, with a document on standard input.
 pub fn python(arguments: &[&str], document: &serde_json::Value) -> Output {
     let interpreter = Path::new(ROOT).join(".venv/bin/python");
     assert!(interpreter.is_file(), "run `make test`, which sets up .venv");
