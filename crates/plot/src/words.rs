@@ -61,7 +61,9 @@ fn marked_up(text: &str) -> String {
             Part::Above(text) => (text, -SHIFT),
         };
         let (by, size) = (number(to - shifted), if to == 0.0 { "" } else { r#" font-size="9.5""# });
-        out.push_str(&format!(r#"<tspan dy="{by}"{size}>{}</tspan>"#, escaped(text)));
+        // The program's font has no prime: another font would step in.
+        let text = text.replace('′', "'");
+        out.push_str(&format!(r#"<tspan dy="{by}"{size}>{}</tspan>"#, escaped(&text)));
         shifted = to;
     }
     out
