@@ -60,71 +60,75 @@ impl Cam {
     /// shortest wave of the cam has eight of these.
     pub fn least(&self, weights: [f64; 4]) -> Least {
         let segments = self.segments().iter().enumerate();
-        let of_segments = segments.map(|(index, segment)| of_segment(index, segment, weights));
         // A cam has a segment.
-        of_segments.min_by(|one, other| one.value.total_cmp(&other.value)).unwrap_or(Least {
+        lowest(segments.flat_map(|(index, segment)| places(index, segment, weights))).unwrap_or(Least {
             segment: 0,
             angle: 0.0,
             value: f64::NAN,
             lift: Lift::constant(f64::NAN),
         })
     }
+
+    /// Place where the same combination is least on a segment before an angle. The distances from that angle halve down to its rounding.
+    pub fn least_before(&self, segment: usize, angle: f64, weights: [f64; 4]) -> Option<Least> {
+        let of = &self.segments()[segment];
+        let angles = halved(angle - of.start).map(|before| angle - before);
+        lowest(places_among(segment, &of.law, weights, angles))
+    }
+}
+
+/// Distances from 0 that halve, from the largest down to where an angle is rounded.
+pub(crate) fn halved(largest: f64) -> impl Iterator<Item = f64> {
+    const HALVINGS: i32 = 48;
+    (0..HALVINGS).map(move |halving| largest * 0.5_f64.powi(halving))
 }
 
 impl Segment {
     /// Its lowest and its highest lift, m.
     pub fn extremes(&self) -> [f64; 2] {
-        [of_segment(0, self, [1.0, 0.0, 0.0, 0.0]).value, -of_segment(0, self, UPSIDE_DOWN).value]
+        let least = |weights| lowest(places(0, self, weights)).map_or(f64::NAN, |place| place.value);
+        [least([1.0, 0.0, 0.0, 0.0]), -least(UPSIDE_DOWN)]
     }
 }
 
-fn of_segment(index: usize, segment: &Segment, weights: [f64; 4]) -> Least {
-    let places = places(index, segment, weights);
-    places.into_iter().reduce(|least, found| if found.value < least.value { found } else { least }).unwrap_or_else(
-        || {
-            let lift = segment.law.lift(segment.start);
-            Least { segment: index, angle: segment.start, value: f64::NAN, lift }
-        },
-    )
+/// The first of those places that are lowest.
+fn lowest(places: impl IntoIterator<Item = Least>) -> Option<Least> {
+    places.into_iter().reduce(|least, found| if found.value < least.value { found } else { least })
 }
 
 /// The ends of a segment, the lower first, and the places between them that are lower than their neighbours.
 fn places(index: usize, segment: &Segment, weights: [f64; 4]) -> Vec<Least> {
     let Segment { start, end, law, .. } = segment;
-    let at = |angle: f64| {
-        let lift = law.lift(angle);
-        let value =
-            weights[0] * lift.value + weights[1] * lift.slope + weights[2] * lift.curvature + weights[3] * lift.third;
-        Least { segment: index, angle, value, lift }
-    };
     let waves = match law {
         Law::Harmonics(harmonics) => harmonics.highest(),
         _ => 0,
     };
     let part = (end - start) / TAU;
     let count = (OF_A_TURN * part).ceil().max(OF_A_SEGMENT as f64).max(part * (OF_A_SEGMENT * waves) as f64) as usize;
-    let angle = |place: usize| start + (end - start) * place as f64 / count as f64;
-    let falls = |angle: f64| {
-        let Lift { slope, curvature, third, .. } = law.lift(angle);
+    places_among(index, law, weights, (0..=count).map(|place| start + (end - start) * place as f64 / count as f64))
+}
+
+/// The first and the last of some rising angles, the lower first, and the places between them where the derivative changes from falling to
+/// rising.
+fn places_among(index: usize, law: &Law, weights: [f64; 4], angles: impl Iterator<Item = f64>) -> Vec<Least> {
+    let at = |angle: f64| {
+        let lift = law.lift(angle);
         let fourth = if weights[3] == 0.0 { 0.0 } else { law.jet(angle).0[4] };
-        weights[0] * slope + weights[1] * curvature + weights[2] * third + weights[3] * fourth < 0.0
+        let of = |terms: [f64; 4]| {
+            weights[0] * terms[0] + weights[1] * terms[1] + weights[2] * terms[2] + weights[3] * terms[3]
+        };
+        let falls = of([lift.slope, lift.curvature, lift.third, fourth]) < 0.0;
+        let value = of([lift.value, lift.slope, lift.curvature, lift.third]);
+        (Least { segment: index, angle, value, lift }, falls)
     };
-    let looked: Vec<Least> = (0..=count).map(|place| at(angle(place))).collect();
-    let mut all = if looked[count].value < looked[0].value {
-        vec![looked[count], looked[0]]
-    } else {
-        vec![looked[0], looked[count]]
-    };
-    // The least may be between either end and its neighbour: the turn of a cosine begins and ends anywhere, and a damper pulls right
-    // before a dwell.
-    for place in 0..=count {
-        let [before, here, after] = [looked[place.saturating_sub(1)], looked[place], looked[count.min(place + 1)]];
-        if here.value <= before.value && here.value <= after.value && falls(before.angle) && !falls(after.angle) {
-            let ends = [before.angle, after.angle];
-            let Ok(found) = halve::<std::convert::Infallible>(ends, Width::Halvings(60), |angle| Ok(!falls(angle)));
-            let found = at(found[1]);
-            all.push(if found.value < here.value { found } else { here });
-        }
+    let looked: Vec<(Least, bool)> = angles.map(at).collect();
+    let (Some((first, _)), Some((last, _))) = (looked.first(), looked.last()) else { return Vec::new() };
+    let mut all = if last.value < first.value { vec![*last, *first] } else { vec![*first, *last] };
+    for ends in looked.windows(2) {
+        let [(before, true), (after, false)] = ends else { continue };
+        let ends = [before.angle, after.angle];
+        let Ok(found) = halve::<std::convert::Infallible>(ends, Width::Halvings(60), |angle| Ok(!at(angle).1));
+        all.extend(lowest([at(found[1]).0, *before, *after]));
     }
     all
 }

@@ -41,6 +41,7 @@ pub use jet::Jet;
 pub use law::Law;
 pub use lift::Lift;
 pub use minimum::Least;
+pub(crate) use minimum::halved;
 pub use polynomial::Polynomial;
 pub use sinusoid::Sinusoid;
 

@@ -325,6 +325,35 @@ fn the_force_next_to_separation_is_no_rounding_in_any_unit() {
     }
 }
 
+/// A damper may pull over a range of angles that is narrower than any sampled step, on both sides of which the force is larger: the bottom
+/// of (1 + cos)^2 and of an eccentric. There the force changes its sign at the speed of separation.
+#[test]
+fn the_force_is_told_where_a_damper_pulls_between_two_sampled_angles() {
+    let [mass, stiffness] = [0.5, 1000.0];
+    let bottoms = [("2.0, 0.5", 1.5, 3.0), ("1.0", 1.0, 2.0)];
+    for (amplitudes, offset, critical) in bottoms {
+        for phase in [0.0, 25.1] {
+            let phases: Vec<f64> = (1..=amplitudes.split(',').count()).map(|wave| wave as f64 * phase).collect();
+            let cam = format!(
+                "law = \"harmonic\"\noffset = {offset:?}\namplitudes = [{amplitudes}]\nphases_deg = {phases:?}\n"
+            );
+            for above in [1.05_f64, 1.5, 10.0] {
+                for preload in [1e-2, 1e-4, 1e-6] {
+                    let damping = (above * critical * stiffness * mass).sqrt();
+                    let lines = format!("preload = {preload:?}\ngravity = 0.0");
+                    let model = machine([mass, damping, stiffness], &lines, &cam);
+                    let cam = Cam::new(&model).unwrap();
+                    let contact = Contact::new(&cam, model.follower);
+                    let at = contact.separation().speed();
+                    let [below, here, beyond] = [-1e-2, 0.0, 1e-2].map(|off| contact.least(at * (1.0 + off)).value);
+                    let told = format!("{amplitudes} {phase} {above} {preload}: {at} rpm, {below} {here} {beyond}");
+                    assert!(below > 0.0 && here == 0.0 && beyond < 0.0, "{told}");
+                }
+            }
+        }
+    }
+}
+
 /// A lowest lift is flat up to the first order whose term exceeds rounding where the lift does. `4 cos x - (1 + e/4) cos 2x` has the derivatives e
 /// and -12 of orders 2 and 4 at its minimum: the parabola counts while `e/2` exceeds the root of 12/24 of the rounding, and a lift that is
 /// constant but for rounding has none.

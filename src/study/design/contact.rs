@@ -14,7 +14,7 @@
 
 use std::f64::consts::TAU;
 
-use crate::cam::{Bounds, Cam, Least, Lift, Segment};
+use crate::cam::{Bounds, Cam, Least, Lift, Segment, halved};
 use crate::model::Follower;
 use crate::simulate::angular_velocity;
 use crate::tolerance;
@@ -29,6 +29,18 @@ pub struct Contact<'a> {
     pub follower: Follower,
     /// Cam angle at which the cam's velocity jumps, rad.
     kink: Option<f64>,
+    /// Lowest lifts before which a damper may hold the follower back; none without a damper.
+    bottoms: Vec<Bottom>,
+}
+
+/// A place of the lowest lift that the follower reaches falling.
+#[derive(Clone, Copy, Debug)]
+struct Bottom {
+    segment: usize,
+    /// Cam angle, rad.
+    angle: f64,
+    /// Order n of `c - c_min = a x^n + ...` at a distance x before it.
+    order: usize,
 }
 
 /// Where the follower first leaves the cam as the speed rises from 0.
@@ -84,7 +96,12 @@ impl<'a> Contact<'a> {
     /// Places a follower on a cam.
     pub fn new(cam: &'a Cam, follower: Follower) -> Self {
         let kink = cam.corners().iter().copied().find(|corner| corner.jump_order == 1).map(|corner| corner.angle);
-        Self { cam, follower, kink }
+        let mut contact = Self { cam, follower, kink, bottoms: Vec::new() };
+        // Without a damper only inertia can hold the follower back, and not on the way to rest.
+        if follower.damping > 0.0 {
+            contact.bottoms = contact.bottoms();
+        }
+        contact
     }
 
     /// Force of spring and weight at lift 0.
@@ -108,7 +125,12 @@ impl<'a> Contact<'a> {
     /// Least N at a speed, rpm, and its place. A value within rounding is returned as 0.
     pub fn least(&self, rpm: f64) -> Least {
         let omega = angular_velocity(rpm);
-        let least = self.cam.least(self.weights(omega));
+        let weights = self.weights(omega);
+        // A damper may hold the follower back between two neighbouring angles of those that are looked at all round.
+        let before =
+            self.bottoms.iter().filter_map(|bottom| self.cam.least_before(bottom.segment, bottom.angle, weights));
+        let least =
+            before.fold(self.cam.least(weights), |least, found| if found.value < least.value { found } else { least });
         let value = least.value + self.constant();
         let [still, linear, square] = self.roundings(least.segment);
         let is_rounding = value.abs() <= still + omega * (linear + omega * square);
@@ -159,17 +181,20 @@ impl<'a> Contact<'a> {
         from + if beyond.is_finite() { first_root([still.max(0.0), linear, square]).min(beyond) } else { beyond }
     }
 
-    /// Places of the lowest lift that the follower reaches falling: the segment, the angle, rad, and the order n of
-    /// `c - c_min = a x^n + ...` at a distance x before it.
-    fn bottoms(&self) -> impl Iterator<Item = (usize, f64, usize)> {
+    /// Places of the lowest lift that the follower reaches falling.
+    fn bottoms(&self) -> Vec<Bottom> {
         let lowest = self.cam.lowest();
-        let is_lowest = move |(index, segment): &(usize, &Segment)| {
+        let is_lowest = |(index, segment): &(usize, &Segment)| {
             segment.law.lift(segment.end).value - lowest.value <= self.of_lift(*index)[0]
         };
         let ends =
             self.cam.segments().iter().enumerate().filter(is_lowest).map(|(index, segment)| (index, segment.end));
         let places = ends.chain([(lowest.segment, lowest.angle)]);
-        places.filter_map(|(index, angle)| Some((index, angle, self.cam.segments()[index].order_at(angle)?)))
+        let bottom = |(segment, angle): (usize, f64)| {
+            let order = self.cam.segments()[segment].order_at(angle)?;
+            Some(Bottom { segment, angle, order })
+        };
+        places.filter_map(bottom).collect()
     }
 
     /// Cam angle, rad, at which a follower without load at the lowest lift is held back at any speed, however slow; none if it is not.
@@ -191,22 +216,19 @@ impl<'a> Contact<'a> {
             let n = order as f64;
             n * damping * damping > 4.0 * (n - 1.0) * stiffness * mass
         };
-        self.bottoms().find(|(.., order)| holds(*order)).map(|(_, angle, _)| angle)
+        self.bottoms.iter().find(|bottom| holds(bottom.order)).map(|bottom| bottom.angle)
     }
 
     /// Least angular velocity beyond which N is negative on the way down to a lowest lift, and its place. With a damper and a small load,
     /// the place may be nearer to the lowest lift than any sampled angle.
-    fn first_before(&self, segment: usize, bottom: f64, from: f64) -> (f64, Least) {
-        /// Halvings of the way, down to the rounding of an angle.
-        const HALVINGS: i32 = 48;
+    fn first_before(&self, &Bottom { segment, angle: bottom, .. }: &Bottom, from: f64) -> (f64, Least) {
         /// Thirds that are dropped from the bracket of the best halving.
         const THIRDS: usize = 60;
         let way = bottom - self.cam.segments()[segment].start;
         let at = |before: f64| self.place(segment, bottom - before);
         let mut best = (f64::INFINITY, at(way));
         let mut reach = way;
-        for halving in 0..HALVINGS {
-            let before = way * 0.5_f64.powi(halving);
+        for before in halved(way) {
             let found = at(before);
             let root = self.root(segment, &found.lift, from);
             if root < best.0 {
@@ -278,9 +300,7 @@ impl<'a> Contact<'a> {
             self.place(self.cam.segment_at(angle), angle)
         });
         let looked = ends.chain(between).map(|place| (self.root(place.segment, &place.lift, from), place));
-        // Without a damper only inertia can hold the follower back, and not on the way to rest.
-        let damped = (self.follower.damping > 0.0).then(|| self.bottoms()).into_iter().flatten();
-        let before = damped.map(|(segment, bottom, _)| self.first_before(segment, bottom, from));
+        let before = self.bottoms.iter().map(|bottom| self.first_before(bottom, from));
         let first = looked.chain(before).min_by(|one, other| one.0.total_cmp(&other.0));
         let Some((mut omega, mut at)) = first.filter(|(omega, _)| omega.is_finite()) else { return Separation::Never };
         for _ in 0..STEPS {
