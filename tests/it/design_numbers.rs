@@ -131,15 +131,14 @@ fn the_force_on_an_eccentric_is_a_mean_and_a_sine() {
                 epsilon = 1e-6
             );
             assert_eq!(contact.separation().speed(), at);
-            // Each term of N by a rounding, over dN/dw, and a rounding of the speed itself; of the mean, what is kept and what is not.
+            // Each term of N by its rounding and by that of the angle, over dN/dw, and a rounding of the speed itself.
             let (cos, sin) = (cam_angle.cos(), cam_angle.sin());
-            let kept = (own.mass * GRAVITY - own.stiffness * own.rest).abs();
-            let size = HEIGHT * (own.mass * omega * omega * cos.abs() + own.damping * omega * sin.abs())
-                + own.stiffness * (0.1 + HEIGHT * cos)
-                + kept;
+            let kept = own.mass * GRAVITY + own.stiffness * own.rest.abs();
+            let of_motion = (own.mass * omega * omega + own.damping * omega + own.stiffness) * HEIGHT * (1.0 + TAU);
+            let size = of_motion + own.stiffness * 0.1 + kept;
             let rate = HEIGHT * (2.0 * own.mass * omega * cos + own.damping * sin);
-            let expected = tolerance::ULP.value * (rpm(size / rate.abs()) + rpm(omega));
-            assert_relative_eq!(error, expected, max_relative = 1e-6);
+            let expected = tolerance::RANGE_ROUNDING.value * rpm(size / rate.abs()) + tolerance::ULP.value * rpm(omega);
+            assert_relative_eq!(error, expected, max_relative = 1e-3);
         }
     }
 }

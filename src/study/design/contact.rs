@@ -132,8 +132,7 @@ impl<'a> Contact<'a> {
         let least =
             before.fold(self.cam.least(weights), |least, found| if found.value < least.value { found } else { least });
         let value = least.value + self.constant();
-        let [still, linear, square] = self.roundings(least.segment);
-        let is_rounding = value.abs() <= still + omega * (linear + omega * square);
+        let is_rounding = value.abs() <= self.rounding(least.segment, omega);
         Least { value: if is_rounding { 0.0 } else { value }, ..least }
     }
 
@@ -157,6 +156,12 @@ impl<'a> Contact<'a> {
         let [lift, slope, curvature] = self.of_lift(segment);
         let kept = stiffness * rest_position.abs() + mass * gravity.abs();
         [stiffness * lift + tolerance::RANGE_ROUNDING.value * kept, damping * slope, mass * curvature]
+    }
+
+    /// Rounding error of N on a segment at an angular velocity, rad/s.
+    fn rounding(&self, segment: usize, omega: f64) -> f64 {
+        let [still, linear, square] = self.roundings(segment);
+        still + omega * (linear + omega * square)
     }
 
     /// Largest N at a speed, rpm.
@@ -315,13 +320,9 @@ impl<'a> Contact<'a> {
             }
             omega = next;
         }
-        let [of_lift, of_slope, of_curvature, _] = self.weights(omega).map(f64::abs);
-        let Lift { value, slope, curvature, .. } = at.lift;
-        let size =
-            of_curvature * curvature.abs() + of_slope * slope.abs() + of_lift * value.abs() + self.constant().abs();
         // dN/dw = 2 m w c'' + b c'
-        let rate = 2.0 * self.follower.mass * omega * curvature + self.follower.damping * slope;
-        let error = rpm(tolerance::ULP.value * size / rate.abs()) + tolerance::ULP.value * rpm(omega);
+        let rate = 2.0 * self.follower.mass * omega * at.lift.curvature + self.follower.damping * at.lift.slope;
+        let error = rpm(self.rounding(at.segment, omega) / rate.abs()) + tolerance::ULP.value * rpm(omega);
         Separation::At { rpm: rpm(omega), error, cam_angle: at.angle, angle_error: None }
     }
 }
