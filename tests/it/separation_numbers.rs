@@ -354,6 +354,30 @@ fn the_force_is_told_where_a_damper_pulls_between_two_sampled_angles() {
     }
 }
 
+/// At a bottom that is flat but for rounding, derivatives of no size at all hold back a follower that nothing presses on: it leaves where one
+/// does that next to nothing presses on.
+#[test]
+fn derivatives_that_are_rounding_hold_back_nothing() {
+    let [mass, stiffness] = [0.5, 1000.0];
+    for (amplitudes, offset, critical) in [("2.0, 0.5", 1.5, 3.0), ("3.75, 1.5, 0.25", 2.5, 10.0 / 3.0)] {
+        for step in 0..60 {
+            let phase = 6.1 * f64::from(step);
+            let phases: Vec<f64> = (1..=amplitudes.split(',').count()).map(|wave| wave as f64 * phase).collect();
+            let cam = format!(
+                "law = \"harmonic\"\noffset = {offset:?}\namplitudes = [{amplitudes}]\nphases_deg = {phases:?}\n"
+            );
+            for part in [0.01_f64, 0.5] {
+                let damping = (part * critical * stiffness * mass).sqrt();
+                let at = |preload: f64| {
+                    let lines = format!("preload = {preload:?}\ngravity = 0.0");
+                    separation(&machine([mass, damping, stiffness], &lines, &cam)).speed()
+                };
+                assert_relative_eq!(at(0.0), at(1e-6), max_relative = 1e-6);
+            }
+        }
+    }
+}
+
 /// A lowest lift is flat up to the first order whose term exceeds rounding where the lift does. `4 cos x - (1 + e/4) cos 2x` has the derivatives e
 /// and -12 of orders 2 and 4 at its minimum: the parabola counts while `e/2` exceeds the root of 12/24 of the rounding, and a lift that is
 /// constant but for rounding has none.

@@ -179,10 +179,9 @@ impl<'a> Contact<'a> {
         let Follower { mass, damping, .. } = self.follower;
         let about = |[still, linear, square]: [f64; 3]| [still, linear + 2.0 * square * from, square];
         let [still, linear, square] = about([self.force(lift, from), damping * lift.slope, mass * lift.curvature]);
-        let [of_still, of_linear, of_square] = about(self.roundings(segment));
-        let of_still = of_still + from * (of_linear - from * of_square);
+        let [_, of_linear, of_square] = about(self.roundings(segment));
         // A root that rounding may have made does not count.
-        let beyond = first_root([still + of_still, linear + of_linear, square + of_square]);
+        let beyond = first_root([still + self.rounding(segment, from), linear + of_linear, square + of_square]);
         from + if beyond.is_finite() { first_root([still.max(0.0), linear, square]).min(beyond) } else { beyond }
     }
 
