@@ -88,7 +88,7 @@ claims: ## write docs/claims.md: what the paper states, and what was found
 
 pictures: ## draw the pictures of docs/ again
 	$(CARGO) build $(RELEASE) --quiet
-	target/release/corner-impact continue models/osorio-2008.toml --from-rpm 700 --parameter rpm=660:750 --out docs/branches.svg
+	target/release/corner-impact continue models/osorio-2008.toml --rpm 700 --over rpm=660:750 --out docs/branches.svg
 	target/release/corner-impact basins models/osorio-2008.toml --rpm 678 --strobe 5.762717154756 --grid 200x150 \
 	    --position 0.4:6 --velocity=-60:60 --out docs/basins-678.png
 	target/release/corner-impact chaos models/osorio-2008.toml --rpm 670 --out docs/chaos-670.svg

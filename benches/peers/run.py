@@ -108,7 +108,7 @@ def simulate(task, start):
     with tempfile.TemporaryDirectory() as folder:
         events, walls = Path(folder) / "events.csv", []
         for output in [["--events", str(events)], *[[]] * task["repeats"]]:
-            command = common + length + output + ["--summary"]
+            command = common + length + output + ["--json"]
             try:
                 done = subprocess.run(command, capture_output=True, text=True, timeout=PROCESS_SECONDS)
             except subprocess.TimeoutExpired:

@@ -45,6 +45,17 @@ pub struct EventPoint {
     pub special: Option<Special>,
 }
 
+document!(EventPoint as it {
+    speed_rpm: it.rpm,
+    value: it.value,
+    cam_angle_rad: it.cam_angle,
+    revolutions: it.revolutions,
+    impacts: it.impacts,
+    happens: it.happening.map(|happening| happening.to_string()),
+    multipliers: it.multipliers,
+    special: it.special,
+});
+
 impl EventPoint {
     fn new(point: &BranchPoint, kind: SpecialKind) -> Self {
         let BranchPoint { rpm, value, orbit, held, special } = point;
@@ -78,6 +89,13 @@ pub struct EventCurve {
     /// Reasons for its start and its end.
     pub ends: [End; 2],
 }
+
+document!(EventCurve as it {
+    event: it.kind.bifurcation().map(|event| event.to_string()),
+    begins: it.ends[0].words(),
+    ends: it.ends[1].words(),
+    points: it.points,
+});
 
 impl EventCurve {
     /// The events along a curve whose event is `kind` at the model's own number.

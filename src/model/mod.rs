@@ -27,7 +27,7 @@ use serde::{Deserialize, Serialize};
 pub use complaint::ModelError;
 use fields::Fields;
 pub use nearest::nearest;
-pub use numeral::Numeral;
+pub use numeral::{Numeral, finite, parted};
 pub use profile::CORNER_ROUNDING;
 pub(crate) use profile::{
     ArcsProfile, MOST_COEFFICIENTS, MotionSegment, PolynomialSegment, ProgramProfile, RectifiedSineProfile,

@@ -1,4 +1,7 @@
-//! A number with the text that it was written in: proofs use the decimal, everything else the nearest double.
+//! A number with the text that it was written in: proofs use the decimal, everything else the nearest double. Numbers as people type them
+//! may have a unit, or a decimal comma.
+
+use crate::untrusted;
 
 /// A number as the user wrote it.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,5 +30,38 @@ impl From<f64> for Numeral {
     fn from(number: f64) -> Self {
         let digits = number.to_string();
         Self { number, text: if digits.len() > 24 { format!("{number:e}") } else { digits } }
+    }
+}
+
+/// Splits `900N` or `900 N` into the number, which is the longest part from the start that reads as one, and what follows it.
+#[doc(hidden)]
+pub fn parted(text: &str) -> (&str, &str) {
+    let text = text.trim();
+    let ends = text.char_indices().map(|(at, letter)| at + letter.len_utf8());
+    let reads = |end: &usize| text[..*end].parse::<f64>().is_ok_and(f64::is_finite);
+    let end = ends.filter(reads).last().unwrap_or(0);
+    (&text[..end], text[end..].trim())
+}
+
+/// Reads a finite number, which `unit` may follow; an empty unit is that of a pure number. A decimal comma is refused with both readings.
+#[doc(hidden)]
+pub fn finite(text: &str, unit: &str) -> Result<f64, String> {
+    let (written, follows) = parted(text);
+    let shown = untrusted::value(text.trim());
+    let Ok(number) = written.parse::<f64>() else {
+        let is_number = text.trim().parse::<f64>().is_ok();
+        return Err(if is_number { "must be a finite number".into() } else { format!("\"{shown}\" is not a number") });
+    };
+    let comma = |separator| parted(&text.replacen(',', separator, 1)).0.parse::<f64>().unwrap_or(number);
+    match follows {
+        "" => Ok(number),
+        follows if follows == unit => Ok(number),
+        follows if follows.starts_with(',') => Err(format!(
+            "\"{shown}\" may be {} or {}: write a decimal point, and nothing between thousands",
+            comma("."),
+            comma("")
+        )),
+        _ if unit.is_empty() => Err(format!("\"{shown}\" is not a number: write {number} alone")),
+        _ => Err(format!("\"{shown}\" is not in {unit}: write {number}, or {number} {unit}, if that is meant")),
     }
 }

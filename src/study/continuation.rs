@@ -18,6 +18,14 @@ pub struct Branches<'a> {
     pub branches: Vec<Branch>,
 }
 
+document!(Branches<'_> as it {
+    schema: "corner-impact/continue/1",
+    model: it.model.name,
+    speed_rpm: it.from_rpm,
+    parameter: it.following.parameter.name(),
+    branches: it.branches,
+});
+
 /// Follows the orbits that a search finds at `from_rpm`. Then it follows the orbits that branch off with twice the period or cross them,
 /// and repeats this `doublings` times.
 pub fn branches<'a>(

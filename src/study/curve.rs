@@ -12,6 +12,10 @@ use crate::progress::Watch;
 /// The curves through the events of a model.
 #[derive(Clone, Debug)]
 pub struct Curves {
+    /// The model's name.
+    pub model: String,
+    /// Name of the number that changes.
+    pub parameter: String,
     /// The model's own value of the number that changes. Events were looked for there, or at the nearest value of the range.
     pub own: f64,
     /// Nonsmooth folds of the cam with sharp corners, if the changing number is the angle over which corners are rounded: the speed, rpm,
@@ -21,6 +25,14 @@ pub struct Curves {
     /// kinds.
     pub curves: Vec<EventCurve>,
 }
+
+document!(Curves as it {
+    schema: "corner-impact/curve/1",
+    model: it.model,
+    parameter: it.parameter,
+    own_value: it.own,
+    curves: it.curves,
+});
 
 /// Follows the events that a search finds between two speeds, rpm.
 pub fn curves(
@@ -32,6 +44,7 @@ pub fn curves(
     watch: &dyn Watch,
 ) -> Result<Curves, StudyError> {
     let Parameter::Field(path) = &following.parameter else { return Err(StudyError::SpeedFollowed) };
+    let name = model.name.clone();
     let [low, high] = following.range;
     let own = following.parameter.value(model, rpm[0]).unwrap_or(f64::NAN);
     // A cam may have no event at its own value, as a sharp corner has no fold. Then events are looked for at the nearest value of the
@@ -62,7 +75,7 @@ pub fn curves(
     }
     let sharp =
         if path == CORNER_ROUNDING { sharp(&model.with_number(path, 0.0)?, rpm, wanted, watch)? } else { Vec::new() };
-    Ok(Curves { own, sharp, curves })
+    Ok(Curves { model: name, parameter: path.clone(), own, sharp, curves })
 }
 
 /// Finds the nonsmooth folds between two speeds, rpm, of a cam with sharp corners.

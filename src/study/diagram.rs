@@ -55,7 +55,7 @@ pub fn loads(
     found?.into_iter().enumerate().map(one).collect()
 }
 
-/// Summary of a sweep: the document of `diagram --summary`.
+/// Summary of a sweep: the document of `diagram --json`.
 #[derive(Clone, Debug, Serialize)]
 pub struct Swept {
     schema: &'static str,

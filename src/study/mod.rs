@@ -86,7 +86,7 @@ pub enum StudyError {
     #[error("{file}: no periodic orbit of {revolutions} revolution(s) found at {rpm} rpm to follow")]
     NothingToFollow { file: String, revolutions: u64, rpm: f64 },
     /// The speed was to be followed, but a curve of events gives their speed.
-    #[error("--parameter must be a number of the model: the speed is what the events are at")]
+    #[error("--over must be a number of the model: the speed is what the events are at")]
     SpeedFollowed,
     /// A run up to a number of impacts met no further impact.
     #[error(
@@ -98,7 +98,7 @@ pub enum StudyError {
     #[error(transparent)]
     Over(#[from] survey::OverError),
     /// A range of speeds was given together with another number that varies.
-    #[error("--rpm {low}:{high} and --over are two ranges: with --over, --rpm is one speed")]
+    #[error("--rpm {low}:{high} and --over are two ranges: with --over, --rpm is one speed; `chart` goes over two")]
     RangeAndNumber {
         /// Lowest speed, rpm.
         low: f64,

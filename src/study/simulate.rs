@@ -11,7 +11,8 @@ use crate::known::Evidence;
 use crate::model::Model;
 use crate::orbit::long_run::{Budget, Kind, LongRun};
 use crate::progress::{Clock, Watch};
-use crate::simulate::{Event, EventKind, Goal, Machine, Motion};
+use crate::simulate::{Event, EventKind, Goal, Machine, Motion, Unobserved};
+use crate::study::design::loads::Loads;
 use crate::study::survey::{Judged, Start, long_run};
 
 /// A machine at a speed, and the initial state of a motion.
@@ -58,7 +59,7 @@ pub enum Sight<'a> {
     State(&'a Motion),
 }
 
-/// Summary of a run: the document of `simulate --summary`.
+/// Summary of a run: the document of `simulate --json`.
 #[derive(Clone, Debug, Serialize)]
 pub struct Run {
     schema: &'static str,
@@ -82,9 +83,56 @@ pub struct Run {
     pub long_run: Option<Lyapunov>,
     /// Seconds that the simulation took, without reading, writing and drawing.
     pub wall_s: f64,
+    /// Loads over the last revolutions.
+    #[serde(skip_serializing_if = "Option::is_none", flatten)]
+    pub loads: Option<RunLoads>,
     /// Motion at the start of the revolutions that are drawn.
     #[serde(skip)]
     pub before_drawn: Motion,
+    /// Motion at the end.
+    #[serde(skip)]
+    pub last: Motion,
+    /// A motion of the run before its last revolutions, of which the loads are told.
+    #[serde(skip)]
+    before_last: Motion,
+}
+
+/// Loads over the last revolutions of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct RunLoads {
+    /// Relative speed of follower and cam at the hardest impact, m/s; 0 without impacts.
+    pub hardest_impact_m_s: f64,
+    /// Largest gap, m.
+    pub largest_gap_m: f64,
+    /// Share of the time that the follower is off the cam.
+    pub off_cam_share: f64,
+    /// Number of these revolutions.
+    pub loads_over_revolutions: u64,
+}
+
+impl RunLoads {
+    /// Most revolutions that are recorded.
+    const MOST: u64 = 100;
+
+    /// Loads of the last whole revolutions of a run; none if it is shorter than one.
+    pub fn of(model: &Model, machine: &Machine, run: &Run) -> Result<Option<Self>, StudyError> {
+        let loads_over_revolutions = Self::MOST.min(run.revolutions as u64);
+        if loads_over_revolutions == 0 {
+            return Ok(None);
+        }
+        let mut motion = run.before_last;
+        let start = Goal { revolution: run.last.revolution - loads_over_revolutions, cam_angle: run.last.cam_angle };
+        let _ = machine.advance(&mut motion, start, &mut Unobserved)?;
+        let recorded = Loads::recorded(model, machine, motion, loads_over_revolutions)?;
+        let most = |of: fn(&Loads) -> f64| recorded.iter().map(of).fold(0.0, f64::max);
+        let off_cam: f64 = recorded.iter().map(|loads| loads.off_cam).sum();
+        Ok(Some(Self {
+            hardest_impact_m_s: most(|loads| loads.impact_speed),
+            largest_gap_m: most(|loads| loads.gap),
+            off_cam_share: off_cam / loads_over_revolutions as f64,
+            loads_over_revolutions,
+        }))
+    }
 }
 
 /// Long-run motion of a run, and the growth of a small deviation in it.
@@ -169,6 +217,7 @@ impl Simulation {
         };
         let (end, drawn) = (first.after(revolutions), first.after(revolutions.saturating_sub(wanted.drawn)));
         let (mut motion, mut before_drawn, mut wall, mut last_impact) = (*first, *first, Duration::ZERO, 0);
+        let mut marks = [*first; 2];
         let ([mut impacts, mut sticks, mut releases], mut kept) = ([0; 3], Vec::new());
         let told = |impacts: u64, revolution: u64, cam_angle: f64| {
             let turned = revolution as f64 + (cam_angle - first.cam_angle) / TAU;
@@ -176,6 +225,10 @@ impl Simulation {
             watch.at("", (done * PARTS) as u64, (total as f64 * PARTS) as u64);
         };
         while impacts < most {
+            // The first of two marks so far apart is before the last revolutions wherever the run ends.
+            if motion.revolution >= marks[1].revolution + RunLoads::MOST {
+                marks = [marks[1], motion];
+            }
             let mut goal = earlier(end, motion.after(STRIDE));
             goal = wanted.strobe.map_or(goal, |angle| earlier(goal, motion.next(angle)));
             if (motion.revolution, motion.cam_angle) < (drawn.revolution, drawn.cam_angle) {
@@ -243,8 +296,11 @@ impl Simulation {
                 contact: motion.contact,
             },
             long_run,
+            loads: None,
             wall_s: wall.as_secs_f64(),
             before_drawn,
+            last: motion,
+            before_last: marks[0],
         })
     }
 }

@@ -55,8 +55,8 @@ fn numbers_that_cannot_be() {
     let diagram = |rest: &str| format!("diagram MODEL --out out.csv {rest}");
     for rpm in ["0", "-0", "-1", "nan", "NaN", "inf", "-inf", "1e999", "fast", ""] {
         place.refuses(&simulate(&format!("--rpm={rpm}")), &["--rpm <R>"]);
-        place.refuses(&diagram(&format!("--rpm={rpm}:700:3")), &["--rpm <LO:HI:N|R>"]);
-        place.refuses(&diagram(&format!("--rpm=600:{rpm}:3")), &["--rpm <LO:HI:N|R>"]);
+        place.refuses(&diagram(&format!("--rpm={rpm}:700:3")), &["--rpm <LO:HI[:N]|R>"]);
+        place.refuses(&diagram(&format!("--rpm=600:{rpm}:3")), &["--rpm <LO:HI[:N]|R>"]);
     }
     place.refuses(&simulate("--rpm 0"), &["above 0"]);
     place.refuses(&simulate("--rpm -5"), &["'-5'", "above 0"]);
@@ -64,7 +64,6 @@ fn numbers_that_cannot_be() {
     place.refuses(&simulate("--rpm 1.1e9"), &["1e9 or less"]);
     place.refuses(&simulate(""), &["--rpm <R>", "not provided"]);
     for (range, says) in [
-        ("600:700", "LO:HI:N"),
         ("600:700:3:4", "can only be log"),
         ("700:600:3", "the highest speed, 600, is below the lowest, 700"),
         ("600:700:0", "1 speed or more"),
@@ -74,7 +73,7 @@ fn numbers_that_cannot_be() {
         ("600:700:20000000", "10000000 speeds or fewer"),
         ("600:700:99999999999999999999999", "not a number of speeds"),
     ] {
-        place.refuses(&diagram(&format!("--rpm {range}")), &["--rpm <LO:HI:N|R>", range, says]);
+        place.refuses(&diagram(&format!("--rpm {range}")), &["--rpm <LO:HI[:N]|R>", range, says]);
     }
     for count in ["-1", "1.5", "nan", "many", "99999999999999999999999"] {
         for name in ["--revolutions", "--impacts", "--drawn"] {
@@ -130,7 +129,7 @@ fn arguments_that_exclude_or_need_each_other() {
     let place = Place::new();
     for (line, says) in [
         ("--impacts 5 --revolutions 5", ["--revolutions <N>", "--impacts <N>"]),
-        ("--impacts 5 --trace x.svg", ["--trace <FILE>", "--impacts <N>"]),
+        ("--impacts 5 --trace x.svg", ["--out <FILE>", "--impacts <N>"]),
         ("--impacts 5 --phase-plane x.svg", ["--phase-plane <FILE>", "--impacts <N>"]),
         ("--state 1,0 --relative-velocity 1", ["--state <Q,V>", "--relative-velocity <U>"]),
         ("--strobe 1", ["--strobe-out <FILE>", "not provided"]),
@@ -138,15 +137,15 @@ fn arguments_that_exclude_or_need_each_other() {
         ("--events - --summary", ["standard output", "files"]),
         ("--strobe 1 --strobe-out - --events -", ["standard output", "files"]),
         ("--strobe 1 --strobe-out - --summary", ["standard output", "files"]),
-        ("--trace x.eps", ["--trace <FILE>", ".svg, .png or .pdf"]),
+        ("--trace x.eps", ["--out <FILE>", ".svg, .png or .pdf"]),
         ("--phase-plane x", ["--phase-plane <FILE>", ".svg, .png or .pdf"]),
         ("--phase-plane -", ["--phase-plane <FILE>", ".svg, .png or .pdf"]),
         ("--phase-plane x.csv", ["--phase-plane <FILE>", ".svg, .png or .pdf"]),
-        ("--drawn 5", ["--drawn", "--trace and --phase-plane"]),
+        ("--drawn 5", ["--drawn", "--out and --phase-plane"]),
     ] {
         place.refuses(&format!("simulate MODEL --rpm 700 {line}"), &says);
     }
-    place.refuses("diagram MODEL --rpm 600:700:3 --out - --summary", &["--out -", "--summary", "standard output"]);
+    place.refuses("diagram MODEL --rpm 600:700:3 --out - --summary", &["--out -", "--json", "standard output"]);
     for (line, says) in [
         ("--strobe 1 --out out.csv", ["--strobe", "--section strobe"]),
         ("--lyapunov", ["--out <FILE>", "not provided"]),
@@ -162,8 +161,8 @@ fn arguments_that_exclude_or_need_each_other() {
     // Of two files of one name the second alone would be left.
     for [(one, first), (other, second)] in [
         [("--events", "out.csv"), ("--strobe 1 --strobe-out", "out.csv")],
-        [("--trace", "out.svg"), ("--phase-plane", "./out.svg")],
-        [("--events", "out.svg"), ("--trace", "out.svg")],
+        [("--out", "out.svg"), ("--phase-plane", "./out.svg")],
+        [("--events", "out.svg"), ("--out", "out.svg")],
         [("--strobe 1 --strobe-out", "./out.png"), ("--phase-plane", "out.png")],
     ] {
         let says = [one, other].map(|option| option.trim_start_matches("--strobe 1 "));
@@ -187,11 +186,11 @@ fn looks_that_cannot_be() {
         ("--font nosuch.ttf", ["nosuch.ttf", "cannot be read as a font"]),
         ("--font NoSuchLetters", ["NoSuchLetters", "is installed"]),
         ("--theme dark", ["--theme <THEME>", "screen, print"]),
-        ("--x 2:1", ["--x <LO:HI>", "not below"]),
-        ("--x 1:inf", ["--x <LO:HI>", "finite"]),
-        ("--x 5:6", ["--x from 5 to 6", "shows nothing"]),
-        ("--y 7:8", ["--y from 7 to 8", "shows nothing"]),
-        ("--y 0.4:0.4001", ["--y from 0.4", "less than a hundredth"]),
+        ("--x 2:1", ["--x-range <LO:HI>", "not below"]),
+        ("--x 1:inf", ["--x-range <LO:HI>", "finite"]),
+        ("--x 5:6", ["--x-range from 5 to 6", "shows nothing"]),
+        ("--y 7:8", ["--y-range from 7 to 8", "shows nothing"]),
+        ("--y 0.4:0.4001", ["--y-range from 0.4", "less than a hundredth"]),
     ] {
         place.refuses(&format!("simulate MODEL --rpm 183 --revolutions 3 --trace out.svg {look}"), &says);
     }

@@ -136,7 +136,11 @@ fn impossible_machines_are_points_of_their_own() {
     assert_eq!(summary["classes"].as_array().unwrap().last().unwrap()["class"], "failed");
     assert!(summary["cpu_s"].as_f64().is_some() && summary["wall_s"].as_f64().is_some());
     let page = prints(&[&["chart", MODEL], &sides[..]].concat());
-    assert!(page.contains("the first that failed: models/osorio-2008.toml: cam.nose_end_deg = 200: must be"), "{page}");
+    assert!(
+        common::in_one_line(&page)
+            .contains("the first that failed: models/osorio-2008.toml: cam.nose_end_deg = 200: must be"),
+        "{page}"
+    );
 }
 
 /// The numbers of a variable in the four blocks of a store of 120 x 110 points, row by row.
@@ -291,7 +295,8 @@ fn what_is_no_chart_is_refused_with_a_reason() {
     assert!(refused(&["--x", "mass=1:2:2", "--y", y]).contains("neither axis is rpm"));
     assert!(refused(&["--x", x, "--y", y, "--rpm", "700"]).contains("no axis is rpm"));
     assert!(refused(&["--x", x, "--y", "restitutoin=0:1:2"]).contains("did you mean restitution?"));
-    assert!(refused(&["--x", "rpm=600:760", "--y", y]).contains("must be LO:HI:N"));
+    assert!(refused(&["--over", x]).contains("a chart has two axes"));
+    assert!(refused(&["--over", x, "--over", y, "--over", "mass=1:2"]).contains("given 3 times"));
     assert!(refused(&["--x", "rpm=760:600:3", "--y", y]).contains("is below the lowest"));
     assert!(refused(&["--x", "rpm=-5:600:3", "--y", y]).contains("above 0"));
     assert!(refused(&["--x", "rpm=600:760:100000", "--y", "mass=1:2:100000"]).contains("1 to 100000000"));

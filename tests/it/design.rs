@@ -273,7 +273,11 @@ fn what_cannot_be_answered_is_told() {
         (vec!["--need", "force below 3 N to 200 rpm"], "a force is no need"),
         (vec!["--need", "no separation to -3 rpm"], "is not a number above 0"),
         (vec!["--limit", "noise=3"], "must be one of: impact-speed, gap, energy, force"),
-        (vec!["--against", "length=1:2:3", "--need", "no separation to 200 rpm"], "must be one of: preload"),
+        (
+            vec!["--against", "length=1:2:3", "--need", "no separation to 200 rpm"],
+            "length is not a number of this model",
+        ),
+        (vec!["--over", "mass=-1:2:3", "--need", "no separation to 200 rpm"], "must be above 0"),
     ] {
         let output = corner_impact([vec!["design", "models/preloaded.toml"], words].concat());
         assert_eq!(output.status.code(), Some(2));

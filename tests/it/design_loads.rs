@@ -69,7 +69,7 @@ fn loads_are_told_in_units_of_the_model() {
         (["m/s", "m", "J", "N"].map(String::from), ["mm/s", "mm", "J", "kN"].map(String::from))
     );
     assert_eq!(Load::ALL.map(|load| load.of_si(&si, 2.0)), [2.0; 4]);
-    assert_eq!(Load::ALL.map(|load| load.of_si(&mm, 2.0)), [2000.0, 2000.0, 2.0, 2.0]);
+    assert_eq!(Load::ALL.map(|load| load.of_si(&mm, 2.0)), [2000.0, 2000.0, 2.0, 0.002]);
     // A force is kg mm/s^2 inside.
     assert_eq!(Load::ALL.map(|load| load.inside(&mm, 2.0)), [2.0, 2.0, 2.0, 2e6]);
     assert_eq!(Load::ALL.map(|load| load.inside(&si, 2.0)), [2.0; 4]);
@@ -106,7 +106,11 @@ fn needs_are_read_in_any_unit() {
     assert!(refused("energy below 3 mm to 3 rpm").ends_with("energy is in one of: J, mJ"));
     assert!(refused("noise below 3 mm to 3 rpm").starts_with("must be like"));
     assert!(refused("below 3 mm to 3 rpm").starts_with("must be like"));
-    assert!(in_si(Load::Force, "N").unwrap_err().ends_with("force is in the model's unit, which is not written"));
+    assert_eq!("no separation to 4500rpm".parse(), Ok(Need { what: What::NoSeparation, rpm: 4500.0 }));
+    assert!(refused("no separation to 1904,8 rpm").contains("may be 1904.8 or 19048"));
+    for (unit, one) in [("N", 1.0), ("kN", 1e3), ("lbf", 0.45359237 * 9.80665)] {
+        assert_relative_eq!(in_si(Load::Force, unit).unwrap(), one, max_relative = 1e-15);
+    }
 }
 
 /// What a load is to stay below is in the SI's unit, and the machine that is changed as told keeps it at the speed and passes it without.

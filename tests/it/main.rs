@@ -73,6 +73,7 @@ mod measured;
 mod memory;
 mod mirrored;
 mod model_file;
+mod one_language;
 mod one_rule;
 mod orbit_closed_forms;
 mod orbit_commands;

@@ -259,9 +259,9 @@ fn titles_and_ends_of_axes_are_as_asked() {
     let text = svg::render(&figure, &look).unwrap();
     assert_eq!(text.matches("A parabola").count(), 1, "for a reader aloud alone");
     for (x, y, says) in [
-        (Some([200.0, 300.0]), None, "--x from 200 to 300 shows nothing"),
-        (Some([20.0, 20.5]), None, "--x from 20 to 20.5 is less than a hundredth"),
-        (None, Some([2e4, 3e4]), "--y from 20000 to 30000 shows nothing"),
+        (Some([200.0, 300.0]), None, "--x-range from 200 to 300 shows nothing"),
+        (Some([20.0, 20.5]), None, "--x-range from 20 to 20.5 is less than a hundredth"),
+        (None, Some([2e4, 3e4]), "--y-range from 20000 to 30000 shows nothing"),
     ] {
         let why = Look { x, y, ..column() }.framed(parabola()).unwrap_err().to_string();
         assert!(why.contains(says), "{why}");
@@ -361,7 +361,9 @@ fn names_of_attractors_have_room() {
 fn every_picture_takes_the_options() {
     for command in ["cam", "simulate", "diagram", "chart", "figure", "speeds", "basins", "continue", "curve", "chaos"] {
         let help = common::text(common::corner_impact([command, "--help"]).stdout);
-        for option in ["--width <", "--size <", "--font <", "--no-title", "--theme <", "--x <", "--y <", ".pdf"] {
+        for option in
+            ["--width <", "--size <", "--font <", "--no-title", "--theme <", "--x-range <", "--y-range <", ".pdf"]
+        {
             assert!(help.contains(option), "{command}: no {option}");
         }
     }

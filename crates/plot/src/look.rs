@@ -107,10 +107,10 @@ impl Look {
     pub fn framed(&self, mut figure: Figure) -> Result<Figure, LookError> {
         if let Some(shown) = self.x {
             let drawn = extent(figure.panels.iter().flat_map(|panel| reach(panel, 0)));
-            figure.x.range = Some(within("--x", shown, drawn)?);
+            figure.x.range = Some(within("--x-range", shown, drawn)?);
         }
         if let Some((shown, panel)) = self.y.zip(figure.panels.first_mut()) {
-            panel.y.range = Some(within("--y", shown, extent(reach(panel, 1)))?);
+            panel.y.range = Some(within("--y-range", shown, extent(reach(panel, 1)))?);
         }
         Ok(figure)
     }

@@ -89,6 +89,19 @@ pub struct BranchPoint {
     pub special: Option<Special>,
 }
 
+document!(BranchPoint as it {
+    speed_rpm: it.rpm,
+    value: it.value,
+    special: it.special,
+    orbit: it.orbit,
+});
+
+document!(Special as it {
+    kind: it.kind.name(),
+    bracket: it.bracket,
+    residual: it.residual,
+});
+
 /// The event that a curve follows, at one of its points.
 #[derive(Clone, Debug, PartialEq)]
 #[doc(hidden)]
@@ -200,6 +213,12 @@ pub struct Branch {
     /// Why it starts and ends where it does.
     pub ends: [End; 2],
 }
+
+document!(Branch as it {
+    begins: it.ends[0].words(),
+    ends: it.ends[1].words(),
+    points: it.points,
+});
 
 impl Branch {
     /// The branch through `orbit`, an orbit of `model` at `rpm`.

@@ -211,7 +211,7 @@ pub(in crate::paper) fn chaos_for_good(context: &Context<'_>) -> Decision {
     }
     let evidence = format!(
         "in {REVOLUTIONS} revolutions from x*, and in as many from rest on the cam, the follower comes to rest on the cam at {} of the speeds \
-         {} rpm (`corner-impact simulate --rpm 673.2344 --revolutions {REVOLUTIONS} --summary` counts sticks and releases); at {RESTING} \
+         {} rpm (`corner-impact simulate --rpm 673.2344 --revolutions {REVOLUTIONS} --json` counts sticks and releases); at {RESTING} \
          rpm, nine below the corner impact, it comes to rest on the cam's top once in some thousand revolutions and is released at Q', \
          each time in the same state: {repeats}; there what follows can only repeat. That a motion is chaotic for good no run shows",
         resting.len(),

@@ -16,7 +16,7 @@ pub enum Begun {
     Given(Vec<State>),
 }
 
-/// The motions that starts end on at each of several values: the document of `basins --over --summary`.
+/// The motions that starts end on at each of several values: the document of `basins --over --json`.
 #[derive(Clone, Debug)]
 pub struct BasinsOver {
     /// The model's name.

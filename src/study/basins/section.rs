@@ -10,7 +10,7 @@ use crate::orbit::{Course, PeriodicOrbit, Search, search};
 use crate::section::StroboscopicMap;
 use crate::study::{StudyError, machine};
 
-/// The basins of a grid of starts: the document of `basins --summary`.
+/// The basins of a grid of starts: the document of `basins --json`.
 #[derive(Clone, Debug, Serialize)]
 pub struct Summary {
     schema: &'static str,

@@ -37,11 +37,13 @@ impl Load {
         if self == Self::Force { units.force.inside(value) } else { value }
     }
 
-    /// Converts a value from SI to the displayed unit; energy and force are unchanged.
+    /// Converts a value from SI to the displayed unit; that of energy is the SI's.
     pub fn of_si(self, units: &Units, value: f64) -> f64 {
         match self {
             Self::ImpactSpeed | Self::Gap => units.length.told(value),
-            Self::Energy | Self::Force => value,
+            Self::Energy => value,
+            // Internally kg times the unit of length over s^2.
+            Self::Force => units.force.told(units.length.told(value)),
         }
     }
 

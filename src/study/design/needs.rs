@@ -10,7 +10,7 @@ use super::contact::Contact;
 use super::loads::{Load, Loads};
 use crate::bracket::{Width, halve};
 use crate::known::Evidence;
-use crate::model::{Follower, Model};
+use crate::model::{Follower, Model, finite, parted};
 use crate::simulate::{Machine, SimulateError, angular_velocity};
 use crate::tolerance;
 use crate::untrusted;
@@ -42,7 +42,7 @@ impl Need {
 }
 
 /// Units in which a load may be written, each with its size in SI units.
-const UNITS: [(Load, &str, f64); 11] = [
+const UNITS: [(Load, &str, f64); 14] = [
     (Load::ImpactSpeed, "m/s", 1.0),
     (Load::ImpactSpeed, "mm/s", 1e-3),
     (Load::ImpactSpeed, "in/s", 0.0254),
@@ -54,6 +54,9 @@ const UNITS: [(Load, &str, f64); 11] = [
     (Load::Gap, "ft", 0.3048),
     (Load::Energy, "J", 1.0),
     (Load::Energy, "mJ", 1e-3),
+    (Load::Force, "N", 1.0),
+    (Load::Force, "kN", 1e3),
+    (Load::Force, "lbf", 4.4482216152605),
 ];
 
 /// Parses `no separation to 4500 rpm`, `impact speed below 0.5 m/s to 6000 rpm`.
@@ -62,11 +65,18 @@ impl FromStr for Need {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let like = "must be like \"no separation to 4500 rpm\" or \"impact speed below 0.5 m/s to 6000 rpm\" (also gap, energy)";
-        let number = |word: &str| {
-            let number = word.parse().ok().filter(|number: &f64| number.is_finite() && *number > 0.0);
-            number.ok_or_else(|| format!("\"{}\" is not a number above 0; {like}", untrusted::value(word)))
+        let number = |word: &str| match finite(word, "") {
+            Ok(number) if number > 0.0 => Ok(number),
+            Err(why) if word.contains(',') => Err(why),
+            _ => Err(format!("\"{}\" is not a number above 0; {like}", untrusted::value(word))),
         };
-        let words: Vec<&str> = text.split_whitespace().collect();
+        // "4500rpm" is two words.
+        let apart = |word| {
+            let (number, unit) = parted(word);
+            if number.is_empty() || unit.starts_with(',') { [word, ""] } else { [number, unit] }
+        };
+        let words = text.split_whitespace().flat_map(apart).filter(|word| !word.is_empty());
+        let words: Vec<&str> = words.collect();
         match words.as_slice() {
             ["no", "separation", "to", rpm, "rpm"] => Ok(Self { what: What::NoSeparation, rpm: number(rpm)? }),
             [name @ .., "below", value, unit, "to", rpm, "rpm"] => {
@@ -90,10 +100,7 @@ pub fn in_si(load: Load, unit: &str) -> Result<f64, String> {
     found.ok_or_else(|| {
         let names: Vec<&str> = of_load().map(|(_, name, _)| *name).collect();
         let (unit, name) = (untrusted::value(unit), load.to_string().replace('-', " "));
-        match names.as_slice() {
-            [] => format!("\"{unit}\": {name} is in the model's unit, which is not written"),
-            names => format!("\"{unit}\": {name} is in one of: {}", names.join(", ")),
-        }
+        format!("\"{unit}\": {name} is in one of: {}", names.join(", "))
     })
 }
 

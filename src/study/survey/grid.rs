@@ -33,7 +33,7 @@ pub enum SurveyError {
     #[error(transparent)]
     Over(#[from] OverError),
     /// Both axes are the same number.
-    #[error("--x and --y are both {0}: a chart is over two numbers")]
+    #[error("both axes are {0}: a chart is over two numbers")]
     OneNumber(String),
     /// No points, or more than [`Survey::MOST`].
     #[error("{points} points: there must be 1 to {}", Survey::MOST)]

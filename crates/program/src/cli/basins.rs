@@ -3,20 +3,22 @@
 use std::path::PathBuf;
 use std::time::Instant;
 
+use super::numbers::{NamedSpan, Speeds, angle, axis, range, speeds};
 use super::over::over;
-use super::start::{BudgetArguments, Rpm, angle, axis, cam_angle, range, rpm_or_speeds, state};
-use super::threads::threads;
-use super::{CommandError, Exit, ModelArgument, Session, picture, picture::Target, progress::watched};
+use super::start::{BudgetArguments, cam_angle, state};
+use super::{AnswerArguments, CommandError, Exit, ModelArgument, Session, picture, picture::Target, progress::watched};
 use crate::figures::{basins_figure, shares_figure};
 use crate::show::csv;
 use corner_impact::flight::State;
 use corner_impact::model::Model;
 use corner_impact::orbit::long_run::Budget;
 use corner_impact::study::basins::{BasinSection, BasinsOver, Begun, Grid, SectionStarts, States, Summary};
-use corner_impact::study::survey::{Over, Values};
+use corner_impact::study::survey::Over;
 use corner_impact::untrusted;
 
-/// Runs a grid of starts at one speed and says what each ends on, as a table or a picture; or over a number, and says how many end on what.
+/// Tells what each start of a grid ends on.
+///
+/// The result is a table or a picture at one speed, or over a number how many starts end on what.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n\
     \x20 corner-impact basins --rpm 678 --strobe 5.76 --grid 60x40\n\
@@ -27,13 +29,13 @@ use corner_impact::untrusted;
 pub(super) struct Arguments {
     #[command(flatten)]
     model: ModelArgument,
-    /// Speed of the cam, rpm; or lowest speed, highest speed, and how many.
-    #[arg(long, value_name = "R|LO:HI:N", value_parser = rpm_or_speeds, required_unless_present = "over", allow_hyphen_values = true)]
-    rpm: Option<Rpm>,
+    /// Speed of the cam, rpm; or lowest speed, highest speed, and how many [default: 9].
+    #[arg(long, value_name = "R|LO:HI[:N]", value_parser = speeds, required_unless_present = "over", allow_hyphen_values = true)]
+    rpm: Option<Speeds>,
     /// Tell the share of each motion at values of a number of the model, at the speed of --rpm: from where to where, at how many, and whether these are
     /// spaced by their logarithm.
-    #[arg(long, value_name = "NAME=LO:HI:N[:log]", value_parser = axis, allow_hyphen_values = true)]
-    over: Option<(String, Values)>,
+    #[arg(long, value_name = "NAME=LO:HI[:N][:log]", value_parser = axis, allow_hyphen_values = true)]
+    over: Option<NamedSpan>,
     /// Cells along the positions and along the velocities.
     #[arg(long, value_name = "NxM", value_parser = cells, required_unless_present = "state")]
     grid: Option<Cells>,
@@ -54,18 +56,17 @@ pub(super) struct Arguments {
     /// An older name of --transient.
     #[arg(long, value_name = "N", hide = true, conflicts_with = "transient", value_parser = clap::value_parser!(u64).range(1..=Budget::MOST))]
     revolutions: Option<u64>,
-    /// Threads [default: RAYON_NUM_THREADS, or one for each core].
-    #[arg(long, value_name = "N", value_parser = threads, allow_hyphen_values = true)]
-    threads: Option<usize>,
     /// A table (.csv, or - for standard output) or a picture (.svg, .png, .pdf).
     #[arg(long, value_name = "FILE", value_parser = picture::picture_or_table, group = "picture")]
     out: Option<PathBuf>,
     #[command(flatten)]
     picture: picture::PictureArguments,
-    /// Print a summary as one JSON document.
-    #[arg(long)]
-    summary: bool,
+    #[command(flatten)]
+    answer: AnswerArguments,
 }
+
+/// Values of an axis of which no number is written.
+const VALUES: usize = 9;
 
 /// How many along the positions and along the velocities.
 #[derive(Clone, Copy)]
@@ -87,18 +88,18 @@ fn cells(text: &str) -> Result<Cells, String> {
 }
 
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
-    let to_standard = picture::out_is_standard(arguments.out.as_ref(), arguments.summary)?;
+    let to_standard = picture::out_is_standard(arguments.out.as_ref(), arguments.answer.json)?;
     let model = arguments.model.read_as_drawn(session)?;
     let angle = cam_angle("--strobe", arguments.strobe, session);
     let rpm = match (arguments.rpm, &arguments.over) {
-        (Some(Rpm::One(rpm)), None) => rpm,
+        (Some(Speeds::One(rpm)), None) => rpm,
         _ => return shares(arguments, &model, angle, session),
     };
     let section = BasinSection::new(&model, rpm, angle)?;
     let grid =
         arguments.grid.map(|Cells(cells)| section.grid(cells, arguments.position, arguments.velocity)).transpose()?;
     let budget = arguments.budget()?;
-    let (clock, threads) = (Instant::now(), arguments.threads);
+    let (clock, threads) = (Instant::now(), session.threads);
     let begun = match grid {
         Some(grid) => SectionStarts::Grid(grid),
         None => SectionStarts::Given(States { cam_angle: section.map.cam_angle, states: arguments.state.clone() }),
@@ -120,7 +121,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     }
     let summary = Summary::new(&model, rpm, basins, wall_s);
     if !to_standard {
-        session.answer(&summary, arguments.summary)?;
+        session.answer(&summary, &arguments.answer)?;
     } else if let Some(why) = &summary.basins.failure {
         session.failures("starts", [summary.basins.failed, summary.basins.begun.count()], why);
     }
@@ -141,14 +142,14 @@ fn shares(
     cam_angle: f64,
     session: &mut Session<'_>,
 ) -> Result<Exit, CommandError> {
-    let (rpm, axis) = over((&arguments.model, model), arguments.rpm, arguments.over.as_ref())?;
+    let (rpm, axis) = over((&arguments.model, model), arguments.rpm, arguments.over.as_ref(), VALUES)?;
     let over = Over::new(model, axis.parameter.clone(), rpm)?;
     let begun = match arguments.grid {
         Some(Cells(cells)) => Begun::Grid(cells, [arguments.position, arguments.velocity]),
         None => Begun::Given(arguments.state.clone()),
     };
-    let (budget, threads) = (arguments.budget()?, arguments.threads);
-    let to_standard = picture::out_is_standard(arguments.out.as_ref(), arguments.summary)?;
+    let (budget, threads) = (arguments.budget()?, session.threads);
+    let to_standard = picture::out_is_standard(arguments.out.as_ref(), arguments.answer.json)?;
     let found = watched("", |watch| BasinsOver::new(&over, &axis, (cam_angle, &begun), budget, threads, watch));
     if let Some(path) = &arguments.out {
         let table = || csv::basins_over(&found);
@@ -157,7 +158,7 @@ fn shares(
     }
     let failed = || found.at.iter().filter_map(|at| Some((at, at.failure()?)));
     if !to_standard {
-        session.answer(&found, arguments.summary)?;
+        session.answer(&found, &arguments.answer)?;
     } else if let Some((at, why)) = failed().next() {
         let first = found.over.words(at.place.across());
         session.failures("values", [failed().count(), found.at.len()], &format!("{first}: {why}"));

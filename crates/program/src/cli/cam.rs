@@ -2,12 +2,12 @@
 
 use std::path::PathBuf;
 
-use super::{CommandError, Exit, ModelArgument, Session, picture, progress::Progress};
+use super::{AnswerArguments, CommandError, Exit, ModelArgument, Session, picture, progress::Progress};
 use crate::figures::cam_figure;
 use corner_impact::cam::{Cam, Jet};
 use corner_impact::study::cam::CamSheet;
 
-/// Lists the segments of a model's cam and the corners where they meet.
+/// Lists a cam's segments and the corners where they meet.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n\
     \x20 corner-impact cam\n\
@@ -17,9 +17,8 @@ use corner_impact::study::cam::CamSheet;
 pub(super) struct Arguments {
     #[command(flatten)]
     model: ModelArgument,
-    /// Print one JSON document instead of the page.
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    answer: AnswerArguments,
     /// Leave out corners where only a derivative above this order jumps.
     #[arg(long, value_name = "N", default_value_t = Jet::HIGHEST_JUMP)]
     order: usize,
@@ -31,7 +30,7 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
-    let model = arguments.model.read(session)?;
+    let model = arguments.model.read_cam(session)?;
     let progress = Progress::spinner("laying out the cam");
     let cam = Cam::new(&model)?;
     if let Some(path) = &arguments.out {
@@ -42,5 +41,5 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     }
     drop(progress);
     let sheet = CamSheet::new(&model, &cam, arguments.order)?;
-    session.answer(&sheet, arguments.json)
+    session.answer(&sheet, &arguments.answer)
 }

@@ -1,12 +1,14 @@
 //! `corner-impact certify [MODEL]`.
 
-use super::start::rpm_or_range;
-use super::{CommandError, Exit, ModelArgument, Session, progress::watched};
+use super::numbers::rpm_or_range;
+use super::{AnswerArguments, CommandError, Exit, ModelArgument, Session, progress::watched};
 use corner_impact::model::Study;
 use corner_impact::orbit::Search;
 use corner_impact::study::certify::{BITS, CertifyError, certify, proved_counts, proved_orbits, proved_resting};
 
-/// Proves that corner impacts exist, with their maps and verdicts, in ball arithmetic.
+/// Proves that corner impacts exist, in ball arithmetic.
+///
+/// Their maps and verdicts are proved, too.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n\
     \x20 corner-impact certify\n\
@@ -35,9 +37,8 @@ pub(super) struct Arguments {
     /// Prove what becomes of a follower that rests on the cam at the speed of --rpm, with twice as many bits as often as it takes.
     #[arg(long, requires = "rpm", conflicts_with_all = ["revolutions", "orbits"])]
     resting: bool,
-    /// Print one JSON document instead of the page.
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    answer: AnswerArguments,
 }
 
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
@@ -45,10 +46,10 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     if let (true, Some([low, high])) = (arguments.orbits, arguments.rpm) {
         if low < high {
             let found = watched("proving orbits", |_| proved_counts(&model, [low, high], arguments.bits))?;
-            session.answer(&found, arguments.json)?;
+            session.answer(&found, &arguments.answer)?;
         } else {
             let found = watched("proving orbits", |_| proved_orbits(&model, low, arguments.bits))?;
-            session.answer(&found, arguments.json)?;
+            session.answer(&found, &arguments.answer)?;
         }
         return Ok(Exit::Agrees);
     }
@@ -57,7 +58,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
             return Err(CommandError::Words("--resting is for one speed: --rpm R".into()));
         }
         let found = watched("proving motions that rest", |_| proved_resting(&model, low, arguments.bits))?;
-        session.answer(&found, arguments.json)?;
+        session.answer(&found, &arguments.answer)?;
         return Ok(Exit::Agrees);
     }
     let range = match arguments.rpm {
@@ -70,6 +71,6 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
             error => error.into(),
         })
     })?;
-    session.answer(&found, arguments.json)?;
+    session.answer(&found, &arguments.answer)?;
     Ok(if found.agrees() { Exit::Agrees } else { Exit::Disagrees })
 }

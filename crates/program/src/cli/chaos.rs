@@ -2,13 +2,13 @@
 
 use std::path::PathBuf;
 
+use super::numbers::rpm_or_range;
 use super::picture::{Canvas, PictureArguments, picture};
-use super::start::rpm_or_range;
-use super::{CommandError, Exit, ModelArgument, Session, progress::watched};
+use super::{AnswerArguments, CommandError, Exit, ModelArgument, Session, progress::watched};
 use crate::figures::chaos_figure;
 use corner_impact::study::chaos::{chaos, portrait};
 
-/// Looks for a set of chaotic motions and proves that it exists, at one speed or at every speed of a range.
+/// Proves that chaotic motions exist, at one speed or a range.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n\
     \x20 corner-impact chaos --rpm 670 --out chaos.svg\n\
@@ -25,9 +25,8 @@ pub(super) struct Arguments {
     /// Look for regions that trap as well, at the lowest speed: impacts that are followed by impacts among them for ever.
     #[arg(long)]
     trapping: bool,
-    /// Print one JSON document instead of the page.
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    answer: AnswerArguments,
     /// A picture (.svg, .png, .pdf) of the h-set, its strips and where they are carried, at the lowest speed with a proof.
     #[arg(long, value_name = "FILE", value_parser = picture, group = "picture")]
     out: Option<PathBuf>,
@@ -49,5 +48,5 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         (Some(_), None) => session.note("nothing is proved, so nothing is drawn"),
         (None, _) => {}
     }
-    session.answer(&found, arguments.json)
+    session.answer(&found, &arguments.answer)
 }

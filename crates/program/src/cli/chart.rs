@@ -1,13 +1,13 @@
-//! `corner-impact chart [MODEL] --x NAME=LO:HI:N --y NAME=LO:HI:N`.
+//! `corner-impact chart [MODEL] --over NAME=LO:HI --over NAME=LO:HI`.
 
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 
 use super::curve::{LONGEST_STEP, MOST_POINTS};
-use super::start::{BudgetArguments, StartArguments, axis, rpm};
-use super::threads::threads;
-use super::{CommandError, Exit, ModelArgument, Session, picture, picture::Target, progress::watched};
+use super::numbers::{NamedSpan, axis, rpm};
+use super::start::{BudgetArguments, StartArguments};
+use super::{AnswerArguments, CommandError, Exit, ModelArgument, Session, picture, picture::Target, progress::watched};
 use crate::figures::{Coloured, chart_figure};
 use crate::show::csv;
 use corner_impact::orbit::branch::{Bifurcation, Following};
@@ -16,27 +16,34 @@ use corner_impact::orbit::{Parameter, Search};
 use corner_impact::study::chart::Chart;
 use corner_impact::study::chart::store::{SIDES, Shard, Store, status};
 use corner_impact::study::curve::curves;
-use corner_impact::study::survey::{Axis, Values};
+use corner_impact::study::survey::Axis;
 
-/// Charts over two numbers what a run comes to: its period, its growth, how hard it hits.
+/// Charts over two numbers what a run comes to.
+///
+/// That is its period, its growth and how hard it hits.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n\
-    \x20 corner-impact chart --x rpm=600:760:80 --y restitution=0.5:0.95:60 --out periods.svg\n\
-    \x20 corner-impact chart --x mass=1:2:30 --y stiffness=1000:2000:30 --rpm 700 --show impact-speed --out speeds.png\n\
-    \x20 corner-impact chart --x rpm=600:760:80 --y restitution=0.5:0.95:60 --with-curves --out curves.svg\n\
-    \x20 corner-impact chart models/damped-light.toml --x rpm=600:760:40 --y damping=0:20:20 --out chart.csv\n\
+    \x20 corner-impact chart --over rpm=600:760:80 --over restitution=0.5:0.95:60 --out periods.svg\n\
+    \x20 corner-impact chart --over mass=1:2:30 --over stiffness=1000:2000:30 --rpm 700 --show impact-speed --out speeds.png\n\
+    \x20 corner-impact chart --over rpm=600:760:80 --over restitution=0.5:0.95:60 --with-curves --out curves.svg\n\
+    \x20 corner-impact chart models/damped-light.toml --over rpm=600:760:40 --over damping=0:20:20 --out chart.csv\n\
     \n\
     Exit code: 0 done, 2 bad model file, usage or file.")]
 pub(super) struct Arguments {
     #[command(flatten)]
     model: ModelArgument,
-    /// The horizontal axis: rpm or a number of the model, its lowest and highest value, and how many; with :log spaced by their logarithm.
-    #[arg(long, value_name = "NAME=LO:HI:N[:log]", value_parser = axis, required_unless_present = "status")]
-    x: Option<(String, Values)>,
-    /// The vertical axis, in the same form.
-    #[arg(long, value_name = "NAME=LO:HI:N[:log]", value_parser = axis, required_unless_present = "status")]
-    y: Option<(String, Values)>,
-    /// Speed of the cam, rpm, where neither --x nor --y is it.
+    /// An axis, first the horizontal one, then the vertical: rpm or a number of the model, its lowest and highest value, and how many [default: 60];
+    /// with :log spaced by their logarithm.
+    #[arg(long, value_name = "NAME=LO:HI[:N][:log]", value_parser = axis, required_unless_present_any = ["status", "x"], conflicts_with_all = ["x", "y"],
+        allow_hyphen_values = true)]
+    over: Vec<NamedSpan>,
+    /// An older name of the first --over.
+    #[arg(long, value_name = "AXIS", hide = true, value_parser = axis, requires = "y", allow_hyphen_values = true)]
+    x: Option<NamedSpan>,
+    /// An older name of the second.
+    #[arg(long, value_name = "AXIS", hide = true, value_parser = axis, requires = "x", allow_hyphen_values = true)]
+    y: Option<NamedSpan>,
+    /// Speed of the cam, rpm, where no axis is it.
     #[arg(long, value_name = "RPM", value_parser = rpm, allow_hyphen_values = true)]
     rpm: Option<f64>,
     #[command(flatten)]
@@ -50,25 +57,24 @@ pub(super) struct Arguments {
     /// that repeat after one revolution, as `curve` follows them; one axis must be rpm.
     #[arg(long, requires = "out", conflicts_with = "status")]
     with_curves: bool,
-    /// Threads [default: RAYON_NUM_THREADS, or one for each core].
-    #[arg(long, value_name = "N", value_parser = threads, allow_hyphen_values = true)]
-    threads: Option<usize>,
     /// A table (.csv, or - for standard output), a picture (.svg, .png, .pdf), or a zarr store (.zarr): a folder of blocks of 100 x 100
     /// points, of which those that are there already are not run again.
     #[arg(long, value_name = "FILE", value_parser = out, group = "picture")]
     out: Option<PathBuf>,
     #[command(flatten)]
-    look: picture::LookArguments,
+    picture: picture::PictureArguments,
     /// Run the part I of N of a store's blocks; the others are for other processes, at the same time or later.
     #[arg(long, value_name = "I/N", value_parser = shard, requires = "out")]
     shard: Option<Shard>,
-    /// Say how much of a store is done, instead; with --summary as JSON.
-    #[arg(long, value_name = "STORE", conflicts_with_all = ["x", "y", "out"])]
+    /// Say how much of a store is done, instead; with --json as a document.
+    #[arg(long, value_name = "STORE", conflicts_with_all = ["over", "x", "y", "out"])]
     status: Option<PathBuf>,
-    /// Print a summary as one JSON document.
-    #[arg(long)]
-    summary: bool,
+    #[command(flatten)]
+    answer: AnswerArguments,
 }
+
+/// Values of an axis of which no number is written.
+const VALUES: usize = 60;
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum ShowName {
@@ -116,17 +122,21 @@ impl ShowName {
 
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
     if let Some(folder) = &arguments.status {
-        session.answer(&status(folder)?, arguments.summary)?;
+        session.answer(&status(folder)?, &arguments.answer)?;
         return Ok(Exit::Agrees);
     }
-    let to_standard = picture::out_is_standard(arguments.out.as_ref(), arguments.summary)?;
+    let to_standard = picture::out_is_standard(arguments.out.as_ref(), arguments.answer.json)?;
     let model = arguments.model.read_as_drawn(session)?;
-    let named = |(name, values): &(String, Values), option| -> Result<Axis, CommandError> {
-        Ok(Axis::new(arguments.model.varied(&model, name, option)?, values))
+    let axes: Vec<&NamedSpan> = arguments.over.iter().chain(&arguments.x).chain(&arguments.y).collect();
+    let [x, y] = axes.as_slice() else {
+        let words =
+            format!("--over is given {} times, and a chart has two axes; `speeds` and `diagram` have one", axes.len());
+        return Err(CommandError::Words(words));
     };
-    // Neither is missing where it is not the state of a store that is asked for.
-    let (Some(x), Some(y)) = (&arguments.x, &arguments.y) else { return Ok(Exit::BadInput) };
-    let (x, y) = (named(x, "--x")?, named(y, "--y")?);
+    let axis = |(name, span): &NamedSpan| -> Result<Axis, CommandError> {
+        Ok(Axis::new(arguments.model.varied(&model, name, "--over")?, &span.values(VALUES)))
+    };
+    let (x, y) = (axis(x)?, axis(y)?);
     arguments.start.doubt(session);
     let budget = arguments.budget.budget(Budget::CHART)?;
     let chart = Chart::new(&model, arguments.rpm, [x, y], arguments.start.start()?, budget)?;
@@ -134,7 +144,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     if arguments.with_curves && !drawn {
         return Err(CommandError::Words("--with-curves is for a picture: --out must end in .svg, .png or .pdf".into()));
     }
-    let threads = arguments.threads;
+    let threads = session.threads;
     let folder = arguments.out.as_deref().filter(|path| is_store(path));
     if let (Some(_), None) = (arguments.shard, folder) {
         return Err(CommandError::Words("--shard is for a store: --out must end in .zarr".into()));
@@ -142,7 +152,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     if let Some(folder) = folder {
         let store = Store::open(folder, &chart, SIDES)?;
         let filled = watched("", |watch| store.fill(arguments.shard.unwrap_or(Shard::ALL), threads, watch))?;
-        session.answer(&filled, arguments.summary)?;
+        session.answer(&filled, &arguments.answer)?;
         return Ok(Exit::Agrees);
     }
     // What is refused is so before the work, and found after it: the points are what most of the time goes into.
@@ -152,7 +162,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         None => run()?,
         Some(path) => {
             // Begun before the work: a name that cannot be is told at once.
-            let target = Target::create(path, &mut *session.out, arguments.look.look()?)?;
+            let target = Target::create(path, &mut *session.out, arguments.picture.look()?)?;
             let found = run()?;
             let model = &found.chart.model;
             let wanted = Search { revolutions: 1, impacts: None };
@@ -168,7 +178,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         }
     };
     if !to_standard {
-        session.answer(&found, arguments.summary)?;
+        session.answer(&found, &arguments.answer)?;
     } else if let Some(why) = found.failure() {
         let failed = found.points.iter().filter(|point| point.is_err()).count();
         session.failures("points", [failed, found.points.len()], why);
@@ -182,7 +192,7 @@ fn ground(chart: &Chart) -> Result<([f64; 2], Following), CommandError> {
         [speeds, other] | [other, speeds] if speeds.parameter == Parameter::Speed => (speeds.ends(), other),
         _ => {
             return Err(CommandError::Words(
-                "--with-curves follows events through speeds: --x or --y must be rpm".into(),
+                "--with-curves follows events through speeds: one axis must be rpm".into(),
             ));
         }
     };

@@ -1,6 +1,6 @@
 //! `corner-impact claims [MODEL]`.
 
-use super::{CommandError, Exit, ModelArgument, Session, progress::Progress};
+use super::{AnswerArguments, CommandError, Exit, ModelArgument, Session, progress::Progress};
 use crate::pages;
 use crate::show::{Page, json, markdown};
 use corner_impact::cam::Cam;
@@ -9,7 +9,9 @@ use corner_impact::paper::{Claims, Context};
 use corner_impact::published::Verdict;
 use corner_impact::study::verify::{External, verify_watched};
 
-/// Prints what the paper's source on arXiv states, statement by statement, with a verdict and its evidence.
+/// Prints the paper's statements, each with a verdict.
+///
+/// The statements are those of the paper's source on arXiv, with their evidence.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n\
     \x20 corner-impact claims\n\
@@ -21,9 +23,8 @@ use corner_impact::study::verify::{External, verify_watched};
 pub(super) struct Arguments {
     #[command(flatten)]
     model: ModelArgument,
-    /// Print one JSON document instead of the page.
-    #[arg(long, conflicts_with = "markdown")]
-    json: bool,
+    #[command(flatten)]
+    answer: AnswerArguments,
     /// Only statements of this verdict: holds, in-part, misprint, refuted, open, definition.
     #[arg(long, value_parser = named::<Verdict>, conflicts_with = "markdown")]
     verdict: Option<Verdict>,
@@ -52,13 +53,13 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         arguments.verdict.is_none_or(|verdict| claim.verdict == verdict)
             && arguments.known.is_none_or(|known| claim.known == known)
     });
-    let page = match (arguments.json, arguments.markdown) {
+    let page = match (arguments.answer.json, arguments.markdown) {
         (true, _) => json::render(&claims, &model.units)?,
         (_, true) => {
             let (lead, sections) = pages::claims::document(&claims)?;
             markdown::page(&lead, &sections)?
         }
-        _ => session.shown(&Page::of(session.width(), &pages::claims::terminal(&claims))?),
+        _ => session.shown(&Page::of(session.width(), arguments.answer.all, &pages::claims::terminal(&claims))?),
     };
     session.print(&page)?;
     Ok(if claims.agrees { Exit::Agrees } else { Exit::Disagrees })

@@ -2,17 +2,19 @@
 
 use std::path::PathBuf;
 
+use super::external::ExternalArguments;
 use super::model::Changes;
-use super::{CommandError, Exit, ModelArgument, Session, progress::watched};
+use super::{AnswerArguments, CommandError, Exit, ModelArgument, Session, progress::watched};
 use corner_impact::study::compare::compare;
-use corner_impact::study::verify::External;
 
-/// Tells what moved from one model to another: the verdict, then each number that changed, and by how much more than its error.
+/// Tells what moved from one model to another.
+///
+/// The verdict comes first, then each number that changed, and by how much more than its error.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n\
     \x20 corner-impact compare --set restitution=0.7\n\
-    \x20 corner-impact compare models/damped-light.toml models/damped-heavy.toml\n\
-    \x20 corner-impact compare models/osorio-2008.toml --set mass=1.3 --json\n\
+    \x20 corner-impact compare models/damped-light.toml models/damped-heavy.toml --no-external\n\
+    \x20 corner-impact compare models/osorio-2008.toml --set mass=1.3 --no-external --json\n\
     \n\
     The answer is in the units of A; the lengths of B must be in the same. A model without a corner impact is an answer, too.\n\
     Exit code: 0 done, whatever moved; 1 routes disagree about one of the two; 2 bad usage or model file.")]
@@ -26,23 +28,20 @@ pub(super) struct Arguments {
     /// Changes of the second model.
     #[command(flatten)]
     changes: Changes,
-    /// Run the routes that need Python, too.
-    #[arg(long)]
-    external: bool,
-    /// Print one JSON document instead of the page.
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    external: ExternalArguments,
+    #[command(flatten)]
+    answer: AnswerArguments,
 }
 
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
     let a = ModelArgument::of(arguments.first.as_deref(), &Changes::default()).read_as_drawn(session)?;
     let b = match &arguments.second {
         Some(file) => ModelArgument::of(Some(file), &arguments.changes).read_as_drawn(session)?,
-        None => a.changed(&arguments.changes.numbers)?,
+        None => arguments.changes.of(&a)?,
     };
     session.units = a.units.clone();
-    let external = if arguments.external { External::Run } else { External::LeftOut };
-    let found = watched("", |watch| compare(&a, &b, external, watch))?;
-    session.answer(&found, arguments.json)?;
+    let found = watched("", |watch| compare(&a, &b, arguments.external.routes(), watch))?;
+    session.answer(&found, &arguments.answer)?;
     Ok(if found.agrees() { Exit::Agrees } else { Exit::Disagrees })
 }

@@ -4,7 +4,7 @@ use clap_complete::Shell;
 
 use super::{CommandError, Exit, Session, help};
 
-/// Prints what a shell needs to complete this program's commands and options.
+/// Prints what a shell needs to complete commands and options.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n\
     \x20 corner-impact completions bash\n\

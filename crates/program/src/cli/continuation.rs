@@ -1,26 +1,28 @@
-//! `corner-impact continue [MODEL] --from-rpm R --parameter NAME=LO:HI`.
+//! `corner-impact continue [MODEL] --rpm R --over NAME=LO:HI`.
 
 use std::path::PathBuf;
 
-use super::picture::{PictureArguments, Target, picture_or_table};
-use super::start::{parameter, positive, rpm};
+use super::numbers::{followed, positive, rpm};
+use super::picture::{PictureArguments, Target, picture_or_table, table};
 use super::{CommandError, Exit, ModelArgument, Session, progress::watched};
 use crate::figures::{branches_figure, corner_marks};
 use crate::pages;
-use crate::show::csv;
+use crate::show::{csv, json};
 use corner_impact::cam::Cam;
 use corner_impact::orbit::branch::Following;
 use corner_impact::orbit::{Parameter, Search};
 use corner_impact::study::continuation::branches;
 
-/// Follows the orbits of one speed through a parameter, round folds and through corners.
+/// Follows orbits through a number, round folds and corners.
+///
+/// The orbits are those of one speed.
 #[derive(clap::Args)]
 #[command(
     name = "continue",
     after_help = "Examples:\n\
-    \x20 corner-impact continue --from-rpm 700 --parameter rpm=660:760\n\
-    \x20 corner-impact continue --from-rpm 700 --parameter restitution=0.5:0.95 --out branches.svg\n\
-    \x20 corner-impact continue --from-rpm 738 --parameter rpm=735:745 --all\n\
+    \x20 corner-impact continue --rpm 700 --over rpm=660:760\n\
+    \x20 corner-impact continue --rpm 700 --over restitution=0.5:0.95 --out branches.svg\n\
+    \x20 corner-impact continue --rpm 738 --over rpm=735:745 --all\n\
     \n\
     Prints the table; what each branch passes and where it ends goes to standard error.\n\
     Exit code: 0 done, 2 bad model file, usage or file, or nothing to follow."
@@ -29,11 +31,11 @@ pub(super) struct Arguments {
     #[command(flatten)]
     model: ModelArgument,
     /// Speed at which the orbits are looked for.
-    #[arg(long, value_name = "R", value_parser = rpm, allow_hyphen_values = true)]
-    from_rpm: f64,
+    #[arg(long, value_name = "R", value_parser = rpm, alias = "from-rpm", allow_hyphen_values = true)]
+    rpm: f64,
     /// The number to vary, with its lowest and highest value: rpm, or a number of the model file, such as restitution.
-    #[arg(long, value_name = "NAME=LO:HI", value_parser = parameter)]
-    parameter: (String, [f64; 2]),
+    #[arg(long, value_name = "NAME=LO:HI", value_parser = followed, alias = "parameter", allow_hyphen_values = true)]
+    over: (String, [f64; 2]),
     /// Turns of the cam in one period.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=Search::MOST_REVOLUTIONS))]
     revolutions: u64,
@@ -50,9 +52,12 @@ pub(super) struct Arguments {
     /// these again, so many times in all.
     #[arg(long, value_name = "DOUBLINGS", num_args = 0..=1, require_equals = true, default_value_t = 0, default_missing_value = "3", value_parser = clap::value_parser!(u32).range(0..=10))]
     all: u32,
-    /// A table (.csv, or - for standard output) or a picture (.svg, .png, .pdf).
-    #[arg(long, value_name = "FILE", default_value = "-", value_parser = picture_or_table, group = "picture")]
-    out: PathBuf,
+    /// A table (.csv, or - for standard output) or a picture (.svg, .png, .pdf) [default: -].
+    #[arg(long, value_name = "FILE", value_parser = picture_or_table, group = "picture")]
+    out: Option<PathBuf>,
+    /// Print one JSON document instead of the table.
+    #[arg(long)]
+    json: bool,
     #[command(flatten)]
     picture: PictureArguments,
     /// Values of the parameter at which a picture shows what runs settle on; 0 for none.
@@ -63,23 +68,25 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
     let model = arguments.model.read_as_drawn(session)?;
     let corners = corner_marks(&Cam::new(&model)?);
-    let (name, range) = &arguments.parameter;
+    let (name, range) = &arguments.over;
     let following = Following {
         parameter: Parameter::named(&model, name)?,
         range: *range,
         longest_step: arguments.step,
         most_points: arguments.points as usize,
     };
-    let target = Target::create(&arguments.out, &mut *session.out, arguments.picture.look()?)?;
+    let look = arguments.picture.look()?;
+    let out = table(arguments.out.as_ref(), arguments.json)?;
+    let target = out.map(|path| Target::create(path, &mut *session.out, look)).transpose()?;
     let wanted = Search { revolutions: arguments.revolutions, impacts: arguments.impacts };
-    let found = watched("", |watch| branches(&model, arguments.from_rpm, &wanted, following, arguments.all, watch))?;
+    let found = watched("", |watch| branches(&model, arguments.rpm, &wanted, following, arguments.all, watch))?;
     let name = found.following.parameter.name();
     for (index, branch) in found.branches.iter().enumerate() {
         // Nobody is left to tell where standard error is closed.
         let _ = session.err.write_all(pages::branches::branch(branch, name, index + 1).as_bytes());
     }
-    let table = || csv::branches(name, &found.branches, &model.units);
-    target.fill(&model.units, table, || {
+    let rows = || csv::branches(name, &found.branches, &model.units);
+    let drawn = || {
         let settled = watched("", |watch| found.settled(arguments.runs, watch))?;
         Ok(branches_figure(
             &found.title(),
@@ -88,6 +95,10 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
             &settled,
             &corners,
         ))
-    })?;
+    };
+    target.map(|target| target.fill(&model.units, rows, drawn)).transpose()?;
+    if arguments.json {
+        session.print(&json::render(&found, &model.units)?)?;
+    }
     Ok(Exit::Agrees)
 }

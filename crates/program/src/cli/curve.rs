@@ -1,24 +1,26 @@
-//! `corner-impact curve [MODEL] --rpm LO:HI --parameter NAME=LO:HI`.
+//! `corner-impact curve [MODEL] --rpm LO:HI --over NAME=LO:HI`.
 
 use std::path::PathBuf;
 
-use super::picture::{PictureArguments, Target, picture_or_table};
-use super::start::{parameter, positive, rpm_range};
+use super::numbers::{followed, positive, rpm_range};
+use super::picture::{PictureArguments, Target, picture_or_table, table};
 use super::{CommandError, Exit, ModelArgument, Session, progress::watched};
 use crate::figures::curve_figure;
 use crate::pages;
-use crate::show::{csv, words};
+use crate::show::{csv, json, words};
 use corner_impact::orbit::branch::{Bifurcation, Following};
 use corner_impact::orbit::{Parameter, Search};
 use corner_impact::study::curve::{Curves, curves};
 use corner_impact_plot::{extent, layout::widened};
 
-/// Follows corner impacts, folds, flips, grazes, detachment and the onset of resting through a number of the model: their speed, and where their type changes.
+/// Follows bifurcations through a number of the model.
+///
+/// These are corner impacts, folds, flips, grazes, detachment and the onset of resting: their speed, and where their type changes.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n\
-    \x20 corner-impact curve --rpm 600:760 --parameter restitution=0.5:0.95\n\
-    \x20 corner-impact curve --rpm 600:760 --parameter restitution=0.5:0.95 --out curve.svg\n\
-    \x20 corner-impact curve --rpm 600:760 --parameter restitution=0.5:0.95 --event fold --event flip\n\
+    \x20 corner-impact curve --rpm 600:760 --over restitution=0.5:0.95\n\
+    \x20 corner-impact curve --rpm 600:760 --over restitution=0.5:0.95 --out curve.svg\n\
+    \x20 corner-impact curve --rpm 600:760 --over restitution=0.5:0.95 --event fold --event flip\n\
     \n\
     Prints the table; what each curve passes and where it ends goes to standard error.\n\
     Exit code: 0 done, also where there is none, 2 bad model file, usage or file.")]
@@ -29,8 +31,8 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "LO:HI", value_parser = rpm_range, allow_hyphen_values = true)]
     rpm: [f64; 2],
     /// The number to vary, with its lowest and highest value: a number of the model file, such as restitution.
-    #[arg(long, value_name = "NAME=LO:HI", value_parser = parameter)]
-    parameter: (String, [f64; 2]),
+    #[arg(long, value_name = "NAME=LO:HI", value_parser = followed, alias = "parameter", allow_hyphen_values = true)]
+    over: (String, [f64; 2]),
     /// Which events are followed; may be repeated [default: all].
     #[arg(long = "event", value_name = "EVENT", value_parser = event)]
     events: Vec<Bifurcation>,
@@ -43,9 +45,12 @@ pub(super) struct Arguments {
     /// The longest step, of the ranges and of a radian.
     #[arg(long, value_name = "STEP", default_value_t = LONGEST_STEP, value_parser = positive)]
     step: f64,
-    /// A table (.csv, or - for standard output) or a picture (.svg, .png, .pdf).
-    #[arg(long, value_name = "FILE", default_value = "-", value_parser = picture_or_table, group = "picture")]
-    out: PathBuf,
+    /// A table (.csv, or - for standard output) or a picture (.svg, .png, .pdf) [default: -].
+    #[arg(long, value_name = "FILE", value_parser = picture_or_table, group = "picture")]
+    out: Option<PathBuf>,
+    /// Print one JSON document instead of the table.
+    #[arg(long)]
+    json: bool,
     #[command(flatten)]
     picture: PictureArguments,
 }
@@ -63,17 +68,20 @@ pub(super) const MOST_POINTS: usize = 2000;
 
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
     let model = arguments.model.read_as_drawn(session)?;
-    let (name, range) = &arguments.parameter;
+    let (name, range) = &arguments.over;
     let parameter = Parameter::named(&model, name)?;
-    let target = Target::create(&arguments.out, &mut *session.out, arguments.picture.look()?)?;
+    let look = arguments.picture.look()?;
+    let out = table(arguments.out.as_ref(), arguments.json)?;
+    let target = out.map(|path| Target::create(path, &mut *session.out, look)).transpose()?;
     let wanted = Search { revolutions: arguments.revolutions, impacts: arguments.impacts };
     let following = Following { parameter, range: *range, longest_step: arguments.step, most_points: MOST_POINTS };
     let events = if arguments.events.is_empty() { &Bifurcation::ALL } else { arguments.events.as_slice() };
-    let Curves { own, sharp, curves } =
-        watched("", |watch| curves(&model, arguments.rpm, &wanted, events, &following, watch))?;
+    let found = watched("", |watch| curves(&model, arguments.rpm, &wanted, events, &following, watch))?;
+    let Curves { own, sharp, curves, .. } = &found;
+    let own = *own;
     let (name, [low, high]) = (following.parameter.name(), arguments.rpm);
     let accounts =
-        curves.iter().zip(1..).map(|(found, index)| pages::branches::curve(found, (name, own), index, &sharp));
+        curves.iter().zip(1..).map(|(found, index)| pages::branches::curve(found, (name, own), index, sharp));
     let mut accounts: String = accounts.collect();
     if curves.is_empty() {
         let turns = wanted.revolutions;
@@ -84,13 +92,17 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     }
     // Nobody is left to tell where standard error is closed.
     let _ = session.err.write_all(accounts.as_bytes());
-    let table = || csv::curves(name, &curves, &model.units);
-    target.fill(&model.units, table, || {
+    let rows = || csv::curves(name, curves, &model.units);
+    let drawn = || {
         let title = format!("{}: events against {name}", model.name);
-        let speeds = curves.iter().flat_map(|found| &found.points).map(|point| point.rpm);
-        let found = extent(speeds);
-        let shown = if found[0] < found[1] { widened(found, 0.04) } else { arguments.rpm };
-        Ok(curve_figure(&title, (name, &model.units.of_number(name), *range, own), shown, &curves))
-    })?;
+        let speeds = curves.iter().flat_map(|curve| &curve.points).map(|point| point.rpm);
+        let ends = extent(speeds);
+        let shown = if ends[0] < ends[1] { widened(ends, 0.04) } else { arguments.rpm };
+        Ok(curve_figure(&title, (name, &model.units.of_number(name), *range, own), shown, curves))
+    };
+    target.map(|target| target.fill(&model.units, rows, drawn)).transpose()?;
+    if arguments.json {
+        session.print(&json::render(&found, &model.units)?)?;
+    }
     Ok(Exit::Agrees)
 }

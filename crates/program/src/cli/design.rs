@@ -3,17 +3,22 @@
 use std::path::PathBuf;
 
 use super::diagram::load;
+use super::numbers::{NamedSpan, Speeds, axis, speeds};
+use super::over::values;
 use super::picture::{Canvas, PictureArguments, picture};
-use super::start::{BudgetArguments, StartArguments, axis, positive, rpm_or_range};
-use super::{CommandError, Exit, ModelArgument, Session, progress::watched};
+use super::start::{BudgetArguments, StartArguments};
+use super::{AnswerArguments, CommandError, Exit, ModelArgument, Session, progress::watched};
 use crate::figures::design_figure;
+use corner_impact::model::{finite, parted};
 use corner_impact::orbit::long_run::Budget;
 use corner_impact::study::design::loads::Load;
 use corner_impact::study::design::needs::{Lever, Need, in_si};
 use corner_impact::study::design::{Asked, design};
 use corner_impact::study::survey::{Axis, Values};
 
-/// Tells up to which speed the follower stays on the cam, how hard it hits beyond, and what must be changed.
+/// Tells up to which speed the follower stays on the cam.
+///
+/// It tells as well how hard the follower hits beyond that speed, and what must be changed so that it stays.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n\
     \x20 corner-impact design\n\
@@ -26,18 +31,19 @@ use corner_impact::study::survey::{Axis, Values};
 pub(super) struct Arguments {
     #[command(flatten)]
     model: ModelArgument,
-    /// Lowest and highest speed, or one, at which the force is told round the cam [default: half to one and a half times the
+    /// One speed, a range, or speeds at which the force is told [default: half to one and a half times the
     /// speed at which the follower first leaves the cam].
-    #[arg(long, value_name = "R|LO:HI", value_parser = rpm_or_range, allow_hyphen_values = true)]
-    rpm: Option<[f64; 2]>,
-    /// A number of the model that the table goes over in place of the speed, at the one of --rpm: from where to where, at how many values, and whether
-    /// these are spaced by their logarithm.
-    #[arg(long, value_name = "NAME=LO:HI:N[:log]", value_parser = axis, allow_hyphen_values = true)]
-    over: Option<(String, Values)>,
-    /// Speeds of a range.
+    #[arg(long, value_name = "R|LO:HI[:N]", value_parser = speeds, allow_hyphen_values = true)]
+    rpm: Option<Speeds>,
+    /// A number of the model that varies: from where to where, at how many values, and whether these are spaced by their logarithm. The table of
+    /// forces and loads goes over it at the one speed of --rpm; with --need, a table has what each need takes at each value of preload,
+    /// stiffness, damping or mass.
+    #[arg(long, value_name = "NAME=LO:HI[:N][:log]", value_parser = axis, alias = "against", allow_hyphen_values = true)]
+    over: Option<NamedSpan>,
+    /// Values of a range of which no number is written.
     #[arg(long, value_name = "N", default_value_t = 21, value_parser = clap::value_parser!(u32).range(2..=10_000))]
     speeds: u32,
-    /// A need: "no separation to 4500 rpm", "impact speed below 0.5 m/s to 6000 rpm"; also gap and energy (may
+    /// What the machine is to meet: "no separation to 4500 rpm", "impact speed below 0.5 m/s to 6000 rpm"; also gap and energy (may
     /// be repeated).
     #[arg(long, value_name = "TEXT", value_parser = need)]
     need: Vec<(String, Need)>,
@@ -45,17 +51,13 @@ pub(super) struct Arguments {
     /// be repeated).
     #[arg(long, value_name = "NAME=VALUE", value_parser = limit)]
     limit: Vec<(Load, f64, Option<f64>)>,
-    /// Table of what each need takes for several values of preload, stiffness, damping or mass, in the units of the model.
-    #[arg(long, value_name = "NAME=LO:HI:N", value_parser = against, requires = "need", allow_hyphen_values = true)]
-    against: Option<(Lever, Values)>,
     #[command(flatten)]
     start: StartArguments,
     #[command(flatten)]
     budget: BudgetArguments,
-    /// Print one JSON document instead of the page.
-    #[arg(long)]
-    json: bool,
-    /// Draw forces and loads against the speed, the force round the cam at one speed, or what --against asks (.svg, .png, .pdf).
+    #[command(flatten)]
+    answer: AnswerArguments,
+    /// Draw forces and loads against the speed, the force round the cam at one speed, or what each need takes (.svg, .png, .pdf).
     #[arg(long, value_name = "FILE", value_parser = picture, group = "picture")]
     out: Option<PathBuf>,
     #[command(flatten)]
@@ -70,41 +72,51 @@ fn need(text: &str) -> Result<(String, Need), String> {
 fn limit(text: &str) -> Result<(Load, f64, Option<f64>), String> {
     let (name, value) = text.split_once('=').ok_or("must be NAME=VALUE: a load, and what it may be at most")?;
     let load = load(name.trim())?;
-    let number = value.trim_end_matches(|letter: char| letter.is_ascii_alphabetic() || letter == '/');
-    let unit = Some(value[number.len()..].trim()).filter(|unit| !unit.is_empty() && !number.trim().is_empty());
-    let number = if unit.is_some() { number } else { value };
-    Ok((load, positive(number.trim())?, unit.map(|unit| in_si(load, unit)).transpose()?))
+    let unit = Some(parted(value).1).filter(|unit| !unit.is_empty() && !unit.starts_with(','));
+    let number = finite(value, unit.unwrap_or_default())?;
+    let number = if number > 0.0 { number } else { return Err("must be a finite number above 0".into()) };
+    Ok((load, number, unit.map(|unit| in_si(load, unit)).transpose()?))
 }
 
-fn against(text: &str) -> Result<(Lever, Values), String> {
-    let (name, values) = axis(text)?;
-    let lever = Lever::ALL.into_iter().find(|lever| lever.to_string() == name);
-    let lever =
-        lever.ok_or_else(|| format!("must be one of: {}", Lever::ALL.map(|lever| lever.to_string()).join(", ")))?;
-    if values.low <= 0.0 { Err("must be above 0".into()) } else { Ok((lever, values)) }
+/// The number that a table of needs goes over, and its values.
+fn against((name, span): &NamedSpan, usual: usize) -> Result<Option<(Lever, [f64; 2], u32)>, CommandError> {
+    let own = |lever: &Lever| [lever.to_string(), format!("follower.{lever}")].contains(name);
+    let Some(lever) = Lever::ALL.into_iter().find(own) else { return Ok(None) };
+    let Values { low, high, count, .. } = span.values(usual);
+    if low <= 0.0 {
+        return Err(CommandError::Words(format!("--over {name}={low}:{high}: with --need it must be above 0")));
+    }
+    Ok(Some((lever, [low, high], values(count)?)))
 }
 
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
     let model = arguments.model.read(session)?;
     let canvas = arguments.out.as_ref().map(|path| Canvas::create(path, arguments.picture.look()?)).transpose()?;
     arguments.start.doubt(session);
-    let over = arguments.over.as_ref().map(|(name, values)| -> Result<Axis, CommandError> {
-        Ok(Axis::new(arguments.model.varied(&model, name, "--over")?, values))
+    let (rpm, count) = match arguments.rpm {
+        None => (None, None),
+        Some(Speeds::One(rpm)) => (Some([rpm; 2]), None),
+        Some(Speeds::Span(span)) => (Some(span.ends), span.count.map(values).transpose()?),
+    };
+    let usual = arguments.speeds as usize;
+    let needed = arguments.over.as_ref().filter(|_| !arguments.need.is_empty());
+    let trade = needed.map(|over| against(over, usual)).transpose()?.flatten();
+    // Without a speed, a table of needs is all that is asked for.
+    let table = arguments.over.as_ref().filter(|_| trade.is_none() || rpm.is_some());
+    let over = table.map(|(name, span)| -> Result<Axis, CommandError> {
+        Ok(Axis::new(arguments.model.varied(&model, name, "--over")?, &span.values(usual)))
     });
     let asked = Asked {
-        rpm: arguments.rpm,
+        rpm,
         over: over.transpose()?,
-        speeds: arguments.speeds,
+        speeds: count.unwrap_or(arguments.speeds),
         needs: arguments.need.clone(),
         limits: arguments
             .limit
             .iter()
             .map(|(load, value, one)| (*load, one.map_or(*value, |one| load.of_si(&model.units, value * one))))
             .collect(),
-        against: arguments
-            .against
-            .as_ref()
-            .map(|(lever, values)| (*lever, [values.low, values.high], values.count as u32)),
+        against: trade.map(|(lever, ends, count)| (lever, ends, count)),
         starts: arguments.start.given(),
         budget: Some(arguments.budget.budget(Budget::DESIGN)?),
     };
@@ -112,5 +124,5 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     if let Some(canvas) = canvas {
         super::commit(vec![canvas.draw(design_figure(&found), &model.units)?])?;
     }
-    session.answer(&found, arguments.json)
+    session.answer(&found, &arguments.answer)
 }

@@ -6,11 +6,12 @@ use std::sync::Arc;
 
 use clap::ValueEnum;
 
+use super::numbers::{NamedSpan, Speeds, angle, axis, speeds};
 use super::over::over;
-use super::start::{BudgetArguments, Rpm, StartArguments, angle, axis, cam_angle, rpm_or_speeds};
-use super::threads::threads;
+use super::start::{BudgetArguments, StartArguments, cam_angle};
 use super::{
-    CommandError, Exit, ModelArgument, Session, picture, picture::Target, progress::Progress, progress::watched,
+    AnswerArguments, CommandError, Exit, ModelArgument, Session, picture, picture::Target, progress::Progress,
+    progress::watched,
 };
 use crate::figures::{Across, Shown, corner_marks, impact_diagram, loads_diagram, strobe_diagram};
 use crate::show::csv;
@@ -20,11 +21,11 @@ use corner_impact::orbit::Parameter;
 use corner_impact::orbit::long_run::Budget;
 use corner_impact::study::design::loads::Load;
 use corner_impact::study::diagram::{self as swept, Swept, on_attractors};
-use corner_impact::study::survey::{
-    Beginning, Counted, Growth, Places, Section, Survey, Sweep, SweepStart, Values, growth,
-};
+use corner_impact::study::survey::{Beginning, Counted, Growth, Places, Section, Survey, Sweep, SweepStart, growth};
 
-/// Sweeps over speeds, or over a number of the model: what the motion settles on, as a table or a picture.
+/// Sweeps over speeds or a number: what the motion settles on.
+///
+/// The result is a table or a picture.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n\
     \x20 corner-impact diagram --rpm 660:750:400 --out impacts.svg\n\
@@ -35,12 +36,12 @@ use corner_impact::study::survey::{
 pub(super) struct Arguments {
     #[command(flatten)]
     model: ModelArgument,
-    /// Lowest speed, highest speed, and how many; with --over the one speed.
-    #[arg(long, value_name = "LO:HI:N|R", value_parser = rpm_or_speeds, allow_hyphen_values = true)]
-    rpm: Option<Rpm>,
+    /// Lowest speed, highest speed, and how many [default: 400]; with --over the one speed.
+    #[arg(long, value_name = "LO:HI[:N]|R", value_parser = speeds, allow_hyphen_values = true)]
+    rpm: Option<Speeds>,
     /// A number of the model to go over in place of the speed: from where to where, at how many values, and whether these are spaced by their logarithm.
-    #[arg(long, value_name = "NAME=LO:HI:N[:log]", value_parser = axis, allow_hyphen_values = true)]
-    over: Option<(String, Values)>,
+    #[arg(long, value_name = "NAME=LO:HI[:N][:log]", value_parser = axis, allow_hyphen_values = true)]
+    over: Option<NamedSpan>,
     #[command(flatten)]
     budget: BudgetArguments,
     /// Record what happens at the cam, or the state at one cam angle.
@@ -49,7 +50,7 @@ pub(super) struct Arguments {
     /// That angle, rad or as 90deg [default: 0].
     #[arg(long, value_name = "RAD", value_parser = angle, allow_hyphen_values = true)]
     strobe: Option<f64>,
-    /// Start every value alike, or go on from the next lower (up) or next higher one (down).
+    /// Start every value alike, or go on from the next lower (up) or next higher one (down), on one thread.
     #[arg(long = "start", value_enum, default_value = "fixed")]
     following: FollowingName,
     /// Record each attractor that 64 starts, or those of --state, come to at a value, from a point on the attractor. They are found as by `speeds`.
@@ -57,30 +58,29 @@ pub(super) struct Arguments {
     attractors: bool,
     #[command(flatten)]
     start: StartArguments,
-    /// Threads [default: RAYON_NUM_THREADS, or one for each core]; up and down go from value to value on one.
-    #[arg(long, value_name = "N", value_parser = threads, allow_hyphen_values = true)]
-    threads: Option<usize>,
     /// A table (.csv, or - for standard output) or a picture (.svg, .png, .pdf).
     #[arg(long, value_name = "FILE", value_parser = picture::picture_or_table, group = "picture")]
     out: Option<PathBuf>,
     #[command(flatten)]
     picture: picture::PictureArguments,
     /// Write one row a value: what the run comes to, its period, impacts, growth and fastest impact, as in `chart`.
-    #[arg(long, requires = "out", conflicts_with_all = ["attractors", "following", "section", "strobe", "lyapunov", "summary"])]
+    #[arg(long, requires = "out", conflicts_with_all = ["attractors", "following", "section", "strobe", "lyapunov", "json"])]
     one_row: bool,
     /// Show a load of each revolution that is recorded: the fastest impact, the largest gap, the energy that impacts take, or the largest
     /// contact force; a table has all of them.
     #[arg(long, value_name = "LOAD", value_parser = load, requires = "out",
-        conflicts_with_all = ["attractors", "following", "section", "strobe", "lyapunov", "summary", "one_row"])]
+        conflicts_with_all = ["attractors", "following", "section", "strobe", "lyapunov", "json", "one_row"])]
     show: Option<Load>,
     /// Add the Lyapunov exponent of each value, per revolution, and its error: two columns, or a second panel. Of a motion that
     /// repeats it is that of its multipliers; -inf where the follower came to stick to the cam, be it once.
     #[arg(long, requires = "out")]
     lyapunov: bool,
-    /// Print a summary as one JSON document.
-    #[arg(long)]
-    summary: bool,
+    #[command(flatten)]
+    answer: AnswerArguments,
 }
+
+/// Values of an axis of which no number is written.
+const VALUES: usize = 400;
 
 /// Starts of the sample, as many as `speeds` runs.
 const SAMPLED: usize = 64;
@@ -99,14 +99,14 @@ enum FollowingName {
 }
 
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
-    let to_standard = picture::out_is_standard(arguments.out.as_ref(), arguments.summary)?;
+    let to_standard = picture::out_is_standard(arguments.out.as_ref(), arguments.answer.json)?;
     if arguments.strobe.is_some() && matches!(arguments.section, SectionName::Impact) {
         return Err(CommandError::Words("--strobe is the angle of --section strobe, which is not there".into()));
     }
     let model = arguments.model.read_as_drawn(session)?;
     arguments.start.doubt(session);
     let corners = corner_marks(&Cam::new(&model)?);
-    let (rpm, axis) = over((&arguments.model, &model), arguments.rpm, arguments.over.as_ref())?;
+    let (rpm, axis) = over((&arguments.model, &model), arguments.rpm, arguments.over.as_ref(), VALUES)?;
     let across = Across::of(&axis, &model.units);
     // Attractors are those of `speeds`.
     let (sample, found) = (arguments.start.sample(SAMPLED), arguments.budget.lengths(Budget::SURVEY)?);
@@ -141,7 +141,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     if arguments.one_row {
         return one_row(arguments, &sweep.over, session);
     }
-    let (threads, target) = (arguments.threads, arguments.out.as_deref());
+    let (threads, target) = (session.threads, arguments.out.as_deref());
     let (name, progress) = (model.name.as_str(), Progress::spinner(""));
     let swept =
         match target.map(|path| Target::create(path, &mut *session.out, arguments.picture.look()?)).transpose()? {
@@ -172,7 +172,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         };
     drop(progress);
     if !to_standard {
-        session.answer(&swept, arguments.summary)?;
+        session.answer(&swept, &arguments.answer)?;
     }
     Ok(Exit::Agrees)
 }
@@ -193,7 +193,7 @@ fn loads(
 ) -> Result<Exit, CommandError> {
     let Some(path) = arguments.out.as_deref() else { return Ok(Exit::BadInput) };
     let target = Target::create(path, &mut *session.out, arguments.picture.look()?)?;
-    let (start, threads) = (arguments.start.start()?, arguments.threads);
+    let (start, threads) = (arguments.start.start()?, session.threads);
     let budget = arguments.budget.lengths(Budget::CHART)?;
     let found = watched("", |watch| swept::loads(survey, start, budget, threads, watch))?;
     let table = || csv::loads(survey.axis().parameter.name(), &found, &model.units);
@@ -217,7 +217,7 @@ fn one_row(arguments: &Arguments, survey: &Survey, session: &mut Session<'_>) ->
     else {
         return Err(CommandError::Words("--one-row is a table: --out must end in .csv or be -".into()));
     };
-    let (start, threads) = (arguments.start.start()?, arguments.threads);
+    let (start, threads) = (arguments.start.start()?, session.threads);
     let budget = arguments.budget.budget(Budget::CHART)?;
     let points = watched("", |watch| swept::one_row(survey, start, budget, threads, watch))?;
     file.write_all(csv::one_row(survey.axis(), &points, survey.units()).as_bytes())?;

@@ -1,10 +1,15 @@
 //! `corner-impact explain WHAT [MODEL]`.
 
-use super::{CommandError, Exit, ModelArgument, Session, progress::watched};
+use super::external::ExternalArguments;
+use super::{AnswerArguments, CommandError, Exit, ModelArgument, Session, progress::watched};
 use crate::explain::{Findings, Links};
+use crate::show::Page;
+use crate::show::block::{Block, words};
 use corner_impact::study::verify::{External, verify_watched};
 
-/// Says what a name stands for: formula, inputs, value by every route, how it is known, and what evaluates, proves and tests it.
+/// Says what a name stands for, with its formula and evidence.
+///
+/// It has inputs, the value by every route, how it is known, and what evaluates, proves and tests it.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n\
     \x20 corner-impact explain B_minus\n\
@@ -24,29 +29,29 @@ pub(super) struct Arguments {
     /// List every name with what it stands for.
     #[arg(long, conflicts_with_all = ["what", "json"])]
     list: bool,
-    /// Print one JSON document instead of the page.
-    #[arg(long)]
-    json: bool,
-    /// Leave out the routes that need Python.
-    #[arg(long)]
-    no_external: bool,
+    #[command(flatten)]
+    answer: AnswerArguments,
+    #[command(flatten)]
+    external: ExternalArguments,
 }
 
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
     let links = Links::read()?;
     let Some(what) = arguments.what.as_ref().filter(|_| !arguments.list) else {
-        let lines = links.names().into_iter().map(|(name, sentence)| format!("{name}: {sentence}\n"));
-        session.print(&lines.collect::<String>())?;
+        let entry = |(name, sentence)| (words![format!("{name}: ")], words![sentence]);
+        let entries = links.names().into_iter().map(entry).collect();
+        let page = session.shown(&Page::of(session.width(), false, &[Block::Entries(0, entries)])?);
+        session.print(&page)?;
         return Ok(Exit::Agrees);
     };
     let model = arguments.model.read_as_drawn(session)?;
     let needed = links.needs(what, &model)?;
     let verified = needed
-        .map(|external| if arguments.no_external { External::LeftOut } else { external })
+        .map(|external| if external == External::Run { arguments.external.routes() } else { external })
         .map(|external| watched("", |watch| verify_watched(&model, external, watch)))
         .transpose()
         .map_err(|error| session.note(&format!("no values: {error}")));
     let found = verified.ok().flatten();
     let explanation = links.explain(what, &Findings::new(&model, found.as_ref())?)?;
-    session.answer(&explanation, arguments.json)
+    session.answer(&explanation, &arguments.answer)
 }

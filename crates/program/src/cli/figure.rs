@@ -1,20 +1,20 @@
 //! `corner-impact figure [MODEL] [ID]`.
 
-use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
 use super::model::Changes;
+use super::numbers::rpm_range;
 use super::progress::{Progress, watched};
-use super::start::rpm_range;
 use super::{CommandError, Exit, ModelArgument, Session, picture};
 use crate::figures::{FIGURES, FigureContext, Listed, RenderedFigure, listed};
-use crate::show::json;
+use crate::show::block::{Block, Column, Table};
+use crate::show::{Page, json};
 use corner_impact::model::Model;
 use corner_impact::untrusted;
 
-/// Lists the figures of the report, or draws one of them.
+/// Lists the figures of the report, or draws one.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n\
     \x20 corner-impact figure\n\
@@ -78,7 +78,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     }
     let subject = watched("verifying the model", |_| FigureContext::new(&model, arguments.rpm))?;
     let page = match id {
-        None => list(&model, &subject, arguments.json)?,
+        None => list(&model, &subject, arguments.json, session)?,
         Some(id) => {
             let Some(entry) = FIGURES.iter().find(|entry| entry.id == id) else {
                 let there = FIGURES.map(|entry| entry.id).join(", ");
@@ -101,28 +101,31 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
                 (Err(why), _) => return Err(CommandError::Words(format!("{}: no figure {id}: {why}", model.file()))),
                 (Ok(_), None) => {}
             }
-            one(&subject, plate, arguments)?
+            one(&subject, plate, arguments, session)?
         }
     };
     session.print(&page)?;
     Ok(Exit::Agrees)
 }
 
-fn list(model: &Model, subject: &FigureContext, as_json: bool) -> Result<String, CommandError> {
+fn list(model: &Model, subject: &FigureContext, as_json: bool, session: &Session<'_>) -> Result<String, CommandError> {
     let figures = listed(subject);
     if as_json {
         return Ok(json::render(&List { schema: SCHEMA, model: model.name.clone(), figures }, &model.units)?);
     }
-    let wide = |part: fn(&Listed) -> &str| figures.iter().map(|figure| part(figure).len()).max().unwrap_or(0);
-    let (ids, places) = (wide(|figure| figure.id), wide(|figure| figure.place));
-    let mut page = String::new();
-    for Listed { id, place, title } in &figures {
-        writeln!(page, "{id:ids$}  {place:places$}  {title}")?;
+    let mut table = Table::new("Figures", ["figure", "in the paper", "shows"].map(Column::words));
+    for Listed { id, place, title } in figures {
+        table.row([id.into(), place.into(), title.into()]);
     }
-    Ok(page)
+    Ok(session.shown(&Page::of(session.width(), false, &[Block::Table(table)])?))
 }
 
-fn one(subject: &FigureContext, plate: RenderedFigure, arguments: &Arguments) -> Result<String, CommandError> {
+fn one(
+    subject: &FigureContext,
+    plate: RenderedFigure,
+    arguments: &Arguments,
+    session: &Session<'_>,
+) -> Result<String, CommandError> {
     if arguments.json {
         return Ok(json::render(
             &One { schema: SCHEMA, model: subject.model.name.clone(), plate },
@@ -134,7 +137,10 @@ fn one(subject: &FigureContext, plate: RenderedFigure, arguments: &Arguments) ->
         (place, true) => format!(" ({place} of the paper)"),
         (place, false) => format!(" (as {place} of the paper)"),
     };
-    let how = if arguments.out.is_some() { String::new() } else { format!("Draw it: {}\n", plate.command) };
     let caption = plate.drawn.map(|drawn| drawn.caption).unwrap_or_default();
-    Ok(format!("{}{of}\n{caption}\n{how}", plate.title))
+    let mut blocks = vec![Block::Line(format!("{}{of}", plate.title).into()), Block::paragraph(caption)];
+    if arguments.out.is_none() {
+        blocks.extend([Block::paragraph("To draw it:"), Block::Command(plate.command)]);
+    }
+    Ok(session.shown(&Page::of(session.width(), false, &blocks)?))
 }

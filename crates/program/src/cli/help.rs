@@ -1,10 +1,11 @@
 //! The command line as `--help`, the manual and the shells see it: grouped, with examples.
 
+use std::ffi::OsString;
 use std::fmt::Write;
 
-use clap::builder::StyledStr;
 use clap::builder::styling::{AnsiColor, Styles};
-use clap::{Command, CommandFactory};
+use clap::builder::{Str, StyledStr};
+use clap::{Arg, Command, CommandFactory};
 
 use super::{Arguments, GROUPS};
 use crate::show::page::options;
@@ -18,8 +19,9 @@ const STYLES: Styles = Styles::styled()
 
 /// Commands for a first try, at the end of the help.
 const EXAMPLES: &str = "Examples:
-  corner-impact verify --no-external       check the paper's model, which is built in
   corner-impact new my-machine.toml        begin a model file of your own
+  corner-impact my-machine.toml            what can be done with it
+  corner-impact verify --no-external       check the paper's model, which is built in
 
 `corner-impact COMMAND --help` has examples for each; where they name models/, they are run from the project's folder.";
 
@@ -28,18 +30,91 @@ pub(super) fn plain() -> Command {
     Arguments::command().after_help(EXAMPLES)
 }
 
-/// The command line, laid out for so many columns.
-pub(super) fn command(width: usize) -> Command {
+/// The options that `-h` has; `--help` has all.
+const ESSENTIAL: &[&str] = &[
+    "file",
+    "words",
+    "first",
+    "second",
+    "what",
+    "rpm",
+    "over",
+    "out",
+    "json",
+    "numbers",
+    "grid",
+    "section",
+    "following",
+    "attractors",
+    "events",
+    "revolutions",
+    "need",
+    "limit",
+    "orbits",
+    "resting",
+    "trapping",
+    "verdict",
+    "known",
+    "list",
+    "no_external",
+    "law",
+    "force",
+    "shell",
+    "show",
+    "with_curves",
+    "help",
+];
+
+/// The command line, laid out for so many columns: all of it, or what `-h` shows.
+pub(super) fn command(width: usize, is_short: bool) -> Command {
     let mut command = Arguments::command().styles(STYLES).term_width(width).max_term_width(width);
-    let template = template(&command, width);
+    let template = if is_short { brief(&command, width) } else { template(&command, width) };
+    if is_short {
+        command = ["color", "threads"]
+            .into_iter()
+            .fold(command, |command, name| command.mut_arg(name, |it| it.hide_short_help(true)));
+    }
     let names: Vec<String> = command.get_subcommands().map(|sub| sub.get_name().to_owned()).collect();
     for name in names {
-        command = command.mut_subcommand(name, |sub| match sub.get_after_help().map(ToString::to_string) {
-            Some(text) => sub.after_help(with_heading(&text)),
-            None => sub,
+        command = command.mut_subcommand(&name, |mut sub| {
+            // A chart has two axes of these names.
+            if name != "chart" && sub.get_arguments().any(|argument| argument.get_id() == "x_range") {
+                sub = sub.mut_arg("x_range", |ends| ends.alias("x")).mut_arg("y_range", |ends| ends.alias("y"));
+            }
+            let after = sub.get_after_help().map(ToString::to_string).unwrap_or_default();
+            if is_short { shortened(sub, &name, &after) } else { sub.after_help(with_heading(&after)) }
         });
     }
-    command.help_template(template).after_help(with_heading(EXAMPLES))
+    let after = if is_short { StyledStr::from(MORE) } else { with_heading(EXAMPLES) };
+    command.help_template(template).after_help(after)
+}
+
+/// Whether the short page is asked for.
+pub(super) fn is_short(words: &[OsString]) -> bool {
+    words.iter().skip(1).take_while(|word| *word != "--").any(|word| word == "-h")
+}
+
+const MORE: &str = "`corner-impact MODEL` says what can be done with a model; `corner-impact COMMAND --help` has all options and more examples.";
+
+/// A command as `-h` shows it: the options that most people need, each in a few words, and two examples.
+fn shortened(sub: Command, name: &str, after: &str) -> Command {
+    let short = |argument: Arg| {
+        let help = argument.get_help().map(ToString::to_string).unwrap_or_default();
+        let end = ["; ", ": ", " [", ". "].iter().filter_map(|stop| help.find(stop)).min().unwrap_or(help.len());
+        let is_essential = ESSENTIAL.contains(&argument.get_id().as_str());
+        let brief = help[..end].trim_end_matches('.').to_owned();
+        let short = |name: &Str| name.split('[').next().unwrap_or_default().to_owned();
+        let names: Option<Vec<String>> = argument.get_value_names().map(|names| names.iter().map(short).collect());
+        // A name in brackets is of something that may be left out.
+        let argument = match names.filter(|_| !argument.is_positional()) {
+            Some(names) => argument.value_names(names),
+            None => argument,
+        };
+        argument.help(brief).hide_short_help(!is_essential).hide_default_value(true).hide_possible_values(true)
+    };
+    let examples: Vec<&str> = after.lines().filter(|line| line.starts_with("  ")).take(2).collect();
+    let after = format!("Examples:\n{}\n\n`corner-impact {name} --help` has all options.", examples.join("\n"));
+    sub.mut_args(short).after_help(with_heading(&after))
 }
 
 /// "Examples:" in the look of a heading.
@@ -48,13 +123,36 @@ fn with_heading(text: &str) -> StyledStr {
     text.replacen("Examples:", &format!("{header}Examples:{header:#}"), 1).into()
 }
 
+/// The page of `-h`: the commands for a first visit, and the names of the others.
+fn brief(command: &Command, width: usize) -> StyledStr {
+    let (header, literal) = (STYLES.get_header(), STYLES.get_literal());
+    let mut text = "{about-with-newline}\n{usage-heading} {usage}\n".to_owned();
+    for (place, (heading, names)) in GROUPS.iter().filter(|(heading, _)| !heading.is_empty()).enumerate() {
+        let _ = writeln!(text, "\n{header}{heading}:{header:#}");
+        let subs = names.iter().filter_map(|name| command.find_subcommand(name.to_lowercase()));
+        if place == 0 {
+            for sub in subs {
+                let about = sub.get_about().map(ToString::to_string).unwrap_or_default();
+                let _ = writeln!(text, "  {literal}{:9}{literal:#} {about}", sub.get_name());
+            }
+            continue;
+        }
+        let names: Vec<&str> = subs.map(Command::get_name).collect();
+        for line in textwrap::wrap(&names.join("  "), options(width.saturating_sub(2))) {
+            let _ = writeln!(text, "  {literal}{line}{literal:#}");
+        }
+    }
+    text.push_str("\n{options}{after-help}");
+    text.into()
+}
+
 /// The first page: the subcommands under their headings, in the order of a first visit.
 fn template(command: &Command, width: usize) -> StyledStr {
     let (header, literal) = (STYLES.get_header(), STYLES.get_literal());
     let longest = command.get_subcommands().map(|sub| sub.get_name().len()).max().unwrap_or(0);
     let indent = " ".repeat(longest + 4);
     let mut text = "{about-with-newline}\n{usage-heading} {usage}\n".to_owned();
-    for (heading, names) in GROUPS {
+    for (heading, names) in GROUPS.iter().filter(|(heading, _)| !heading.is_empty()) {
         let _ = writeln!(text, "\n{header}{heading}:{header:#}");
         let find = |name: &str| command.get_subcommands().find(|sub| sub.get_name() == name);
         for sub in names.iter().filter_map(|name| find(&name.to_lowercase())) {

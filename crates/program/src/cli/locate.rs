@@ -1,12 +1,14 @@
 //! `corner-impact locate [MODEL]`.
 
-use super::start::rpm_range;
-use super::{CommandError, Exit, ModelArgument, Session, progress::watched};
+use super::numbers::rpm_range;
+use super::{AnswerArguments, CommandError, Exit, ModelArgument, Session, progress::watched};
 use corner_impact::model::Study;
 use corner_impact::orbit::Search;
 use corner_impact::study::locate::{LocateRangeError, locate};
 
-/// Lists the speeds at which a periodic orbit has an impact on a corner of the cam, and what happens there.
+/// Lists the speeds at which an orbit hits a corner of the cam.
+///
+/// It says what happens there.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n\
     \x20 corner-impact locate --rpm 600:760\n\
@@ -22,9 +24,8 @@ pub(super) struct Arguments {
     /// Turns of the cam after which the orbits repeat, and no fewer.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=Search::MOST_REVOLUTIONS))]
     revolutions: u64,
-    /// Print one JSON document instead of the page.
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    answer: AnswerArguments,
 }
 
 /// `LO:HI`.
@@ -40,6 +41,6 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
             error => error.into(),
         })
     })?;
-    session.answer(&found, arguments.json)?;
+    session.answer(&found, &arguments.answer)?;
     Ok(if found.agrees { Exit::Agrees } else { Exit::Disagrees })
 }

@@ -9,7 +9,7 @@ use clap_mangen::roff::{Roff, roman};
 use super::{CommandError, Exit, Session, help};
 use corner_impact::file::Output;
 
-/// Prints the manual page, or writes one for the program and one for each command.
+/// Prints the manual page, or writes one for each command.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n\
     \x20 corner-impact man\n\
@@ -32,7 +32,8 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     };
     let refused = |error: std::io::Error| CommandError::Words(format!("{}: {error}", folder.display()));
     std::fs::create_dir_all(folder).map_err(refused)?;
-    let commands: Vec<clap::Command> = program.get_subcommands().cloned().chain([program.clone()]).collect();
+    let commands: Vec<clap::Command> =
+        program.get_subcommands().filter(|sub| !sub.is_hide_set()).cloned().chain([program.clone()]).collect();
     let mut files = Vec::new();
     for command in commands {
         let mut file = Output::file(&folder.join(Man::new(command.clone()).get_filename()))?;

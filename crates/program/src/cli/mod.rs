@@ -1,5 +1,6 @@
 //! The command line: parse, one library call, exit code. Results to standard output, complaints to standard error.
 
+mod about;
 mod basins;
 mod cam;
 mod certify;
@@ -14,12 +15,15 @@ mod curve;
 mod design;
 mod diagram;
 mod explain;
+mod external;
 mod figure;
 mod help;
 mod locate;
 mod man;
 mod model;
 mod new;
+mod next;
+mod numbers;
 mod orbit;
 mod over;
 mod picture;
@@ -41,8 +45,10 @@ use std::io::Write;
 use clap::{ColorChoice, FromArgMatches, Parser, Subcommand};
 
 use model::ModelArgument;
+use session::AnswerArguments;
 use session::Session;
 pub use session::Terminal;
+use session::Wishes;
 pub use signals::watch as clear_on_signals;
 
 use corner_impact::cancel;
@@ -70,11 +76,18 @@ struct Arguments {
     /// Whether pages, complaints and help are coloured.
     #[arg(long, global = true, value_enum, value_name = "WHEN", default_value = "auto")]
     color: ColorChoice,
+    /// Print results and errors alone: no notes, no progress, and no `next:`.
+    #[arg(long, short, global = true)]
+    quiet: bool,
+    /// Threads that share the work [default: RAYON_NUM_THREADS, or one for each core].
+    #[arg(long, global = true, value_name = "N", value_parser = threads::threads, allow_hyphen_values = true)]
+    threads: Option<usize>,
 }
 
-/// The subcommands: one line each, under the heading that `--help` lists it by. A module has `Arguments` and `run`.
+/// The subcommands: one line each, under the heading that `--help` lists it by, with the command that usually follows. A module has `Arguments` and
+/// `run`.
 macro_rules! subcommands {
-    ($($heading:literal: $($name:ident = $module:ident,)+)+) => {
+    ($($heading:literal: $($name:ident = $module:ident => $next:literal,)+)+) => {
         #[derive(Subcommand)]
         enum Command {
             $($($name($module::Arguments),)+)+
@@ -86,6 +99,13 @@ macro_rules! subcommands {
                     $($(Self::$name(arguments) => $module::run(arguments, session),)+)+
                 }
             }
+
+            /// What usually follows; empty for nothing.
+            fn next(&self) -> &'static str {
+                match self {
+                    $($(Self::$name(_) => $next,)+)+
+                }
+            }
         }
 
         /// The headings of `--help`, and what is under each.
@@ -94,32 +114,35 @@ macro_rules! subcommands {
 }
 
 subcommands! {
+    "A machine of your own":
+        New = new => "cam{model}",
+        Cam = cam => "design{model}",
+        Design = design => "simulate{model} --rpm {rpm}",
+        Simulate = simulate => "speeds{model}",
+        Speeds = speeds => "report{model}",
+        Report = report => "compare{model} --set NAME=VALUE",
+        Compare = compare => "explain speed_rpm{model}",
+    "Attractors, periodic orbits and bifurcations":
+        Diagram = diagram => "chart{model} --over rpm={range} --over restitution=0.5:0.95",
+        Chart = chart => "curve{model} --rpm LO:HI --over NAME=LO:HI",
+        Basins = basins => "orbit{model} --rpm {rpm}",
+        Orbit = orbit => "continue{model} --rpm {rpm} --over rpm={range}",
+        Continue = continuation => "curve{model} --rpm {range} --over NAME=LO:HI",
+        Curve = curve => "chart{model} --over rpm={range} --over NAME=LO:HI --with-curves --out FILE.svg",
+        Chaos = chaos => "figure{model}",
     "The paper's result, on its model or yours":
-        Verify = verify,
-        Report = report,
-        Claims = claims,
-        Explain = explain,
-        Locate = locate,
-        Certify = certify,
-        Compare = compare,
-    "What a machine does":
-        Cam = cam,
-        Simulate = simulate,
-        Speeds = speeds,
-        Design = design,
-        Diagram = diagram,
-        Chart = chart,
-        Figure = figure,
-    "Periodic orbits and what lies between them":
-        Orbit = orbit,
-        Continue = continuation,
-        Curve = curve,
-        Basins = basins,
-        Chaos = chaos,
-    "Getting started, and the shell":
-        New = new,
-        Completions = completions,
-        Man = man,
+        Verify = verify => "report{model}",
+        Locate = locate => "certify{model} --rpm {range}",
+        Certify = certify => "chaos{model} --rpm {rpm}",
+        Claims = claims => "explain feigin{model}",
+        Explain = explain => "verify{model}",
+        Figure = figure => "report{model}",
+    "The shell":
+        Completions = completions => "",
+        Man = man => "",
+    // Not listed: `corner-impact MODEL` is this command.
+    "":
+        About = about => "",
 }
 
 /// Why a command has no result.
@@ -174,18 +197,24 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, out: &mut dyn Write, e
 
 /// Runs a command, as long as somebody reads it, where its results are nowhere else.
 fn begun(arguments: &Arguments, only_prints: bool, session: &mut Session<'_>) -> Result<Exit, CommandError> {
-    session.color = arguments.color;
+    (session.color, session.quiet, session.threads) = (arguments.color, arguments.quiet, arguments.threads);
+    progress::hide(arguments.quiet);
     let is_watched = session.terminal.is_process && only_prints;
+    let next = arguments.command.next();
     signals::watch().map_err(|error| CommandError::Words(format!("signals: {error}")))?;
     let mut work = || {
-        threads::start()?;
+        threads::start(arguments.threads)?;
         arguments.command.run(session)
     };
-    if !is_watched {
-        return work();
-    }
-    standard::takes_more()?;
-    cancel::run(standard::is_unread(), work).unwrap_or(Err(CommandError::Unread))
+    let exit = if is_watched {
+        standard::takes_more()?;
+        cancel::run(standard::is_unread(), work).unwrap_or(Err(CommandError::Unread))?
+    } else {
+        work()?
+    };
+    session.open()?;
+    session.tell_next(next)?;
+    Ok(exit)
 }
 
 /// Runs one command line, program name first, with streams that `terminal` describes.
@@ -195,20 +224,25 @@ pub fn run_at(
     out: &mut dyn Write,
     err: &mut dyn Write,
 ) -> Exit {
-    let words: Vec<OsString> = arguments.into_iter().collect();
+    let words = about::named(arguments.into_iter().collect());
     // What is wrong with a command line is coloured as it says itself.
     let mut session = Session {
         out,
         err,
         terminal,
         color: session::said(&words),
+        quiet: false,
+        threads: None,
         rpm: None,
         units: Units::default(),
         model: String::new(),
+        named: String::new(),
+        wishes: Wishes::default(),
     };
-    let mut command = help::command(session.width());
+    let mut command = help::command(session.width(), help::is_short(&words));
     let matches = command.try_get_matches_from_mut(words);
     session.rpm = matches.as_ref().ok().and_then(session::speeds);
+    session.wishes = matches.as_ref().map(Wishes::of).unwrap_or_default();
     let only_prints = matches.as_ref().is_ok_and(|matches| session::only_prints(&command, matches));
     let run = match matches.and_then(|matches| Arguments::from_arg_matches(&matches)) {
         Ok(arguments) => begun(&arguments, only_prints, &mut session),

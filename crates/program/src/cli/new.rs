@@ -6,9 +6,12 @@ use std::path::{Path, PathBuf};
 use clap::ValueEnum;
 
 use super::{CommandError, Exit, Session};
+use crate::show::command::shell_word;
 use corner_impact::file::{self, Output};
 
-/// Writes a commented model file to start from: every field with its unit and what it may be.
+/// Writes a commented model file to start from.
+///
+/// Every field has its unit and what it may be.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n\
     \x20 corner-impact new my-machine.toml\n\
@@ -99,6 +102,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         outputs.push(output);
     }
     super::commit(outputs)?;
+    session.named = format!(" {}", shell_word(&path.to_string_lossy()));
     for (path, _) in &files {
         session.note(&format!("wrote {}", path.display()));
     }

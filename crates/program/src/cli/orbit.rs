@@ -1,12 +1,15 @@
 //! `corner-impact orbit [MODEL] --rpm R`.
 
-use super::start::{rpm, state};
-use super::{CommandError, Exit, ModelArgument, Session, progress::watched};
+use super::numbers::rpm;
+use super::start::state;
+use super::{AnswerArguments, CommandError, Exit, ModelArgument, Session, progress::watched};
 use corner_impact::flight::State;
 use corner_impact::orbit::Search;
 use corner_impact::study::orbit::{OrbitQuery, orbits};
 
-/// Finds periodic orbits at one speed, stable and unstable, with their multipliers.
+/// Finds periodic orbits at one speed, with their multipliers.
+///
+/// Stable and unstable ones.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n\
     \x20 corner-impact orbit --rpm 680\n\
@@ -30,9 +33,8 @@ pub(super) struct Arguments {
     /// Only the orbit that Newton's method finds from this state at cam angle 0: position and velocity, in the model's units.
     #[arg(long, value_name = "Q,V", value_parser = state, allow_hyphen_values = true, conflicts_with = "impacts")]
     guess: Option<State>,
-    /// Print one JSON document instead of the page.
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    answer: AnswerArguments,
 }
 
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
@@ -42,5 +44,5 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         None => OrbitQuery::All(Search { revolutions: arguments.revolutions, impacts: arguments.impacts }),
     };
     let found = watched("looking for periodic orbits", |watch| orbits(&model, arguments.rpm, wanted, watch))?;
-    session.answer(&found, arguments.json)
+    session.answer(&found, &arguments.answer)
 }

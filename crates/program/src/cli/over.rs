@@ -1,29 +1,45 @@
-//! The axis that --rpm or --over names, and the one speed of a survey over another number.
+//! What a survey goes over, and the one speed that it is at.
 
-use super::start::Rpm;
+use super::numbers::{NamedSpan, Span, Speeds};
 use super::{CommandError, ModelArgument};
 use corner_impact::model::Model;
 use corner_impact::orbit::Parameter;
-use corner_impact::study::survey::{Axis, Values};
+use corner_impact::study::StudyError;
+use corner_impact::study::survey::Axis;
 
-/// The one speed of a survey, where it has one, and what it goes over: the speed, or a number of the model.
+/// A number of values that are run one by one.
+pub(super) fn values(count: usize) -> Result<u32, CommandError> {
+    let count = u32::try_from(count).ok().filter(|few| (2..=100_000).contains(few)).ok_or(count);
+    count.map_err(|count| CommandError::Words(format!("{count} values: there must be 2 to 100000")))
+}
+
+/// The one speed of a survey, where it has one, and what it goes over: the speed, or a number of the model; none if nothing says.
+pub(super) fn varied(
+    rpm: Option<Speeds>,
+    over: Option<&NamedSpan>,
+) -> Result<(Option<f64>, Option<NamedSpan>), CommandError> {
+    match (rpm, over) {
+        (Some(Speeds::Span(Span { ends: [low, high], .. })), Some(_)) => {
+            Err(StudyError::RangeAndNumber { low, high }.into())
+        }
+        (Some(Speeds::Span(span)), None) => Ok((None, Some((Parameter::Speed.name().into(), span)))),
+        (Some(Speeds::One(rpm)), None) => Err(CommandError::Words(format!(
+            "--rpm {rpm} is one speed: --rpm LO:HI is a range of speeds, and --over NAME=LO:HI is what varies at this one"
+        ))),
+        (Some(Speeds::One(rpm)), Some(over)) => Ok((Some(rpm), Some(over.clone()))),
+        (None, over) => Ok((None, over.cloned())),
+    }
+}
+
+/// The same with the values of what varies, `usual` of them if no number is written.
 pub(super) fn over(
     (argument, model): (&ModelArgument, &Model),
-    rpm: Option<Rpm>,
-    over: Option<&(String, Values)>,
+    rpm: Option<Speeds>,
+    over: Option<&NamedSpan>,
+    usual: usize,
 ) -> Result<(Option<f64>, Axis), CommandError> {
-    match (rpm, over) {
-        (Some(Rpm::Range(_)), Some((name, _))) => {
-            Err(CommandError::Words(format!("--rpm LO:HI:N and --over {name}: one number varies, and chart has two")))
-        }
-        (Some(Rpm::Range(speeds)), None) => Ok((None, Axis::new(Parameter::Speed, &speeds))),
-        (Some(Rpm::One(rpm)), None) => Err(CommandError::Words(format!(
-            "--rpm {rpm} is one speed: LO:HI:N is from where to where and how many, or --over NAME=LO:HI:N is what varies"
-        ))),
-        (rpm, Some((name, values))) => {
-            let rpm = if let Some(Rpm::One(rpm)) = rpm { Some(rpm) } else { None };
-            Ok((rpm, Axis::new(argument.varied(model, name, "--over")?, values)))
-        }
-        (None, None) => Err(CommandError::Words("--rpm LO:HI:N, or --over NAME=LO:HI:N, says what varies".into())),
-    }
+    let (rpm, Some((name, span))) = varied(rpm, over)? else {
+        return Err(CommandError::Words("--rpm LO:HI, or --over NAME=LO:HI, says what varies".into()));
+    };
+    Ok((rpm, Axis::new(argument.varied(model, &name, "--over")?, &span.values(usual))))
 }

@@ -6,30 +6,35 @@ use std::path::{Path, PathBuf};
 use clap::ValueEnum;
 
 use super::CommandError;
-use super::start::{positive, range};
+use super::numbers::{positive, range};
 use corner_impact::file::Output;
 use corner_impact::model::Units;
 use corner_impact_plot::font::Fonts;
 use corner_impact_plot::{Figure, Look, Theme, pdf, png, svg};
 
+/// The heading of these options in `--help`.
+const LOOKS: &str = "How a picture looks";
+
 /// How a picture stands on paper.
 #[derive(clap::Args)]
-#[command(next_help_heading = "How a picture looks")]
 pub(super) struct LookArguments {
     /// Width on paper, such as 85mm, 8.5cm, 3.35in or 240pt [default: that of what an SVG stands in, 169mm on paper].
-    #[arg(long, value_name = "WIDTH", value_parser = length, requires = "picture")]
+    #[arg(long, value_name = "WIDTH", value_parser = length, requires = "picture", help_heading = LOOKS)]
     width: Option<f64>,
     /// Height of the letters on paper, such as 8pt [default: 8.3pt in a figure 169mm wide, and in proportion].
-    #[arg(long, value_name = "SIZE", value_parser = length, requires = "picture")]
+    #[arg(long, value_name = "SIZE", value_parser = length, requires = "picture", help_heading = LOOKS)]
     size: Option<f64>,
     /// The letters: a font that is installed, or the file of one (.ttf, .otf); they come with the picture [default: the program's own].
-    #[arg(long, value_name = "FONT", requires = "picture")]
+    #[arg(long, value_name = "FONT", requires = "picture", help_heading = LOOKS)]
     font: Option<String>,
     /// Leave out the title.
-    #[arg(long, requires = "picture")]
+    #[arg(long, requires = "picture", help_heading = LOOKS)]
     no_title: bool,
+    /// Open the file once it is written.
+    #[arg(long, requires = "picture", help_heading = LOOKS)]
+    open: bool,
     /// A screen that may be dark, or white paper; PNG and PDF are white on both.
-    #[arg(long, value_enum, value_name = "THEME", requires = "picture")]
+    #[arg(long, value_enum, value_name = "THEME", requires = "picture", help_heading = LOOKS)]
     theme: Option<ThemeName>,
 }
 
@@ -41,22 +46,21 @@ enum ThemeName {
 
 /// How a picture stands on paper, and which part of it is shown.
 #[derive(clap::Args)]
-#[command(next_help_heading = "How a picture looks")]
 pub(super) struct PictureArguments {
     #[command(flatten)]
     look: LookArguments,
     /// Ends of the horizontal axis, in its unit.
-    #[arg(long, value_name = "LO:HI", value_parser = range, allow_hyphen_values = true, requires = "picture")]
-    x: Option<[f64; 2]>,
+    #[arg(long, value_name = "LO:HI", value_parser = range, allow_hyphen_values = true, requires = "picture", help_heading = LOOKS)]
+    x_range: Option<[f64; 2]>,
     /// Ends of the vertical axis, in its unit: of the first panel, where there are more; the others keep theirs.
-    #[arg(long, value_name = "LO:HI", value_parser = range, allow_hyphen_values = true, requires = "picture")]
-    y: Option<[f64; 2]>,
+    #[arg(long, value_name = "LO:HI", value_parser = range, allow_hyphen_values = true, requires = "picture", help_heading = LOOKS)]
+    y_range: Option<[f64; 2]>,
 }
 
 impl LookArguments {
     /// The look, found before the work that the picture shows; none where nothing is asked for.
     pub(super) fn look(&self) -> Result<Option<Look>, CommandError> {
-        let Self { width, size, font, no_title, theme } = self;
+        let Self { width, size, font, no_title, theme, .. } = self;
         if width.is_none() && size.is_none() && font.is_none() && !no_title && theme.is_none() {
             return Ok(None);
         }
@@ -74,10 +78,10 @@ impl PictureArguments {
     /// The look, with the part that is shown; none where nothing is asked for.
     pub(super) fn look(&self) -> Result<Option<Look>, CommandError> {
         let look = self.look.look()?;
-        if self.x.is_none() && self.y.is_none() {
+        if self.x_range.is_none() && self.y_range.is_none() {
             return Ok(look);
         }
-        Ok(Some(Look { x: self.x, y: self.y, ..look.unwrap_or_default() }))
+        Ok(Some(Look { x: self.x_range, y: self.y_range, ..look.unwrap_or_default() }))
     }
 }
 
@@ -168,7 +172,7 @@ impl<'a> Target<'a> {
         Ok(match kind(path) {
             Some(_) => Self::Picture(Canvas::create(path, look)?),
             None if look.is_some() => {
-                let words = "--width, --size, --font, --no-title, --theme, --x and --y are of pictures: the name must end in .svg, .png or .pdf";
+                let words = "--width, --size, --font, --no-title, --theme, --x-range and --y-range are of pictures: the name must end in .svg, .png or .pdf";
                 return Err(CommandError::Words(words.into()));
             }
             None => Self::Table(Output::create(path, standard)?),
@@ -193,16 +197,23 @@ impl<'a> Target<'a> {
     }
 }
 
+/// Where a command writes that prints its table unless a document is asked for; none if the document is all.
+pub(super) fn table(out: Option<&PathBuf>, json: bool) -> Result<Option<&Path>, CommandError> {
+    out_is_standard(out, json)?;
+    let standard = (!json).then_some(Path::new("-"));
+    Ok(out.map(PathBuf::as_path).or(standard))
+}
+
 /// Whether a name stands for standard output.
 pub(super) fn is_standard(path: Option<&PathBuf>) -> bool {
     path.is_some_and(|path| path.as_os_str() == "-")
 }
 
-/// Whether `--out` is standard output, which then has no room for a summary.
-pub(super) fn out_is_standard(out: Option<&PathBuf>, summary: bool) -> Result<bool, CommandError> {
+/// Whether `--out` is standard output, which then has no room for a document.
+pub(super) fn out_is_standard(out: Option<&PathBuf>, json: bool) -> Result<bool, CommandError> {
     let standard = is_standard(out);
-    if standard && summary {
-        return Err(CommandError::Words("--out - and --summary both print to standard output".into()));
+    if standard && json {
+        return Err(CommandError::Words("--out - and --json both print to standard output".into()));
     }
     Ok(standard)
 }

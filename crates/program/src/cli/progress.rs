@@ -1,6 +1,7 @@
 //! A progress bar on standard error, for work that takes longer than a second in front of a person.
 
 use std::io::IsTerminal;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::sync::{Mutex, PoisonError};
 use std::thread::JoinHandle;
@@ -13,6 +14,14 @@ use corner_impact::progress::Watch;
 /// Does some work, which may tell how far it has come; it begins at `what`.
 pub(super) fn watched<T>(what: &str, work: impl FnOnce(&dyn Watch) -> T) -> T {
     work(&Progress::spinner(what))
+}
+
+/// Whether progress is shown to nobody.
+static HIDDEN: AtomicBool = AtomicBool::new(false);
+
+/// Shows progress of this process from now on, or hides it.
+pub(super) fn hide(is_hidden: bool) {
+    HIDDEN.store(is_hidden, Ordering::Relaxed);
 }
 
 /// Progress of a command: a bar if the total is known, otherwise a spinner, and the current step.
@@ -41,7 +50,8 @@ impl Progress {
         look(&bar, (false, 0));
         bar.set_message(what.to_owned());
         // Appears by itself: what is watched may have nothing to tell for longer than patience lasts.
-        let shows = std::io::stderr().is_terminal().then(|| {
+        let is_shown = std::io::stderr().is_terminal() && !HIDDEN.load(Ordering::Relaxed);
+        let shows = is_shown.then(|| {
             let (ended, end) = channel::<()>();
             let shown = bar.clone();
             let thread = std::thread::spawn(move || {

@@ -3,18 +3,20 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+use super::external::ExternalArguments;
+use super::numbers::rpm_range;
 use super::picture::ends_in;
 use super::progress::watched;
-use super::start::rpm_range;
 use super::{CommandError, Exit, ModelArgument, Session};
 use crate::pages::report::html;
 use crate::report::Report;
 use crate::show::json;
 use corner_impact::file::Output;
 use corner_impact::model::{Model, ModelError};
-use corner_impact::study::verify::External;
 
-/// Writes everything about a model as one HTML page that opens from disk.
+/// Writes all about a model as one HTML page.
+///
+/// The page opens from disk.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n\
     \x20 corner-impact report\n\
@@ -32,13 +34,15 @@ pub(super) struct Arguments {
     /// Print one JSON document instead; the page only where --out names it.
     #[arg(long)]
     json: bool,
+    /// Open the page once it is written.
+    #[arg(long, conflicts_with = "json")]
+    open: bool,
     /// Lowest and highest speed that the answer is about [default: from below where the follower first leaves the cam up to the end of
     /// the model's [study], or to twice that speed, or twice that of its spring where it stays on the cam].
     #[arg(long, value_name = "LO:HI", value_parser = rpm_range, allow_hyphen_values = true)]
     rpm: Option<[f64; 2]>,
-    /// Leave out the routes that need Python (symbolic, scipy, certificate), and say so.
-    #[arg(long)]
-    no_external: bool,
+    #[command(flatten)]
+    external: ExternalArguments,
 }
 
 /// A file name of a page, for clap.
@@ -58,13 +62,13 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         (None, true) => None,
         (None, false) => Some(default_name(&model)?),
     };
+    session.wishes.file = path.clone();
     // The file is begun before the work: a name that cannot be is told at once.
     let file = match &path {
         Some(path) => Some(Output::create(path, &mut *session.out)?),
         None => None,
     };
-    let external = if arguments.no_external { External::LeftOut } else { External::Run };
-    let report = watched("", |watch| Report::of(&model, external, arguments.rpm, watch))?;
+    let report = watched("", |watch| Report::of(&model, arguments.external.routes(), arguments.rpm, watch))?;
     let write = |mut file: Output<'_>| {
         let page = html::render(&report)?;
         file.write_all(page.as_bytes())?;

@@ -2,13 +2,14 @@
 
 use std::ffi::OsString;
 use std::io::{ErrorKind, IsTerminal, Write};
+use std::path::PathBuf;
 
 use clap::builder::Str;
-use clap::error::{ContextKind, ContextValue};
+use clap::error::{ContextKind, ContextValue, ErrorKind as Kind};
 use clap::{ColorChoice, ValueEnum};
 use serde::Serialize;
 
-use super::{CommandError, Exit, complaint};
+use super::{CommandError, Exit, complaint, next};
 use crate::show::block::in_units;
 use crate::show::{Page, Paged, json};
 use corner_impact::model::{ModelError, Units};
@@ -123,12 +124,52 @@ pub(super) struct Session<'a> {
     pub(super) terminal: Terminal,
     /// Value of `--color`.
     pub(super) color: ColorChoice,
+    /// Whether results and errors alone are printed.
+    pub(super) quiet: bool,
+    /// Threads that share the work; none for as many as there are.
+    pub(super) threads: Option<usize>,
     /// The speeds that the command line asks for, rpm.
     pub(super) rpm: Option<[f64; 2]>,
     /// Units of the model that the command is about.
     pub(super) units: Units,
     /// Its name.
     pub(super) model: String,
+    /// The words that name it on a command line, each after a blank.
+    pub(super) named: String,
+    /// What is to follow the result.
+    pub(super) wishes: Wishes,
+}
+
+/// How a command tells its result.
+#[derive(clap::Args)]
+pub(super) struct AnswerArguments {
+    /// Print one JSON document instead of the page.
+    #[arg(long, alias = "summary")]
+    pub(super) json: bool,
+    /// Show every column of a table that is too wide for the page, row by row.
+    #[arg(long, conflicts_with = "json")]
+    pub(super) all: bool,
+}
+
+/// What a command line asks for beside the result, and where that goes.
+#[derive(Debug, Default)]
+pub(super) struct Wishes {
+    /// The file that the result goes to, if it goes to one.
+    pub(super) file: Option<PathBuf>,
+    /// Whether it is to be opened.
+    open: bool,
+    /// Whether the result is for a program.
+    json: bool,
+}
+
+impl Wishes {
+    /// As far as clap knows; a command that chooses the name of its file has to add it.
+    pub(super) fn of(matches: &clap::ArgMatches) -> Self {
+        let Some((_, given)) = matches.subcommand() else { return Self::default() };
+        let flag = |name: &str| given.try_get_one::<bool>(name).ok().flatten() == Some(&true);
+        let file = |name: &&str| Some(PathBuf::from(given.try_get_raw(name).ok().flatten()?.next()?));
+        Self { file: ["out", "phase_plane"].iter().find_map(file), open: flag("open"), json: flag("json") }
+    }
 }
 
 impl Session<'_> {
@@ -149,6 +190,9 @@ impl Session<'_> {
 
     /// Says something on standard error.
     pub(super) fn note(&mut self, words: &str) {
+        if self.quiet {
+            return;
+        }
         // A closed pipe leaves nobody to tell.
         let _ = writeln!(self.err, "note: {}", untrusted::sentence(words));
     }
@@ -156,6 +200,26 @@ impl Session<'_> {
     /// Notes that some of the parts of a survey failed, and the first of them: tables do not say why.
     pub(super) fn failures(&mut self, what: &str, [count, all]: [usize; 2], first: &str) {
         self.note(&format!("{count} of {all} {what} could not be run; the first is {first}"));
+    }
+
+    /// Opens the file that was written, if that was asked for, by the program that is there for its kind.
+    pub(super) fn open(&mut self) -> Result<(), CommandError> {
+        match self.wishes.file.as_deref().filter(|path| self.wishes.open && path.as_os_str() != "-") {
+            Some(path) => open::that_detached(path).map_err(|error| {
+                CommandError::Words(format!("{} is written, but cannot be opened: {error}", path.display()))
+            }),
+            None => Ok(()),
+        }
+    }
+
+    /// Says to a person at a terminal which command usually follows.
+    pub(super) fn tell_next(&mut self, template: &str) -> Result<(), CommandError> {
+        let is_table = self.wishes.file.as_ref().is_some_and(|path| path.as_os_str() == "-");
+        if template.is_empty() || !self.terminal.out || self.quiet || self.wishes.json || is_table {
+            return Ok(());
+        }
+        let next = next::filled(template, &self.named, self.rpm);
+        self.print(&format!("next: corner-impact {next}\n"))
     }
 
     /// Complains on standard error, in the words that every complaint begins with.
@@ -173,6 +237,10 @@ impl Session<'_> {
 
     /// Says what is wrong with a command line, or what help was asked for.
     pub(super) fn refuse(&mut self, mut error: clap::Error) -> Result<Exit, CommandError> {
+        // "-- --json" would be the name of a file.
+        if error.kind() == Kind::UnknownArgument {
+            error.remove(ContextKind::Suggested);
+        }
         // Advice that repeats what nobody can read is none.
         let is_odd =
             |value: &ContextValue| matches!(value, ContextValue::String(text) if untrusted::value(text) != *text);
@@ -211,11 +279,15 @@ impl Session<'_> {
     }
 
     /// Prints what was found: one document for a program, or the page for people, in as many columns as there are.
-    pub(super) fn answer(&mut self, found: &(impl Serialize + Paged), as_json: bool) -> Result<Exit, CommandError> {
-        let text = if as_json {
+    pub(super) fn answer(
+        &mut self,
+        found: &(impl Serialize + Paged),
+        asked: &AnswerArguments,
+    ) -> Result<Exit, CommandError> {
+        let text = if asked.json {
             json::render(found, &self.units)?
         } else {
-            self.shown(&Page::of(self.width(), &in_units(found.blocks(), &self.units))?)
+            self.shown(&Page::of(self.width(), asked.all, &in_units(found.blocks(), &self.units))?)
         };
         self.print(&text)?;
         Ok(Exit::Agrees)

@@ -5,21 +5,22 @@ use std::path::{Path, PathBuf};
 
 use clap::ArgGroup;
 
+use super::numbers::{angle, count, rpm};
 use super::picture::{self, Canvas, PictureArguments, is_standard, picture as drawn_only, picture_or_table};
-use super::start::{BudgetArguments, StartArguments, angle, cam_angle, count, rpm};
-use super::{CommandError, Exit, ModelArgument, Session, progress::watched};
+use super::start::{BudgetArguments, StartArguments, cam_angle};
+use super::{AnswerArguments, CommandError, Exit, ModelArgument, Session, progress::watched};
 use crate::figures::{self, phase_plane as phase_plane_figure, time_trace, with_force};
 use crate::show::csv;
 use corner_impact::file::{self, Output};
 use corner_impact::orbit::long_run::Budget;
-use corner_impact::study::simulate::{RunRequest, Sight, Simulation, Until};
+use corner_impact::study::simulate::{RunLoads, RunRequest, Sight, Simulation, Until};
 
 /// Runs one motion of a model and says what happened.
 #[derive(clap::Args)]
 #[command(group = ArgGroup::new("picture").multiple(true))]
 #[command(after_help = "Examples:\n\
     \x20 corner-impact simulate --rpm 183 --revolutions 10 --events -\n\
-    \x20 corner-impact simulate models/osorio-2008.toml --rpm 183 --trace trace.svg\n\
+    \x20 corner-impact simulate models/osorio-2008.toml --rpm 183 --out trace.svg\n\
     \n\
     Exit code: 0 done, 2 bad model file, usage or file, or a run that cannot go on.")]
 pub(super) struct Arguments {
@@ -46,9 +47,8 @@ pub(super) struct Arguments {
     /// Where the states go, as CSV; - is standard output.
     #[arg(long, value_name = "FILE", requires = "strobe")]
     strobe_out: Option<PathBuf>,
-    /// Print the summary as one JSON document.
-    #[arg(long)]
-    summary: bool,
+    #[command(flatten)]
+    answer: AnswerArguments,
     /// Add to the summary what the run comes to in the long run, and how fast a small deviation grows there per revolution: a natural logarithm,
     /// of a motion that repeats by its multipliers, -inf (null in JSON) where the follower comes to rest on the cam, else a mean with its
     /// standard error. However short the run is: --transient, --record, --longest and --patience say for how long it is followed for that.
@@ -57,13 +57,13 @@ pub(super) struct Arguments {
     #[command(flatten)]
     budget: BudgetArguments,
     /// Draw follower, cam, gap and contact force over the last revolutions (.svg, .png or .pdf), or write them as CSV (.csv).
-    #[arg(long, value_name = "FILE", value_parser = picture_or_table, conflicts_with = "impacts", group = "picture")]
-    trace: Option<PathBuf>,
+    #[arg(long, value_name = "FILE", value_parser = picture_or_table, alias = "trace", conflicts_with = "impacts", group = "picture")]
+    out: Option<PathBuf>,
     /// Draw the gap against its velocity over the last revolutions (.svg, .png or .pdf).
     #[arg(long, value_name = "FILE", value_parser = drawn_only, conflicts_with = "impacts", group = "picture")]
     phase_plane: Option<PathBuf>,
-    /// Moments of each revolution that --trace shows, beside the events [default: 3600 in a picture, 360 in a table].
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000), requires = "trace")]
+    /// Moments of each revolution that --out shows, beside the events [default: 3600 in a picture, 360 in a table].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000), requires = "out")]
     points_per_revolution: Option<u32>,
     /// How many revolutions are drawn [default: 2].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1000))]
@@ -76,22 +76,20 @@ pub(super) struct Arguments {
 const DRAWN: u64 = 2;
 
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
-    let streams = [&arguments.events, &arguments.strobe_out, &arguments.trace].map(|path| is_standard(path.as_ref()));
-    let streams = streams.into_iter().chain([arguments.summary]).filter(|to_standard| *to_standard).count();
+    let streams = [&arguments.events, &arguments.strobe_out, &arguments.out].map(|path| is_standard(path.as_ref()));
+    let streams = streams.into_iter().chain([arguments.answer.json]).filter(|to_standard| *to_standard).count();
     if streams > 1 {
         let words =
-            "--events -, --strobe-out -, --trace - and --summary all print to standard output: give the tables files";
+            "--events -, --strobe-out -, --out - and --json all print to standard output: give the tables files";
         return Err(CommandError::Words(words.into()));
     }
-    let Arguments { events, strobe_out, trace, phase_plane, .. } = arguments;
+    let Arguments { events, strobe_out, out: trace, phase_plane, .. } = arguments;
     let results =
-        [("--events", events), ("--strobe-out", strobe_out), ("--trace", trace), ("--phase-plane", phase_plane)];
+        [("--events", events), ("--strobe-out", strobe_out), ("--out", trace), ("--phase-plane", phase_plane)];
     let files = results.iter().filter_map(|(option, path)| Some((*option, path.as_deref()?)));
     file::distinct(files.filter(|(_, path)| path.as_os_str() != "-"))?;
     if arguments.drawn.is_some() && trace.is_none() && phase_plane.is_none() {
-        return Err(CommandError::Words(
-            "--drawn says how much --trace and --phase-plane draw: neither is there".into(),
-        ));
+        return Err(CommandError::Words("--drawn says how much --out and --phase-plane draw: neither is there".into()));
     }
     let model = arguments.model.read_as_drawn(session)?;
     arguments.start.doubt(session);
@@ -141,7 +139,10 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         };
         Ok(file.as_mut().map_or(Ok(()), |file| file.write_all(lines.as_bytes()))?)
     };
-    let run = watched("", |watch| simulation.run(wanted, watch, see))?;
+    let mut run = watched("", |watch| simulation.run(wanted, watch, see))?;
+    if arguments.answer.json || streams == 0 {
+        run.loads = RunLoads::of(&model, machine, &run)?;
+    }
     let seen = |points: u32| {
         let points = arguments.points_per_revolution.unwrap_or(points);
         figures::TracedRun::new(machine, run.before_drawn, drawn.min(arguments.revolutions), points)
@@ -163,8 +164,8 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         files.push(canvas.draw(phase_plane_figure(&title, &seen(figures::TracedRun::DRAWN)?), &model.units)?);
     }
     super::commit(files)?;
-    if arguments.summary || streams == 0 {
-        session.answer(&run, arguments.summary)?;
+    if arguments.answer.json || streams == 0 {
+        session.answer(&run, &arguments.answer)?;
     }
     Ok(Exit::Agrees)
 }

@@ -2,22 +2,25 @@
 
 use std::path::PathBuf;
 
+use super::numbers::{NamedSpan, Span, Speeds, axis, positive, speeds as typed};
+use super::over::{values, varied};
 use super::picture::{PictureArguments, Target, is_standard, picture_or_table};
-use super::start::{BudgetArguments, RangeAxis, StartArguments, positive, range_axis, rpm_or_range};
-use super::{CommandError, Exit, ModelArgument, Session, progress::watched};
+use super::start::{BudgetArguments, StartArguments};
+use super::{AnswerArguments, CommandError, Exit, ModelArgument, Session, progress::watched};
 use crate::figures::{corner_marks, speeds_figure};
 use crate::show::csv;
 use corner_impact::cam::Cam;
 use corner_impact::orbit::Parameter;
 use corner_impact::orbit::long_run::Budget;
-use corner_impact::study::StudyError;
 use corner_impact::study::attractors::{Resolution, Step};
 use corner_impact::study::speeds::{speeds, usual_range};
 use corner_impact::study::survey::{Over, Spacing};
 use corner_impact_plot::Look;
 use corner_impact_plot::layout::WIDTH;
 
-/// Tells which motions a machine ends on at which speeds, or values of another number, where each of them begins and ends, and how many starts end on each.
+/// Tells which motions a machine ends on at which speeds.
+///
+/// Or at which values of another number: where each motion begins and ends, and how many starts end on it.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n\
     \x20 corner-impact speeds\n\
@@ -30,11 +33,11 @@ pub(super) struct Arguments {
     #[command(flatten)]
     model: ModelArgument,
     /// Lowest and highest speed, and with --over the one speed [default: from below where the follower first leaves the cam up to the end of the model's [study], or to twice that speed, or twice that of its spring where it stays on the cam].
-    #[arg(long, value_name = "LO:HI|R", value_parser = rpm_or_range, allow_hyphen_values = true)]
-    rpm: Option<[f64; 2]>,
+    #[arg(long, value_name = "LO:HI[:N]|R", value_parser = typed, allow_hyphen_values = true)]
+    rpm: Option<Speeds>,
     /// A number of the model to go over in place of the speed: from where to where, at how many values at least, and whether these are spaced by their logarithm.
-    #[arg(long, value_name = "NAME=LO:HI[:N][:log]", value_parser = range_axis, allow_hyphen_values = true)]
-    over: Option<RangeAxis>,
+    #[arg(long, value_name = "NAME=LO:HI[:N][:log]", value_parser = axis, allow_hyphen_values = true)]
+    over: Option<NamedSpan>,
     /// The least number of values that are run.
     #[arg(long, value_name = "N", default_value_t = 300, value_parser = clap::value_parser!(u32).range(2..=100_000))]
     speeds: u32,
@@ -52,9 +55,8 @@ pub(super) struct Arguments {
     /// Begin at each value on the stable orbits of two impacts in one revolution, too: a search by intervals finds all of them but next to a fold, a graze or a corner, in up to some seconds a value.
     #[arg(long, conflicts_with_all = ["state", "relative_velocity"])]
     two_impacts: bool,
-    /// Print one JSON document instead of the page.
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    answer: AnswerArguments,
     /// A picture (.svg, .png, .pdf) of impacts, attractors and shares over the speeds, or a table (.csv, or - for standard output).
     #[arg(long, value_name = "FILE", value_parser = picture_or_table, group = "picture")]
     out: Option<PathBuf>,
@@ -65,23 +67,20 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
     let model = arguments.model.read(session)?;
     let corners = corner_marks(&Cam::new(&model)?);
-    let (parameter, rpm, range, count, spacing) = match (&arguments.over, arguments.rpm) {
-        (Some(_), Some([low, high])) if low < high => return Err(StudyError::RangeAndNumber { low, high }.into()),
-        (Some((name, range, count, spacing)), rpm) => {
-            let parameter = arguments.model.varied(&model, name, "--over")?;
-            (parameter, rpm.map(|[rpm, _]| rpm), *range, *count, *spacing)
-        }
-        (None, Some([rpm, other])) if rpm == other => {
-            let words =
-                format!("--rpm {rpm} is one speed: LO:HI is from where to where, or --over NAME=LO:HI is what varies");
-            return Err(CommandError::Words(words));
-        }
-        (None, rpm) => {
-            let range = rpm.map_or_else(|| usual_range(&model), Ok)?;
-            (Parameter::Speed, None, range, None, Spacing::Linear)
+    let (rpm, what) = varied(arguments.rpm, arguments.over.as_ref())?;
+    let (name, span) = match what {
+        Some(what) => what,
+        None => {
+            let usual = Span { ends: usual_range(&model)?, count: None, spacing: Spacing::Linear };
+            (Parameter::Speed.name().to_owned(), usual)
         }
     };
-    let count = count.unwrap_or(arguments.speeds);
+    let Span { ends: range, count, spacing } = span;
+    let parameter = arguments.model.varied(&model, &name, "--over")?;
+    let count = match count {
+        None => arguments.speeds,
+        Some(count) => values(count)?,
+    };
     let step =
         arguments.step.map_or_else(|| Step::for_values(range, count, spacing), |step| Step::at_most(step, spacing));
     arguments.start.doubt(session);
@@ -97,5 +96,5 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         Target::create(path, &mut *session.out, look)?
             .fill(&model.units, table, || Ok(speeds_figure(&found, &corners, across)))?;
     }
-    if is_standard(arguments.out.as_ref()) { Ok(Exit::Agrees) } else { session.answer(&found, arguments.json) }
+    if is_standard(arguments.out.as_ref()) { Ok(Exit::Agrees) } else { session.answer(&found, &arguments.answer) }
 }

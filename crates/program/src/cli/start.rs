@@ -1,14 +1,14 @@
-//! Arguments that more than one subcommand takes: speeds, and where a run starts.
+//! Where runs start, and for how long they are followed.
 
 use std::f64::consts::TAU;
 
 use super::CommandError;
+use super::numbers::{angle, count, finite, not_negative};
 use super::session::Session;
 use corner_impact::cam::within_a_turn;
 use corner_impact::flight::State;
 use corner_impact::orbit::long_run::Budget;
-use corner_impact::study::survey::{Placed, Sample, Spacing, Start, Values, limits};
-use corner_impact::untrusted;
+use corner_impact::study::survey::{Placed, Sample, Start};
 
 /// Where the run starts, or the runs of a survey.
 #[derive(clap::Args)]
@@ -109,133 +109,6 @@ pub(super) fn cam_angle(option: &str, angle: f64, session: &mut Session<'_>) -> 
         session.note(&format!("{option}: {angle} rad is {degrees:.4} deg of a turn; {angle}deg is in degrees"));
     }
     of_turn
-}
-
-pub(super) fn finite(text: &str) -> Result<f64, String> {
-    let number: f64 = text.trim().parse().map_err(|_| format!("\"{}\" is not a number", untrusted::value(text)))?;
-    if number.is_finite() { Ok(number) } else { Err("must be a finite number".into()) }
-}
-
-/// An angle, rad: `1.57`, or `90deg`.
-pub(super) fn angle(text: &str) -> Result<f64, String> {
-    match text.trim().strip_suffix("deg") {
-        Some(degrees) => finite(degrees).map(f64::to_radians),
-        None => finite(text),
-    }
-}
-
-pub(super) fn positive(text: &str) -> Result<f64, String> {
-    let number = finite(text)?;
-    if number > 0.0 { Ok(number) } else { Err("must be a finite number above 0".into()) }
-}
-
-pub(super) fn not_negative(text: &str) -> Result<f64, String> {
-    let number = finite(text)?;
-    if number >= 0.0 { Ok(number) } else { Err("must be a finite number, 0 or more".into()) }
-}
-
-/// How many of something.
-pub(super) fn count(text: &str) -> Result<u64, String> {
-    text.trim().parse().map_err(|_| format!("must be a whole number from 0 to {}, written in digits", u64::MAX))
-}
-
-/// A speed that a simulation can turn at.
-pub(super) fn rpm(text: &str) -> Result<f64, String> {
-    limits::speed(finite(text)?)
-}
-
-/// `LO:HI` of what `number` takes.
-fn ends(text: &str, number: fn(&str) -> Result<f64, String>) -> Result<[f64; 2], String> {
-    let (low, high) = text.split_once(':').ok_or("must be LO:HI: from where to where")?;
-    limits::range([number(low)?, number(high)?])
-}
-
-/// `LO:HI`, any numbers.
-pub(super) fn range(text: &str) -> Result<[f64; 2], String> {
-    ends(text, finite)
-}
-
-/// `LO:HI`, speeds.
-pub(super) fn rpm_range(text: &str) -> Result<[f64; 2], String> {
-    ends(text, rpm)
-}
-
-/// `LO:HI`, speeds, or `R` for a range of one.
-pub(super) fn rpm_or_range(text: &str) -> Result<[f64; 2], String> {
-    if text.contains(':') { rpm_range(text) } else { rpm(text).map(|rpm| [rpm; 2]) }
-}
-
-/// `NAME=LO:HI`.
-pub(super) fn parameter(text: &str) -> Result<(String, [f64; 2]), String> {
-    let Some((name, ends)) = text.split_once('=').filter(|(_, ends)| ends.contains(':')) else {
-        return Err("must be NAME=LO:HI: what changes, and from where to where".into());
-    };
-    Ok((name.trim().into(), range(ends)?))
-}
-
-/// `LO:HI:N` or `LO:HI:N:log`, speeds.
-pub(super) fn speeds(text: &str) -> Result<Values, String> {
-    spaced(text, rpm, "speed")
-}
-
-/// `NAME=LO:HI`, with how many values and the spacing, if these are named.
-pub(super) type RangeAxis = (String, [f64; 2], Option<u32>, Spacing);
-
-/// `NAME=LO:HI`, `NAME=LO:HI:N`, `NAME=LO:HI:log` or `NAME=LO:HI:N:log`.
-pub(super) fn range_axis(text: &str) -> Result<RangeAxis, String> {
-    let bare = text.trim_end();
-    let (bare, spacing) =
-        bare.strip_suffix(":log").map_or((bare, Spacing::Linear), |bare| (bare, Spacing::Logarithmic));
-    if let Ok((name, [low, high])) = parameter(bare) {
-        return Ok((name, [low, high], None, limits::spaced(low, spacing)?));
-    }
-    let (name, Values { low, high, count, spacing }) = axis(text)?;
-    match u32::try_from(count).ok().filter(|count| (2..=100_000).contains(count)) {
-        Some(count) if low < high => Ok((name, [low, high], Some(count), spacing)),
-        Some(_) => Err(format!("{low} is not below {high}")),
-        None => Err(format!("{count} values: there must be 2 to 100000")),
-    }
-}
-
-/// One speed, or several of them.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Rpm {
-    One(f64),
-    Range(Values),
-}
-
-/// `R`, or `LO:HI:N`.
-pub(super) fn rpm_or_speeds(text: &str) -> Result<Rpm, String> {
-    if text.contains(':') { speeds(text).map(Rpm::Range) } else { rpm(text).map(Rpm::One) }
-}
-
-/// `NAME=LO:HI:N` or `NAME=LO:HI:N:log`.
-pub(super) fn axis(text: &str) -> Result<(String, Values), String> {
-    let Some((name, values)) = text.split_once('=') else {
-        return Err("must be NAME=LO:HI:N: what changes, from where to where, and at how many values".into());
-    };
-    let name = name.trim();
-    let values = if name == "rpm" { speeds(values) } else { spaced(values, finite, "value") };
-    Ok((name.into(), values?))
-}
-
-/// `LO:HI:N` of what `number` takes, spaced evenly or, with `:log`, evenly in the logarithm.
-fn spaced(text: &str, number: fn(&str) -> Result<f64, String>, what: &str) -> Result<Values, String> {
-    let parts: Vec<&str> = text.split(':').collect();
-    let (low, high, count, spacing) = match parts.as_slice() {
-        [low, high, count] => (low, high, count, Spacing::Linear),
-        [low, high, count, spacing] if spacing.trim() == "log" => (low, high, count, Spacing::Logarithmic),
-        [_, _, _, other] => return Err(format!("\"{}\" is no spacing: it can only be log", untrusted::value(other))),
-        _ => {
-            return Err(format!(
-                "must be LO:HI:N: lowest {what}, highest {what}, how many; and :log, if they are to be spaced by it"
-            ));
-        }
-    };
-    let (low, high) = (number(low)?, number(high)?);
-    let count: usize =
-        count.trim().parse().map_err(|_| format!("\"{}\" is not a number of {what}s", untrusted::value(count)))?;
-    Values { low, high, count, spacing }.checked(what)
 }
 
 pub(super) fn state(text: &str) -> Result<State, String> {

@@ -17,12 +17,13 @@ pub(super) fn threads(text: &str) -> Result<usize, String> {
 }
 
 /// Starts those that are there for everything. The variable may also be empty or 0, which says nothing.
-pub(super) fn start() -> Result<(), CommandError> {
+pub(super) fn start(asked: Option<usize>) -> Result<(), CommandError> {
     let said = std::env::var_os(VARIABLE).unwrap_or_default();
     let said = said.to_string_lossy();
-    let asked = match said.as_ref() {
-        "" | "0" => 0,
-        text => threads(text)
+    let asked = match (asked, said.as_ref()) {
+        (Some(asked), _) => asked,
+        (None, "" | "0") => 0,
+        (None, text) => threads(text)
             .map_err(|words| CommandError::Words(format!("{VARIABLE} = {}: {words}", untrusted::value(text))))?,
     };
     // Where a program runs several commands, the first has started them.

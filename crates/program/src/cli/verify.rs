@@ -1,9 +1,13 @@
 //! `corner-impact verify [MODEL]`.
 
-use super::{CommandError, Exit, ModelArgument, Session, progress::watched};
-use corner_impact::study::verify::{External, verify_watched};
+use super::external::ExternalArguments;
+use super::{AnswerArguments, CommandError, Exit, ModelArgument, Session, progress::watched};
+use corner_impact::cam::Cam;
+use corner_impact::study::verify::verify_watched;
 
-/// Finds the corner impact of a model, computes its map by every route, and says whether they agree.
+/// Computes the map at a corner impact by every route.
+///
+/// It finds the corner impact of a model first, and says whether the routes agree.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n\
     \x20 corner-impact verify\n\
@@ -14,22 +18,24 @@ use corner_impact::study::verify::{External, verify_watched};
 pub(super) struct Arguments {
     #[command(flatten)]
     model: ModelArgument,
-    /// Print one JSON document instead of the page.
-    #[arg(long)]
-    json: bool,
-    /// Leave out the routes that need Python (symbolic, scipy, certificate), and say so.
-    #[arg(long)]
-    no_external: bool,
+    #[command(flatten)]
+    answer: AnswerArguments,
+    #[command(flatten)]
+    external: ExternalArguments,
 }
 
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
     let model = arguments.model.read(session)?;
-    let external = if arguments.no_external { External::LeftOut } else { External::Run };
-    let findings = watched("", |watch| verify_watched(&model, external, watch))?;
+    if !Cam::new(&model)?.corners().iter().any(|corner| corner.jump_order <= 2) {
+        let words = "the acceleration of this cam jumps nowhere, so there is no corner impact to verify; `cam`, `design`, `simulate` and `speeds` \
+                     are for every cam";
+        return Err(CommandError::Words(format!("{}: {words}", model.file())));
+    }
+    let findings = watched("", |watch| verify_watched(&model, arguments.external.routes(), watch))?;
     for failure in findings.skipped.iter().filter(|skipped| skipped.failed) {
         // The page says the same.
         session.complain(&format!("{} did not run: {}", failure.route, failure.why));
     }
-    session.answer(&findings, arguments.json)?;
+    session.answer(&findings, &arguments.answer)?;
     Ok(if findings.agrees { Exit::Agrees } else { Exit::Disagrees })
 }

@@ -202,7 +202,7 @@ fn certificate(of: &Certificate) -> Vec<Block> {
     entries.extend([("C".into(), pair(&of.c)), ("D".into(), words![&of.d.mid])]);
     let mut conditions = Table::new(
         "Conditions",
-        [Column::left("condition", 2, 34), Column::left("value", 2, 38), Column::left("sign", 2, 0)],
+        [Column::left("condition", 2, 34), Column::left("value", 2, 38), Column::left("sign", 2, 0).missable(1)],
     );
     for condition in &of.conditions {
         let sign = if condition.sign > 0 { "above 0" } else { "below 0" };

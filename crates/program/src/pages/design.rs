@@ -107,15 +107,16 @@ pub(crate) fn margin(found: &Design) -> Option<Words> {
 pub(crate) fn speeds(found: &Design) -> Vec<Block> {
     let is_open = Measured::noisy(&found.measured).is_some();
     let force = found.units.force.name();
-    let mut columns = vec![number(found.over.head()), number(format!("least force {force}")), number("at deg")];
+    let mut columns =
+        vec![number(found.over.head()), number(format!("least force {force}")), number("at deg").missable(2)];
     let head = |name: &str, unit: &'static str| number(words![name, Span::Unit(unit)]);
     if !found.loads.is_empty() {
         columns.extend([
             head("impact ", "m/s"),
             head("gap ", "m"),
             number("off cam %"),
-            number("lost J/rev"),
-            number(format!("most force {force}")),
+            number("lost J/rev").missable(3),
+            number(format!("most force {force}")).missable(1),
         ]);
     }
     let by = found.over.at_speed("speed");

@@ -56,8 +56,8 @@ fn table(found: &[LocatedImpact]) -> Table {
         Column::right("corner deg", 13),
         Column::right("order", 7),
         Column::right("impacts", 9),
-        Column::right("v before", 12),
-        Column::right("v after", 12),
+        Column::right("v before", 12).missable(1),
+        Column::right("v after", 12).missable(2),
         Column::left("what happens", 2, 17),
         Column::left("routes", 0, 0),
     ];

@@ -146,7 +146,7 @@ fn one(number: usize, orbit: &PeriodicOrbit, error: Option<&OrbitUncertainty>) -
     for impact in orbit.impacts().take(SHOWN) {
         let (angle, turn) = (of_angle.text(impact.cam_angle.to_degrees()), impact.revolution);
         let (before, after) = (of_velocity.text(impact.velocity_before), of_velocity.text(impact.velocity_after));
-        let text = format!("     impact at {angle:>11} deg of revolution {turn}   v {before:>14} -> {after} ");
+        let text = format!("     impact at {angle:>10} deg of revolution {turn}  v {before:>12} -> {after} ");
         line(words![text, Span::Unit("m/s")]);
     }
     if impacts > SHOWN {

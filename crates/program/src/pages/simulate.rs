@@ -24,6 +24,21 @@ impl Paged for Run {
                 place
             ],
         ];
+        if let Some(loads) = &self.loads {
+            let turns = words::many(loads.loads_over_revolutions, "revolution");
+            let part = if loads.loads_over_revolutions as f64 + 1.0 > *revolutions { "" } else { "the last " };
+            lines.push(sentence![
+                "  hardest impact ",
+                (loads.hardest_impact_m_s, Digits::Significant(5)),
+                " ",
+                Span::Unit("m/s"),
+                ", largest gap ",
+                (loads.largest_gap_m, Digits::Significant(5)),
+                " ",
+                Span::Unit("m"),
+                format!(", off the cam {:.1} % of the time, over {part}{turns}", 100.0 * loads.off_cam_share)
+            ]);
+        }
         if let Some(Lyapunov { lyapunov_per_revolution: exponent, lyapunov_standard_error, ending, followed, .. }) =
             &self.long_run
         {

@@ -205,7 +205,7 @@ pub(crate) fn table(found: &SpeedSurvey) -> Table {
         Column { gap: 1, ..Column::right(ends[1], 10) },
         Column::left("motion", 2, 20),
         Column { gap: 1, ..Column::right("starts (%)", 8) },
-        Column::left("begins with – ends with", 2, 0),
+        Column::left("begins with – ends with", 2, 0).missable(1),
     ];
     let mut table = Table::new(&format!("Attractors by rising {}", found.over.value()), columns);
     for attractor in &found.attractors {

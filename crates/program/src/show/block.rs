@@ -172,6 +172,8 @@ pub enum Block {
     Heading(Words),
     /// A literal line with its spaces; if it is too long for a terminal, it continues under its second column.
     Line(Words),
+    /// A command line; where it is too long for a terminal, it goes on after a backslash.
+    Command(String),
     /// A paragraph with an indent, in columns of a terminal.
     Paragraph(usize, Words),
     /// A remark on the block before it.
@@ -230,7 +232,7 @@ pub(crate) fn in_units(blocks: Vec<Block>, units: &Units) -> Vec<Block> {
         Block::Brief(blocks) => Block::Brief(in_units(blocks, units)),
         Block::Full(blocks) => Block::Full(in_units(blocks, units)),
         Block::About(what, blocks) => Block::About(what, in_units(blocks, units)),
-        Block::Gap | Block::Markup(_) => block,
+        Block::Command(_) | Block::Gap | Block::Markup(_) => block,
     };
     blocks.into_iter().map(of_block).collect()
 }
@@ -255,12 +257,14 @@ pub struct Column {
     pub least: usize,
     /// Whether the cells are left-aligned; otherwise right-aligned.
     pub left: bool,
+    /// Rank among the columns that are left out of a narrow page: the highest first, 0 for never.
+    pub missable: u8,
 }
 
 impl Column {
     /// A left-aligned column.
     pub(crate) fn left(head: impl Into<Words>, gap: usize, least: usize) -> Self {
-        Self { head: head.into(), gap, least, left: true }
+        Self { head: head.into(), gap, least, left: true, missable: 0 }
     }
 
     /// A column of words in the usual style.
@@ -275,7 +279,12 @@ impl Column {
 
     /// A right-aligned column.
     pub(crate) fn right(head: impl Into<Words>, least: usize) -> Self {
-        Self { head: head.into(), gap: 0, least, left: false }
+        Self { head: head.into(), gap: 0, least, left: false, missable: 0 }
+    }
+
+    /// The same column, left out of a page that is too narrow after those of a higher rank.
+    pub(crate) fn missable(self, rank: u8) -> Self {
+        Self { missable: rank, ..self }
     }
 }
 

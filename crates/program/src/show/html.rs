@@ -17,6 +17,7 @@ fn block(block: &Block) -> Markup {
             Block::Title(text) => h1 { (words(text)) }
             Block::Heading(text) => h3 { (words(text)) }
             Block::Line(text) | Block::Paragraph(_, text) => @if !text.is_empty() { p { (words(text)) } }
+            Block::Command(line) => p { code { (line) } }
             Block::Note(text) => p.note { (words(text)) }
             Block::Entries(_, entries) => table.entries {
                 tbody { @for (name, text) in entries { tr { th scope="row" { (words(name)) } td { (words(text)) } } } }

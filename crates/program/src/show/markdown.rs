@@ -43,6 +43,7 @@ fn block(out: &mut String, block: &Block) -> fmt::Result {
         Block::Title(words) => writeln!(out, "# {}", text(words)),
         Block::Heading(words) => writeln!(out, "### {}", text(words)),
         Block::Line(words) | Block::Paragraph(_, words) | Block::Note(words) => writeln!(out, "{}", text(words)),
+        Block::Command(line) => writeln!(out, "    {line}"),
         Block::Entries(_, entries) => {
             entries.iter().try_for_each(|(name, words)| writeln!(out, "- {}: {}", text(name), text(words)))
         }

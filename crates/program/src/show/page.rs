@@ -9,7 +9,7 @@ use std::fmt::{self, Write};
 use textwrap::core::display_width;
 use textwrap::{Options, WordSeparator, WordSplitter, WrapAlgorithm};
 
-use crate::show::block::{Block, Span, Table, TextMark, Words};
+use crate::show::block::{Block, Column, Span, Table, TextMark, Words};
 use corner_impact::untrusted;
 use corner_impact_plot::formula;
 
@@ -44,6 +44,8 @@ impl TextMark {
 #[derive(Clone, Debug)]
 pub struct Page {
     width: usize,
+    /// Whether tables have all their columns, however narrow the page is.
+    has_all: bool,
     text: String,
     /// Start of the current line in the text.
     line: usize,
@@ -71,7 +73,7 @@ pub trait Paged {
 
     /// Page for a terminal of `width` columns.
     fn page(&self, width: usize) -> Result<Page, fmt::Error> {
-        Page::of(width, &self.blocks())
+        Page::of(width, false, &self.blocks())
     }
 
     /// Text of the page at the default width, without marks.
@@ -81,9 +83,9 @@ pub trait Paged {
 }
 
 impl Page {
-    /// Lays out `blocks` as a page.
-    pub(crate) fn of(width: usize, blocks: &[Block]) -> Result<Self, fmt::Error> {
-        let mut page = Self { width, text: String::new(), line: 0 };
+    /// Lays out `blocks` as a page; where it is too narrow for a table, columns that can be missed are left out unless it `has_all`.
+    pub(crate) fn of(width: usize, has_all: bool, blocks: &[Block]) -> Result<Self, fmt::Error> {
+        let mut page = Self { width, has_all, text: String::new(), line: 0 };
         page.blocks(blocks)?;
         Ok(page)
     }
@@ -98,7 +100,7 @@ impl Page {
     /// Writes an indented paragraph, wrapped.
     fn paragraph(&mut self, indent: usize, text: &str) -> fmt::Result {
         let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
-        lines(&text, self.width.saturating_sub(indent))
+        lines(&text, self.width.min(WIDEST_TEXT).saturating_sub(indent))
             .iter()
             .try_for_each(|line| writeln!(self, "{:indent$}{line}", ""))
     }
@@ -112,6 +114,10 @@ impl Page {
                 self.underlined(&text(words), '-')
             }
             Block::Line(words) => writeln!(self, "{}", text(words)),
+            Block::Command(line) => {
+                let options = options(self.width - 2).initial_indent("  ").subsequent_indent("      ");
+                writeln!(self, "{}", textwrap::wrap(&untrusted::visible(line), options).join(" \\\n"))
+            }
             Block::Paragraph(indent, words) => self.paragraph(*indent, &text(words)),
             Block::Note(words) => self.paragraph(2, &text(words)),
             Block::Entries(width, entries) => {
@@ -177,9 +183,12 @@ pub(crate) fn text(words: &Words) -> String {
     words.0.iter().map(of).collect()
 }
 
+/// Widest line of text: longer ones are hard to read. Tables may be wider.
+const WIDEST_TEXT: usize = 80;
+
 /// Options for wrapping: lines break only at spaces, as late as possible; a word that is too long stays whole.
 pub(crate) fn options<'a>(width: usize) -> Options<'a> {
-    Options::new(width)
+    Options::new(width.min(WIDEST_TEXT))
         .break_words(false)
         .word_separator(WordSeparator::AsciiSpace)
         .wrap_algorithm(WrapAlgorithm::FirstFit)
@@ -212,63 +221,140 @@ type Layout = Vec<(usize, usize)>;
 /// Least width in which the last column's words are wrapped.
 const NARROWEST: usize = 18;
 
-impl Page {
-    /// Writes a table with its gaps, or without them. If even that is too wide, writes several tables, or row by row.
-    fn table(&mut self, table: &Table) -> fmt::Result {
-        let Some(last) = table.columns.len().checked_sub(1) else { return Ok(()) };
-        let heads: Vec<String> = table.columns.iter().map(|column| text(&column.head)).collect();
-        let rows: Vec<Vec<String>> = table.rows.iter().map(|row| row.cells.iter().map(text).collect()).collect();
+/// A table, or some of its columns, as text.
+#[derive(Clone)]
+struct Cells<'a> {
+    columns: Vec<&'a Column>,
+    heads: Vec<String>,
+    rows: Vec<Vec<String>>,
+}
+
+impl<'a> Cells<'a> {
+    fn of(table: &'a Table) -> Self {
+        Self {
+            columns: table.columns.iter().collect(),
+            heads: table.columns.iter().map(|column| text(&column.head)).collect(),
+            rows: table.rows.iter().map(|row| row.cells.iter().map(text).collect()).collect(),
+        }
+    }
+
+    /// Some of the columns.
+    fn only(&self, is_kept: impl Fn(usize) -> bool) -> Self {
+        fn some<T: Clone>(all: &[T], is_kept: impl Fn(usize) -> bool) -> Vec<T> {
+            all.iter().enumerate().filter(|(column, _)| is_kept(*column)).map(|(_, it)| it.clone()).collect()
+        }
+        Self {
+            columns: some(&self.columns, &is_kept),
+            heads: some(&self.heads, &is_kept),
+            rows: self.rows.iter().map(|row| some(row, &is_kept)).collect(),
+        }
+    }
+
+    /// Width of the widest cell of each column, with these heads.
+    fn natural(&self, heads: &[String]) -> Vec<usize> {
         let widest = |column: usize| {
-            let cells = rows.iter().filter_map(|row| row.get(column)).chain([&heads[column]]);
+            let cells = self.rows.iter().filter_map(|row| row.get(column)).chain([&heads[column]]);
             cells.flat_map(|cell| cell.split('\n')).map(display_width).max().unwrap_or(0)
         };
-        let natural: Vec<usize> = (0..=last).map(widest).collect();
-        let wide: Layout = table
-            .columns
-            .iter()
-            .zip(&natural)
-            .map(|(column, widest)| (column.gap, (*widest).max(column.least)))
-            .collect();
-        let close: Layout = natural.iter().map(|widest| (2, *widest)).collect();
-        let takes = |layout: &[(usize, usize)]| layout.iter().map(|(gap, width)| gap + width).sum::<usize>();
-        // Words may be wrapped, numbers not.
-        let folded = if table.columns[last].left { natural[last].min(NARROWEST) } else { natural[last] };
-        let choices = [(&wide, natural[last]), (&close, natural[last]), (&wide, folded), (&close, folded)];
-        let fits = |(layout, room): &(&Layout, usize)| takes(&layout[..last]) + layout[last].0 + room <= self.width;
-        let Some(kept) = table.repeated else {
-            return match choices.iter().find(|choice| fits(choice)) {
-                Some((layout, _)) => self.side_by_side(table, layout, &heads, &rows),
-                None => self.stacked(&heads, &rows),
-            };
+        (0..self.columns.len()).map(widest).collect()
+    }
+
+    /// The layout with the gaps and widths that the columns ask for.
+    fn wide(&self) -> Layout {
+        let columns = self.columns.iter().zip(self.natural(&self.heads));
+        columns.map(|(column, widest)| (column.gap, widest.max(column.least))).collect()
+    }
+
+    /// The layout with the least gaps, with these heads.
+    fn close(&self, heads: &[String]) -> Layout {
+        self.natural(heads).into_iter().map(|widest| (2, widest)).collect()
+    }
+
+    /// Heads and layout for a page of `width` columns; none if it is too narrow.
+    fn layout(&self, width: usize) -> Option<(Vec<String>, Layout)> {
+        let last = self.columns.len() - 1;
+        // Heads in as many lines as their cells are narrow.
+        let longest = |head: &str| head.split_whitespace().map(display_width).max().unwrap_or(0);
+        let of_cells = self.natural(&vec![String::new(); last + 1]);
+        let heads = self.heads.iter().zip(of_cells);
+        let broken: Vec<String> = heads.map(|(head, cells)| lines(head, cells.max(longest(head))).join("\n")).collect();
+        let choices =
+            [(&self.heads, self.wide()), (&self.heads, self.close(&self.heads)), (&broken, self.close(&broken))];
+        let fits = |(_, layout): &&(&Vec<String>, Layout), folded: bool| {
+            // Words may be wrapped, numbers not.
+            let (gap, widest) = layout[last];
+            let room = if folded && self.columns[last].left { widest.min(NARROWEST) } else { widest };
+            layout[..last].iter().map(|(gap, width)| gap + width).sum::<usize>() + gap + room <= width
         };
-        let between = 1..(last + 1).saturating_sub(kept).max(1);
-        let each = wide[between.clone()].iter().map(|(gap, width)| gap + width).max().unwrap_or(1);
-        let room = self.width.saturating_sub(takes(&wide[..1]) + takes(&wide[between.end..]));
-        // As few tables as possible, with columns evenly divided.
-        let tables = between.len().div_ceil((room / each).max(1)).max(1);
+        let whole = choices.iter().find(|choice| fits(choice, false));
+        let found = whole.or_else(|| choices.iter().find(|choice| fits(choice, true)));
+        found.map(|(heads, layout)| ((*heads).clone(), layout.clone()))
+    }
+
+    /// The column that can best be missed, if any can.
+    fn least_needed(&self) -> Option<usize> {
+        let ranked = self.columns.iter().enumerate().filter(|(_, column)| column.missable > 0);
+        ranked.max_by_key(|(_, column)| column.missable).map(|(index, _)| index)
+    }
+}
+
+impl Page {
+    /// Writes a table with its gaps, or without them, or with heads of several lines. Where even that is too wide, columns that can be missed are
+    /// left out, and named below; without any, it is several tables, or row by row.
+    fn table(&mut self, table: &Table) -> fmt::Result {
+        if table.columns.is_empty() {
+            return Ok(());
+        }
+        let cells = Cells::of(table);
+        if let Some(kept) = table.repeated {
+            return self.tables(&cells, kept);
+        }
+        let mut part = cells.clone();
+        let mut left_out = Vec::new();
+        loop {
+            if let Some((heads, layout)) = part.layout(self.width) {
+                self.side_by_side(&part, &heads, &layout)?;
+                break;
+            }
+            let Some(least) = part.least_needed().filter(|_| !self.has_all) else { return self.stacked(&cells) };
+            left_out.push(part.heads[least].trim().replace('\n', " "));
+            part = part.only(|column| column != least);
+        }
+        if left_out.is_empty() {
+            return Ok(());
+        }
+        left_out.reverse();
+        self.paragraph(2, &format!("Left out at this width: {}; --all has every column.", left_out.join(", ")))
+    }
+
+    /// Writes several tables with the first and the `kept` last columns in each, as few as possible, with the others evenly divided.
+    fn tables(&mut self, cells: &Cells<'_>, kept: usize) -> fmt::Result {
+        let count = cells.columns.len();
+        let between = 1..count.saturating_sub(kept).max(1);
+        let takes = |layout: &[(usize, usize)]| layout.iter().map(|(gap, width)| gap + width).sum::<usize>();
+        let needs = |layout: &Layout| {
+            let each = layout[between.clone()].iter().map(|(gap, width)| gap + width).max().unwrap_or(1);
+            let room = self.width.saturating_sub(takes(&layout[..1]) + takes(&layout[between.end..]));
+            between.len().div_ceil((room / each).max(1)).max(1)
+        };
+        let (wide, close) = (cells.wide(), cells.close(&cells.heads));
+        let wide = if needs(&close) < needs(&wide) { close } else { wide };
+        let tables = needs(&wide);
         let columns: Vec<usize> = between.clone().collect();
         for (index, some) in columns.chunks(columns.len().div_ceil(tables).max(1)).enumerate() {
             if index > 0 {
                 writeln!(self)?;
             }
-            let shown: Vec<usize> = [0].into_iter().chain(some.iter().copied()).chain(between.end..=last).collect();
-            fn only<T: Clone>(all: &[T], shown: &[usize]) -> Vec<T> {
-                shown.iter().filter_map(|column| all.get(*column).cloned()).collect()
-            }
-            let rows: Vec<Vec<String>> = rows.iter().map(|row| only(row, &shown)).collect();
-            let part = Table { columns: only(&table.columns, &shown), ..Table::new(&table.label, []) };
-            self.side_by_side(&part, &only(&wide, &shown), &only(&heads, &shown), &rows)?;
+            let part = cells.only(|column| column == 0 || column >= between.end || some.contains(&column));
+            // All parts are as wide as the whole has them.
+            let layout = wide.iter().enumerate();
+            let layout = layout.filter(|(column, _)| *column == 0 || *column >= between.end || some.contains(column));
+            self.side_by_side(&part, &part.heads, &layout.map(|(_, layout)| *layout).collect())?;
         }
         Ok(())
     }
 
-    fn side_by_side(
-        &mut self,
-        table: &Table,
-        layout: &[(usize, usize)],
-        heads: &[String],
-        rows: &[Vec<String>],
-    ) -> fmt::Result {
+    fn side_by_side(&mut self, part: &Cells<'_>, heads: &[String], layout: &Layout) -> fmt::Result {
         let last = layout.len() - 1;
         // Heads of several lines are aligned at the bottom.
         let depth = heads.iter().map(|head| head.split('\n').count()).max().unwrap_or(1);
@@ -280,14 +366,14 @@ impl Page {
             heads.iter().map(part).collect::<Vec<String>>()
         };
         let heads = (0..depth).map(head_line).filter(|head| head.iter().any(|cell| !cell.is_empty()));
-        for row in heads.chain(rows.iter().cloned()) {
+        for row in heads.chain(part.rows.iter().cloned()) {
             let mut line = String::new();
             for (index, cell) in row.iter().enumerate() {
                 let (gap, width) = layout[index];
                 let space = width.saturating_sub(display_width(cell));
-                let (before, behind) = if table.columns[index].left { (gap, space) } else { (gap + space, 0) };
+                let (before, behind) = if part.columns[index].left { (gap, space) } else { (gap + space, 0) };
                 line.push_str(&" ".repeat(before));
-                if index == last && table.columns[index].left {
+                if index == last && part.columns[index].left {
                     let hang = display_width(&line);
                     let hanging = format!("\n{}", " ".repeat(hang));
                     line.push_str(&lines(cell, self.width.saturating_sub(hang).max(1)).join(&hanging));
@@ -302,11 +388,11 @@ impl Page {
         Ok(())
     }
 
-    fn stacked(&mut self, heads: &[String], rows: &[Vec<String>]) -> fmt::Result {
+    fn stacked(&mut self, cells: &Cells<'_>) -> fmt::Result {
         // A head of several lines is one here.
-        let heads: Vec<String> = heads.iter().map(|head| head.trim().replace('\n', " ")).collect();
+        let heads: Vec<String> = cells.heads.iter().map(|head| head.trim().replace('\n', " ")).collect();
         let longest = heads.iter().map(|head| display_width(head)).max().unwrap_or(0);
-        for (number, row) in rows.iter().enumerate() {
+        for (number, row) in cells.rows.iter().enumerate() {
             if number > 0 {
                 writeln!(self)?;
             }

@@ -236,7 +236,7 @@ pub(crate) fn published(found: &Verification) -> Vec<Block> {
         return Vec::new();
     }
     let label = "The paper's printed numbers";
-    let widths = [(2, 20), (0, 20), (0, 18), (0, 22), (0, 0)];
+    let widths = [(2, 20), (0, 20), (0, 14), (0, 16), (0, 0)];
     let mut brief = Table::new(label, widths.map(|(gap, least)| Column::left("", gap, least)));
     let mut columns = ["quantity", "where"].map(Column::words).to_vec();
     columns.extend(["printed", "computed", "differ by", "allowed"].map(Column::number));
@@ -253,8 +253,8 @@ pub(crate) fn published(found: &Verification) -> Vec<Block> {
         brief.row([
             name.clone(),
             place.clone(),
-            format!("differs by {:>7}", Digits::Size.text(*max_abs_diff)).into(),
-            format!(", shares {}", words::shared(shared_decimals(*max_abs_diff))).into(),
+            format!("off by {:>7}", Digits::Size.text(*max_abs_diff)).into(),
+            format!(", {}", words::shared(shared_decimals(*max_abs_diff))).into(),
             verdict.clone(),
         ]);
         for (index, digits) in number.printed.iter().enumerate() {

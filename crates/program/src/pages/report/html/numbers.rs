@@ -45,6 +45,7 @@ fn of_blocks<'a>(blocks: &'a [Block], names: &mut Vec<&'a str>) {
                 of_words(words, names);
             }
             Block::Note(words) => of_words(words, names),
+            Block::Command(_) => {}
             Block::Entries(_, entries) => entries.iter().for_each(|(_, words)| of_words(words, names)),
             Block::Table(table) => {
                 table.rows.iter().flat_map(|row| &row.cells).for_each(|words| of_words(words, names));

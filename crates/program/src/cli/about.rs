@@ -1,0 +1,70 @@
+//! `corner-impact MODEL`: what can be done with a model.
+
+use std::ffi::OsString;
+use std::path::Path;
+
+use clap::CommandFactory;
+
+use super::picture::ends_in;
+use super::{CommandError, Exit, ModelArgument, Session};
+use crate::show::block::{Block, words};
+use crate::show::{Page, words};
+use corner_impact::cam::Cam;
+use corner_impact::study::speeds::usual_range;
+
+/// Says what can be done with a model: the same as `corner-impact MODEL`.
+#[derive(clap::Args)]
+#[command(hide = true)]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    model: ModelArgument,
+}
+
+/// The command line with this command before a model that stands where a command is expected.
+pub(super) fn named(mut words: Vec<OsString>) -> Vec<OsString> {
+    let is_command = |word: &OsString| super::Arguments::command().find_subcommand(word).is_some();
+    let is_model = |word: &&OsString| {
+        let path = Path::new(word);
+        !is_command(word) && (ends_in(path, &["toml", "csv"]) || path.is_file())
+    };
+    if words.get(1).filter(is_model).is_some() {
+        words.insert(1, "about".into());
+    }
+    words
+}
+
+pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
+    let model = arguments.model.read(session)?;
+    let cam = Cam::new(&model)?;
+    let [low, high] = usual_range(&model)?;
+    let of_acceleration = cam.corners().iter().filter(|corner| corner.jump_order == 2).count();
+    let corners = words::many(of_acceleration as u64, "corner");
+    let lead = format!(
+        "cam of law \"{}\" with {corners} where the acceleration jumps; usual speeds are {low} to {high} rpm",
+        model.cam.law()
+    );
+    let mut uses = vec![
+        ("cam", String::new(), "the cam's lift, its corners, and how well it is known"),
+        ("design", String::new(), "up to which speed the follower stays on the cam, and what must be changed"),
+        ("simulate", format!(" --rpm {high}"), "one run: impacts, gap and force"),
+        ("speeds", String::new(), "the motions that it ends on over the speeds"),
+        ("report", String::new(), "all of it on one page for a browser"),
+    ];
+    // The paper's result needs a jump of the acceleration.
+    if of_acceleration > 0 {
+        uses.push(("locate", format!(" --rpm {low}:{high}"), "the speeds at which an orbit hits such a corner"));
+    }
+    if of_acceleration > 0 && model.study.is_some() {
+        uses.push(("verify", String::new(), "the map at the corner impact, by every route"));
+    }
+    let named = session.named.clone();
+    let entry = |(name, rest, what): (&str, String, &'static str)| {
+        [Block::Command(format!("corner-impact {name}{named}{rest}")), Block::Line(words![format!("    {what}")])]
+    };
+    let mut blocks = vec![Block::Title(words![&model.name]), Block::paragraph(lead), Block::Gap];
+    blocks.extend(uses.into_iter().flat_map(entry));
+    let page = Page::of(session.width(), false, &blocks)?;
+    let page = session.shown(&page);
+    session.print(&page)?;
+    Ok(Exit::Agrees)
+}

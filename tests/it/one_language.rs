@@ -1,0 +1,329 @@
+//! Do all commands take the same words, and do pages fit a terminal of 80 columns?
+
+use std::collections::BTreeSet;
+
+use corner_impact_cli::cli::{Exit, Terminal, run_at};
+use tempfile::TempDir;
+
+use crate::command_line::COMMANDS;
+use crate::common::{corner_impact, in_one_line, program, text};
+
+/// A command line in the project's folder: words parted by blanks.
+fn run(line: &str) -> (i32, String, String) {
+    let output = corner_impact(line.split_whitespace());
+    (output.status.code().unwrap(), text(output.stdout), text(output.stderr))
+}
+
+/// What a command prints, but for how long it took.
+fn printed(line: &str) -> String {
+    let (exit, out, err) = run(line);
+    assert_eq!(exit, 0, "{line}: {err}");
+    let is_time = |line: &&str| {
+        line.contains("wall_s") || line.contains("cpu_s") || line.contains(" s of processor") || line.contains(" ns a ")
+    };
+    out.lines().filter(|line| !is_time(line)).map(|line| format!("{line}\n")).collect()
+}
+
+#[test]
+fn older_spellings_do_the_same() {
+    for (old, new) in [
+        ("simulate --rpm 183 --revolutions 3 --summary", "simulate --rpm 183 --revolutions 3 --json"),
+        ("simulate --rpm 183 --revolutions 3 --trace -", "simulate --rpm 183 --revolutions 3 --out -"),
+        ("diagram --rpm 660:670:3 --summary", "diagram --rpm 660:670:3 --json"),
+        ("basins --rpm 678 --grid 2x2 --summary", "basins --rpm 678 --grid 2x2 --json"),
+        (
+            "chart --x rpm=660:670:2 --y mass=1:2:2 --transient 20 --record 10 --summary",
+            "chart --over rpm=660:670:2 --over mass=1:2:2 --transient 20 --record 10 --json",
+        ),
+        (
+            "chart --y mass=1:2:2 --x rpm=660:670:2 --transient 20 --record 10 --out -",
+            "chart --over rpm=660:670:2 --over mass=1:2:2 --transient 20 --record 10 --out -",
+        ),
+        ("continue --from-rpm 700 --parameter rpm=699:701", "continue --rpm 700 --over rpm=699:701"),
+        (
+            "curve --rpm 670:680 --parameter restitution=0.79:0.81 --event corner",
+            "curve --rpm 670:680 --over restitution=0.79:0.81 --event corner",
+        ),
+    ] {
+        let [was, is] = [old, new].map(printed);
+        assert!(was == is && !is.is_empty(), "{old}\n{was}\n{new}\n{is}");
+    }
+    let need = ["design", "models/laws/program.toml", "--speeds", "2", "--need", "no separation to 600 rpm"];
+    let [was, is] = ["--against", "--over"].map(|name| {
+        let output = corner_impact(need.into_iter().chain([name, "stiffness=20000:40000:2"]));
+        assert_eq!(output.status.code(), Some(0), "{}", text(output.stderr));
+        text(output.stdout)
+    });
+    assert!(was == is && is.contains("for each stiffness"), "{is}");
+    // The ends of a picture's axes.
+    let folder = TempDir::new().unwrap();
+    let [was, is] = [["--x", "--y"], ["--x-range", "--y-range"]].map(|[x, y]| {
+        let path = folder.path().join("cam.svg");
+        let output = corner_impact(["cam", "--out", path.to_str().unwrap(), x, "90:180", y, "0.4:0.55"]);
+        assert_eq!(output.status.code(), Some(0), "{}", text(output.stderr));
+        std::fs::read(path).unwrap()
+    });
+    assert!(was == is);
+}
+
+#[test]
+fn speeds_and_axes_have_one_form() {
+    let refused = |line: &str| {
+        let (exit, out, err) = run(line);
+        assert_eq!((exit, out.as_str()), (2, ""), "{line}");
+        in_one_line(&err)
+    };
+    for command in ["simulate", "orbit", "continue --over mass=1:2", "chart --over mass=1:2:2 --over damping=0:1:2"] {
+        let why = refused(&format!("{command} --rpm 600:700"));
+        assert!(why.contains("takes one speed: R"), "{command}: {why}");
+    }
+    for command in ["locate", "curve --over mass=1:2", "report", "figure"] {
+        let why = refused(&format!("{command} --rpm 700"));
+        assert!(why.contains("takes a range: LO:HI"), "{command}: {why}");
+        let why = refused(&format!("{command} --rpm 600:700:3"));
+        assert!(why.contains("chooses itself: LO:HI"), "{command}: {why}");
+    }
+    // A number of values may be left out, and one of --rpm is taken wherever it is of use.
+    let rows = |line: &str| printed(line).lines().count();
+    assert_eq!(
+        rows("basins --over restitution=0.7:0.8 --rpm 700 --grid 1x1 --transient 5 --record 5 --patience 0 --out -"),
+        10
+    );
+    let speeds: serde_json::Value = serde_json::from_str(&printed("design --rpm 60:70:3 --json")).unwrap();
+    assert_eq!(speeds["contact_force"].as_array().unwrap().len(), 3);
+    let found: serde_json::Value = serde_json::from_str(&printed("speeds --rpm 700:702:3 --starts 1 --json")).unwrap();
+    assert!(found["attractors"][0]["shares"].as_array().unwrap().len() < 10, "{found}");
+}
+
+#[test]
+fn numbers_are_taken_as_people_type_them() {
+    assert_eq!(
+        printed("simulate --rpm 183rpm --revolutions 2 --start-angle 90deg --events -"),
+        printed("simulate --rpm 183 --revolutions 2 --start-angle 1.5707963267948966rad --events -")
+    );
+    let set = |value: &str| {
+        let output = corner_impact(["cam", "models/laws/program.toml", "--set", value]);
+        (output.status.code(), text(output.stderr))
+    };
+    assert_eq!(set("mass=2 kg").0, Some(0));
+    assert_eq!(set("mass=2kg").0, Some(0));
+    for (value, says) in [
+        ("mass=900N", "mass is in kg in this model"),
+        ("restitution=0.5kg", "restitution is a number without a unit"),
+        ("mass=1,5", "\"1,5\" may be 1.5 or 15: write a decimal point"),
+        ("mass=heavy", "\"heavy\" is not a number"),
+    ] {
+        let (exit, why) = set(value);
+        assert!(exit == Some(2) && why.contains(says), "{value}: {why}");
+    }
+    for (line, says) in [
+        ("simulate --rpm 1904,8", "may be 1904.8 or 19048"),
+        ("simulate --rpm 30Hz", "\"30Hz\" is not in rpm"),
+        ("simulate --rpm 100 --start-angle 90grad", "is not in rad"),
+        ("locate --rpm 600:760,5", "may be 760.5 or 7605"),
+        ("verify --jsn", "a similar argument exists: '--json'"),
+    ] {
+        let (exit, _, why) = run(line);
+        assert!(exit == 2 && why.contains(says) && !why.contains("-- --"), "{line}: {why}");
+    }
+    assert!(printed("design --speeds 3 --limit force=0.9kN").contains("force of 900 N"));
+}
+
+/// The short page of the program and of each command, and the order in which commands are listed.
+#[test]
+fn short_help_is_a_page() {
+    let help = |words: &[&str]| text(program(words).env("COLUMNS", "80").output().unwrap().stdout);
+    for command in COMMANDS {
+        let (short, long) = (help(&[command, "-h"]), help(&[command, "--help"]));
+        assert!(short.lines().count() <= 30, "{command}\n{short}");
+        assert!(
+            long.contains("--threads") && long.contains("--quiet") && long.lines().count() >= short.lines().count()
+        );
+        assert!(short.lines().chain(long.lines()).all(|line| line.chars().count() <= 80 || line.starts_with("Usage:")));
+    }
+    let (short, long) = (help(&["-h"]), help(&["--help"]));
+    assert!(short.lines().count() <= 30, "{short}");
+    for page in [short, long] {
+        let place = |name: &str| page.find(&format!("  {name} ")).unwrap_or_else(|| panic!("{name} in {page}"));
+        let first = ["new", "cam", "design", "simulate", "speeds"].map(place);
+        assert!(first.is_sorted() && COMMANDS.iter().all(|name| page.contains(name)), "{page}");
+        assert!(page.find("The paper's result").unwrap() > first[4], "{page}");
+    }
+}
+
+/// The command that usually follows, for a person at a terminal alone; and no notes where none are wanted.
+#[test]
+fn a_result_ends_with_what_comes_next() {
+    let told = |line: &str, out: bool| {
+        let (mut printed, mut noted) = (Vec::new(), Vec::new());
+        let words = ["corner-impact"].into_iter().chain(line.split(' ')).map(Into::into);
+        let exit = run_at(Terminal { out, ..Terminal::default() }, words, &mut printed, &mut noted);
+        assert_eq!(exit, Exit::Agrees, "{line}: {}", text(noted));
+        (text(printed), text(noted))
+    };
+    let model = concat!(env!("PROJECT"), "/models/laws/program.toml");
+    let next = |line: &str| told(line, true).0.lines().rfind(|line| line.starts_with("next: ")).map(str::to_owned);
+    let of_cam = format!("cam {model} --set mass=2");
+    assert_eq!(next(&of_cam).unwrap(), format!("next: corner-impact design {model} --set follower.mass=2"));
+    assert!(told(&of_cam, true).0.ends_with("mass=2\n"), "the last line");
+    assert_eq!(next("orbit --rpm 700").unwrap(), "next: corner-impact continue --rpm 700 --over rpm=665:735");
+    for quiet in [format!("{of_cam} --quiet"), format!("{of_cam} --json")] {
+        assert_eq!(next(&quiet), None, "{quiet}");
+    }
+    assert!(!told(&of_cam, false).0.contains("next:"), "not into a pipe");
+    assert!(told("cam", false).1.starts_with("note: no MODEL given") && told("cam -q", false).1.is_empty());
+}
+
+#[test]
+fn a_model_alone_says_what_can_be_done_with_it() {
+    let program = printed("models/laws/program.toml");
+    for command in ["cam", "design", "simulate", "speeds", "report", "locate"] {
+        let line = program.lines().find(|line| line.trim_start().starts_with(&format!("corner-impact {command} ")));
+        let line = line.unwrap_or_else(|| panic!("{command} in {program}"));
+        assert!(line.contains("models/laws/program.toml"), "{line}");
+    }
+    // Where the acceleration jumps nowhere, the paper's commands have nothing to find.
+    let smooth = printed("models/laws/harmonic.toml");
+    assert!(!smooth.contains("corner-impact verify") && !smooth.contains("corner-impact locate"), "{smooth}");
+    let (exit, out, err) = run("verify models/laws/harmonic.toml --no-external");
+    assert!(exit == 2 && out.is_empty(), "{out}");
+    assert!(err.starts_with("error: models/laws/harmonic.toml: the acceleration of this cam jumps nowhere"), "{err}");
+    assert_eq!(run("models/nothing.toml").0, 2);
+    assert!(run("nothing").2.contains("unrecognized subcommand"));
+}
+
+/// A table of lifts in place of a model file: what is assumed is printed as a file that does the same.
+#[test]
+fn a_table_of_lifts_is_enough() {
+    let folder = TempDir::new().unwrap();
+    let run = |words: &[&str]| {
+        let output = program(words).current_dir(folder.path()).output().unwrap();
+        (output.status.code().unwrap(), text(output.stdout), text(output.stderr))
+    };
+    assert_eq!(run(&["new", "valve.toml", "--law", "table"]).0, 0);
+    let (exit, page, noted) = run(&["cam", "valve.csv"]);
+    assert!(exit == 0 && page.contains("180 rows") && noted.contains("file = \"valve.csv\""), "{page} {noted}");
+    let numbers = ["--mass", "0.11 kg", "--stiffness", "30", "--preload", "220N", "--restitution", "0.4"];
+    let (exit, of_table, noted) = run(&[&["design", "valve.csv", "--speeds", "2", "--json"][..], &numbers].concat());
+    assert_eq!(exit, 0, "{noted}");
+    let model = noted.split_once("can be changed\n").unwrap().1;
+    assert!(
+        model.contains("mass = 0.11 ") && model.contains("preload = 220.0 ") && model.contains("restitution = 0.4\n"),
+        "{model}"
+    );
+    std::fs::write(folder.path().join("valve.toml"), model).unwrap();
+    assert_eq!(run(&["design", "valve.toml", "--speeds", "2", "--json"]).1, of_table);
+    // The same numbers change those of a model file.
+    let [as_set, named] = [["--set", "mass=0.2"], ["--mass", "0.2"]]
+        .map(|change| run(&[&["design", "valve.toml", "--speeds", "2", "--json"][..], &change].concat()).1);
+    assert!(as_set == named && named != of_table && !named.is_empty());
+    let (exit, _, why) = run(&["design", "valve.csv", "--mass", "1"]);
+    assert!(exit == 2 && why.contains("give --stiffness, --preload") && why.contains("new --law table"), "{why}");
+    let (exit, _, why) = run(&["cam", "valve.csv", "--mass", "3 lb"]);
+    assert!(exit == 2 && why.contains("mass is in kg here"), "{why}");
+}
+
+/// `--open` hands the file to the program of the desktop, once it is written.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_picture_is_opened_where_that_is_asked_for() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = TempDir::new().unwrap();
+    let (opener, seen, picture) =
+        (folder.path().join("xdg-open"), folder.path().join("seen"), folder.path().join("cam.svg"));
+    std::fs::write(&opener, format!("#!/bin/sh\nhead -c 4 \"$1\" > {0}.part && mv {0}.part {0}\n", seen.display()))
+        .unwrap();
+    std::fs::set_permissions(&opener, std::fs::Permissions::from_mode(0o755)).unwrap();
+    let path = format!("{}:{}", folder.path().display(), std::env::var("PATH").unwrap());
+    let drawn = |words: &[&str]| {
+        program(["cam", "--out", picture.to_str().unwrap()].iter().chain(words)).env("PATH", &path).output().unwrap()
+    };
+    assert_eq!(drawn(&[]).status.code(), Some(0));
+    assert!(!seen.exists());
+    let output = drawn(&["--open"]);
+    assert_eq!(output.status.code(), Some(0), "{}", text(output.stderr));
+    let begun = std::time::Instant::now();
+    while !seen.exists() && begun.elapsed() < crate::common::PATIENCE {
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
+    assert_eq!(std::fs::read_to_string(&seen).unwrap(), "<svg");
+}
+
+/// The words of a page that have a digit in them.
+fn numbers(page: &str) -> BTreeSet<String> {
+    page.split_whitespace()
+        .filter(|word| word.contains(|letter: char| letter.is_ascii_digit()))
+        .map(str::to_owned)
+        .collect()
+}
+
+/// Pages at 80, 100 and 140 columns: no line is wider, no number is broken, and none is much longer than the widest; `--all` leaves nothing out.
+#[test]
+#[ignore = "slow"]
+fn pages_are_for_eighty_columns() {
+    let folder = TempDir::new().unwrap();
+    let valve = folder.path().join("valve.toml").display().to_string();
+    assert_eq!(corner_impact(["new", &valve, "--law", "table"]).status.code(), Some(0));
+    for (line, has_all) in [
+        ("VALVE", false),
+        ("cam", true),
+        ("cam models/laws/program.toml", true),
+        ("cam VALVE", true),
+        ("design VALVE", true),
+        ("design --speeds 3", true),
+        ("design --rpm 200 --over mass=1:2:3", true),
+        ("simulate --rpm 183 --revolutions 5", false),
+        ("simulate --rpm 670 --lyapunov", false),
+        ("speeds --rpm 600:760 --speeds 20 --starts 8", true),
+        ("diagram --rpm 660:670:3", false),
+        ("chart --over rpm=600:760:3 --over restitution=0.5:0.9:3", false),
+        ("basins --rpm 678 --grid 4x4", false),
+        ("basins --rpm 700 --over restitution=0.6:0.8:3 --grid 3x3", false),
+        ("orbit --rpm 680", true),
+        ("orbit --rpm 183", true),
+        ("chaos --rpm 670", true),
+        ("verify --no-external", true),
+        ("locate --rpm 600:760", true),
+        ("certify", true),
+        ("certify --orbits --rpm 700", true),
+        ("claims", true),
+        ("compare --set restitution=0.7 --no-external", true),
+        ("explain B_minus --no-external", true),
+        ("explain --list", false),
+        ("figure", false),
+        ("figure cam", false),
+    ] {
+        let words: Vec<String> = line.split(' ').map(|word| word.replace("VALVE", &valve)).collect();
+        let page = |columns: usize, more: &[&str]| {
+            let words = words.iter().map(String::as_str).chain(more.iter().copied());
+            let output = program(words).env("COLUMNS", columns.to_string()).output().unwrap();
+            assert_eq!(output.status.code(), Some(0), "{line}: {}", text(output.stderr));
+            let page = text(output.stdout);
+            for found in page.lines() {
+                // A path or a command that is longer than the line cannot be cut.
+                let is_one_word = found.split_whitespace().count() == 1;
+                assert!(found.chars().count() <= columns || is_one_word, "{line} at {columns}: {found}");
+            }
+            page
+        };
+        let [narrow, usual, wide] = [80, 100, 140].map(|columns| page(columns, &[]));
+        // These tell how long they took.
+        if !["simulate", "diagram", "chart", "basins"].contains(&words[0].as_str()) {
+            let broken: Vec<_> = numbers(&narrow).difference(&numbers(&wide)).cloned().collect();
+            assert!(broken.is_empty(), "{line}: {broken:?}");
+            if has_all {
+                let missing: Vec<_> = numbers(&wide).difference(&numbers(&page(80, &["--all"]))).cloned().collect();
+                assert!(missing.is_empty(), "{line}: {missing:?}");
+            }
+        }
+        let [narrow, usual, wide] = [narrow, usual, wide].map(|page| page.lines().count());
+        // A page of a few lines is not held to a fifth of them.
+        assert!(
+            narrow.max(usual) as f64 <= (1.2 * wide as f64).max(wide as f64 + 3.0),
+            "{line}: {narrow}, {usual}, {wide} lines"
+        );
+        if line == "design VALVE" {
+            assert!(narrow <= 45 && usual <= 45, "{narrow}, {usual} lines");
+        }
+    }
+}
