@@ -191,6 +191,29 @@ impl Units {
         unit.map_or_else(|| self.spelled(number.dimension.si()), |unit| unit.name().into())
     }
 
+    /// Converts a value of a number of the model, by its dotted path, from a unit that was typed to the file's own; `None` where that is no unit
+    /// of such a number.
+    #[doc(hidden)]
+    pub fn in_own(&self, path: &str, value: f64, unit: &str) -> Option<f64> {
+        let parts = |text: &str| {
+            let (above, below) = text.split_once('/')?;
+            let (force, length) = (named(&FORCES, above)?, named(&LENGTHS, below)?);
+            Some(Unit { name: Cow::Borrowed(""), ratio: force.over(&length) })
+        };
+        let number = ModelNumber::of(path)?;
+        let (own, typed) = match number.dimension {
+            Dimension::Mass => (&self.mass, named(&MASSES, unit)?),
+            Dimension::Stiffness => (&self.stiffness, parts(unit)?),
+            Dimension::Length => (&self.length, named(&LENGTHS, unit)?),
+            Dimension::Force => {
+                let typed = named(&FORCES, unit)?;
+                (&self.force, Unit { ratio: typed.over(&self.length), ..typed })
+            }
+            _ => return (unit.replace(' ', "") == self.of_number(path).replace(' ', "")).then_some(value),
+        };
+        Some(if own.ratio == typed.ratio { value } else { own.told(typed.inside(value)) })
+    }
+
     /// Reads a number of the follower and converts it to internal units.
     pub(super) fn number(&self, fields: &mut Fields, name: &str) -> Result<f64, ModelError> {
         let path = format!("follower.{name}");

@@ -340,7 +340,7 @@ fn curves_go_over_the_chart() {
         assert!(svg.contains(">flip</text>"));
     }
     let folded = ["--x", "mass=1:1.5:2", "--y", "restitution=0.7:0.8:2", "--rpm", "700", "--with-curves"];
-    assert!(refused(&[&folded[..], &["--out", "none.svg"]].concat()).contains("--x or --y must be rpm"));
+    assert!(refused(&[&folded[..], &["--out", "none.svg"]].concat()).contains("one axis must be rpm"));
     let table = ["--x", speeds, "--y", restitutions, "--with-curves", "--out", "none.csv"];
     assert!(refused(&table).contains("is for a picture"));
 }

@@ -64,7 +64,7 @@ fn examples_work_as_written() {
     let help =
         |words: &[&str]| text(program(words).current_dir(folder.path()).env("COLUMNS", "120").output().unwrap().stdout);
     let first = help(&["--help"]);
-    assert_eq!(examples(&first).len(), 2, "{first}");
+    assert_eq!(examples(&first).len(), 3, "{first}");
     let mut lines = examples(&first);
     for command in COMMANDS {
         assert!(first.lines().any(|line| line.starts_with(&format!("  {command} "))), "{command} in {first}");

@@ -81,7 +81,7 @@ fn speeds_and_axes_have_one_form() {
         let why = refused(&format!("{command} --rpm 700"));
         assert!(why.contains("takes a range: LO:HI"), "{command}: {why}");
         let why = refused(&format!("{command} --rpm 600:700:3"));
-        assert!(why.contains("chooses itself: LO:HI"), "{command}: {why}");
+        assert!(why.contains("takes a range alone: LO:HI"), "{command}: {why}");
     }
     // A number of values may be left out, and one of --rpm is taken wherever it is of use.
     let rows = |line: &str| printed(line).lines().count();
@@ -106,9 +106,10 @@ fn numbers_are_taken_as_people_type_them() {
         (output.status.code(), text(output.stderr))
     };
     assert_eq!(set("mass=2 kg").0, Some(0));
-    assert_eq!(set("mass=2kg").0, Some(0));
+    assert_eq!(set("mass=2000g").0, Some(0));
     for (value, says) in [
         ("mass=900N", "mass is in kg in this model"),
+        ("preload=3kg", "is not a number of this model"),
         ("restitution=0.5kg", "restitution is a number without a unit"),
         ("mass=1,5", "\"1,5\" may be 1.5 or 15: write a decimal point"),
         ("mass=heavy", "\"heavy\" is not a number"),
@@ -188,6 +189,8 @@ fn a_model_alone_says_what_can_be_done_with_it() {
     let (exit, out, err) = run("verify models/laws/harmonic.toml --no-external");
     assert!(exit == 2 && out.is_empty(), "{out}");
     assert!(err.starts_with("error: models/laws/harmonic.toml: the acceleration of this cam jumps nowhere"), "{err}");
+    // The model may come before the command.
+    assert_eq!(printed("models/laws/program.toml cam --order 2"), printed("cam models/laws/program.toml --order 2"));
     assert_eq!(run("models/nothing.toml").0, 2);
     assert!(run("nothing").2.contains("unrecognized subcommand"));
 }
@@ -206,9 +209,11 @@ fn a_table_of_lifts_is_enough() {
     let numbers = ["--mass", "0.11 kg", "--stiffness", "30", "--preload", "220N", "--restitution", "0.4"];
     let (exit, of_table, noted) = run(&[&["design", "valve.csv", "--speeds", "2", "--json"][..], &numbers].concat());
     assert_eq!(exit, 0, "{noted}");
-    let model = noted.split_once("can be changed\n").unwrap().1;
+    let model = noted.split_once("to change it\n").unwrap().1;
     assert!(
-        model.contains("mass = 0.11 ") && model.contains("preload = 220.0 ") && model.contains("restitution = 0.4\n"),
+        model.contains("mass = 0.11       # kg\n")
+            && model.contains("damping = 0.0     # N s/m, assumed\n")
+            && model.contains("restitution = 0.4\n"),
         "{model}"
     );
     std::fs::write(folder.path().join("valve.toml"), model).unwrap();
@@ -217,10 +222,17 @@ fn a_table_of_lifts_is_enough() {
     let [as_set, named] = [["--set", "mass=0.2"], ["--mass", "0.2"]]
         .map(|change| run(&[&["design", "valve.toml", "--speeds", "2", "--json"][..], &change].concat()).1);
     assert!(as_set == named && named != of_table && !named.is_empty());
+    let (exit, page, _) = run(&["valve.csv", "--mass", "0.11 kg"]);
+    let typed = "corner-impact cam valve.csv --mass '0.11 kg' --stiffness N/MM --preload N\n";
+    assert!(exit == 0 && page.replace(" \\\n      ", " ").contains(typed), "{page}");
     let (exit, _, why) = run(&["design", "valve.csv", "--mass", "1"]);
-    assert!(exit == 2 && why.contains("give --stiffness, --preload") && why.contains("new --law table"), "{why}");
-    let (exit, _, why) = run(&["cam", "valve.csv", "--mass", "3 lb"]);
-    assert!(exit == 2 && why.contains("mass is in kg here"), "{why}");
+    assert!(exit == 2 && why.contains("give --stiffness (N/mm), --preload (N)"), "{why}");
+    let (exit, _, why) = run(&["cam", "valve.csv", "--mass", "3 N"]);
+    assert!(exit == 2 && why.contains("mass is in kg in this model"), "{why}");
+    // In other units, and by --set.
+    let numbers =
+        ["--set", "mass=110g", "--stiffness", "30000 N/m", "--preload", "0.22kN", "--set", "follower.restitution=0.4"];
+    assert_eq!(run(&[&["design", "valve.csv", "--speeds", "2", "--json"][..], &numbers].concat()).1, of_table);
 }
 
 /// `--open` hands the file to the program of the desktop, once it is written.

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use clap::CommandFactory;
 
+use super::model::TABLES;
 use super::picture::ends_in;
 use super::{CommandError, Exit, ModelArgument, Session};
 use crate::show::block::{Block, words};
@@ -25,28 +26,31 @@ pub(super) fn named(mut words: Vec<OsString>) -> Vec<OsString> {
     let is_command = |word: &OsString| super::Arguments::command().find_subcommand(word).is_some();
     let is_model = |word: &&OsString| {
         let path = Path::new(word);
-        !is_command(word) && (ends_in(path, &["toml", "csv"]) || path.is_file())
+        !is_command(word) && (ends_in(path, &["toml"]) || ends_in(path, &TABLES) || path.is_file())
     };
     if words.get(1).filter(is_model).is_some() {
-        words.insert(1, "about".into());
+        match words.get(2).filter(|word| is_command(word)) {
+            Some(_) => words.swap(1, 2),
+            None => words.insert(1, "about".into()),
+        }
     }
     words
 }
 
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
-    let model = arguments.model.read(session)?;
+    let model = arguments.model.read_cam(session)?;
     let cam = Cam::new(&model)?;
     let [low, high] = usual_range(&model)?;
     let of_acceleration = cam.corners().iter().filter(|corner| corner.jump_order == 2).count();
     let corners = words::many(of_acceleration as u64, "corner");
     let lead = format!(
-        "cam of law \"{}\" with {corners} where the acceleration jumps; usual speeds are {low} to {high} rpm",
+        "cam of law \"{}\" with {corners} where the acceleration jumps; without --rpm, `speeds` looks at {low} to {high} rpm",
         model.cam.law()
     );
     let mut uses = vec![
         ("cam", String::new(), "the cam's lift, its corners, and how well it is known"),
         ("design", String::new(), "up to which speed the follower stays on the cam, and what must be changed"),
-        ("simulate", format!(" --rpm {high}"), "one run: impacts, gap and force"),
+        ("simulate", format!(" --rpm {low}"), "one run: impacts, gap and force"),
         ("speeds", String::new(), "the motions that it ends on over the speeds"),
         ("report", String::new(), "all of it on one page for a browser"),
     ];

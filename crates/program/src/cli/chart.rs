@@ -129,8 +129,10 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let model = arguments.model.read_as_drawn(session)?;
     let axes: Vec<&NamedSpan> = arguments.over.iter().chain(&arguments.x).chain(&arguments.y).collect();
     let [x, y] = axes.as_slice() else {
-        let words =
-            format!("--over is given {} times, and a chart has two axes; `speeds` and `diagram` have one", axes.len());
+        let words = match axes.len() {
+            1 => "--over is given once, and a chart has two axes; `speeds` and `diagram` have one".to_owned(),
+            count => format!("--over is given {count} times, and a chart has two axes"),
+        };
         return Err(CommandError::Words(words));
     };
     let axis = |(name, span): &NamedSpan| -> Result<Axis, CommandError> {

@@ -50,10 +50,10 @@ pub(super) struct Arguments {
     /// That angle, rad or as 90deg [default: 0].
     #[arg(long, value_name = "RAD", value_parser = angle, allow_hyphen_values = true)]
     strobe: Option<f64>,
-    /// Start every value alike, or go on from the next lower (up) or next higher one (down), on one thread.
+    /// Start of each value: the same for all, or on from the next lower (up) or next higher one (down), on one thread.
     #[arg(long = "start", value_enum, default_value = "fixed")]
     following: FollowingName,
-    /// Record each attractor that 64 starts, or those of --state, come to at a value, from a point on the attractor. They are found as by `speeds`.
+    /// Record each attractor: those that 64 starts, or those of --state, come to at a value, from a point on the attractor. They are found as by `speeds`.
     #[arg(long, conflicts_with = "following")]
     attractors: bool,
     #[command(flatten)]

@@ -9,7 +9,8 @@ use super::numbers::rpm_range;
 use super::progress::{Progress, watched};
 use super::{CommandError, Exit, ModelArgument, Session, picture};
 use crate::figures::{FIGURES, FigureContext, Listed, RenderedFigure, listed};
-use crate::show::block::{Block, Column, Table};
+use crate::show::block::{Block, Column, Table, Words};
+use crate::show::page::WIDTH;
 use crate::show::{Page, json};
 use corner_impact::model::Model;
 use corner_impact::untrusted;
@@ -113,11 +114,18 @@ fn list(model: &Model, subject: &FigureContext, as_json: bool, session: &Session
     if as_json {
         return Ok(json::render(&List { schema: SCHEMA, model: model.name.clone(), figures }, &model.units)?);
     }
-    let mut table = Table::new("Figures", ["figure", "in the paper", "shows"].map(Column::words));
+    // Titles fit into one line beside their names, or beside names and places.
+    let has_places = session.width() >= WIDTH;
+    let heads = ["figure", "in the paper", "shows"].into_iter().filter(|head| has_places || *head != "in the paper");
+    let mut table = Table::new("Figures", heads.map(Column::words).collect::<Vec<_>>());
+    let name = format!("{}: ", model.name);
     for Listed { id, place, title } in figures {
-        table.row([id.into(), place.into(), title.into()]);
+        let title = title.strip_prefix(&name).unwrap_or(&title);
+        let cells = [id, place, title].into_iter().filter(|cell| has_places || *cell != place);
+        table.row(cells.map(Words::from).collect::<Vec<_>>());
     }
-    Ok(session.shown(&Page::of(session.width(), false, &[Block::Table(table)])?))
+    let title = Block::Title(format!("Figures of {}", model.name).into());
+    Ok(session.shown(&Page::of(session.width(), false, &[title, Block::Table(table)])?))
 }
 
 fn one(

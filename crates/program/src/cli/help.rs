@@ -20,7 +20,7 @@ const STYLES: Styles = Styles::styled()
 /// Commands for a first try, at the end of the help.
 const EXAMPLES: &str = "Examples:
   corner-impact new my-machine.toml        begin a model file of your own
-  corner-impact my-machine.toml            what can be done with it
+  corner-impact models/osorio-2008.toml    what can be done with a model
   corner-impact verify --no-external       check the paper's model, which is built in
 
 `corner-impact COMMAND --help` has examples for each; where they name models/, they are run from the project's folder.";

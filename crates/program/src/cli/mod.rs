@@ -212,7 +212,7 @@ fn begun(arguments: &Arguments, only_prints: bool, session: &mut Session<'_>) ->
     } else {
         work()?
     };
-    session.open()?;
+    session.open();
     session.tell_next(next)?;
     Ok(exit)
 }

@@ -4,15 +4,16 @@ use std::path::{Path, PathBuf};
 
 use super::picture::ends_in;
 use super::{CommandError, progress::watched, session::Session};
-use crate::show::{command::named, notes};
-use corner_impact::model::{Model, Numeral, finite, parted};
+use crate::show::command::{changed, named, shell_word};
+use crate::show::notes;
+use corner_impact::model::{Model, Numeral, Units, finite, parted};
 use corner_impact::orbit::Parameter;
 use corner_impact::untrusted;
 
 /// Which model a command is about.
 #[derive(clap::Args)]
 pub(super) struct ModelArgument {
-    /// Model file (TOML) [default: the paper's model, osorio-2008, which is built in].
+    /// Model file (TOML), or a table of lifts (.csv) [default: the paper's model, osorio-2008, which is built in].
     #[arg(value_name = "MODEL")]
     file: Option<PathBuf>,
     #[command(flatten)]
@@ -29,7 +30,7 @@ pub(super) struct Changes {
     follower: FollowerNumbers,
 }
 
-const FOLLOWER: &str = "The follower, as by --set; a table of lifts needs the first three";
+const FOLLOWER: &str = "The follower (a table of lifts needs the first three)";
 
 /// Numbers of the follower: each the same as `--set`, and what a table of lifts has to have beside it.
 #[derive(clap::Args, Clone, Default)]
@@ -55,6 +56,17 @@ struct FollowerNumbers {
 }
 
 impl FollowerNumbers {
+    /// The options as they are typed, each after a blank; those that a table needs with what they are in, where they are missing.
+    fn typed(&self) -> String {
+        let usual = [("mass", "KG"), ("stiffness", "N/MM"), ("preload", "N")];
+        let needed = |name: &str| usual.iter().find(|(needed, _)| *needed == name).map(|(_, unit)| (*unit).to_owned());
+        let option = |(name, number): (&str, Option<&String>)| {
+            let value = number.map(|number| shell_word(number)).or_else(|| needed(name))?;
+            Some(format!(" --{name} {value}"))
+        };
+        self.all().into_iter().filter_map(option).collect()
+    }
+
     fn all(&self) -> [(&'static str, Option<&String>); 6] {
         let Self { mass, stiffness, preload, damping, restitution, gravity } = self;
         let all = [
@@ -89,23 +101,13 @@ impl Changes {
         self.numbers.iter().cloned().map(Ok).chain(own).collect()
     }
 
-    /// The model with the numbers changed. A unit that was typed must be the model's.
+    /// The model with the numbers changed, in its own units.
     pub(super) fn of(&self, model: &Model) -> Result<Model, CommandError> {
-        let changes = self.all()?;
-        for Change { name, number, unit } in changes.iter().filter(|change| !change.unit.is_empty()) {
-            let own = model.units.of_number(model.path_of(name, &[])?);
-            let is_same = unit.replace(' ', "") == own.replace(' ', "");
-            if !is_same {
-                let own = if own.is_empty() {
-                    "is a number without a unit".to_owned()
-                } else {
-                    format!("is in {own} in this model")
-                };
-                let words = format!("--set {name}={} {}: {name} {own}", number.text, untrusted::value(unit));
-                return Err(CommandError::Words(words));
-            }
-        }
-        let numbers: Vec<_> = changes.into_iter().map(|Change { name, number, .. }| (name, number)).collect();
+        let own = |change: Change| -> Result<(String, Numeral), CommandError> {
+            let path = if change.unit.is_empty() { "" } else { model.path_of(&change.name, &[])? };
+            Ok((change.name.clone(), change.inside(path, &model.units)?))
+        };
+        let numbers: Vec<_> = self.all()?.into_iter().map(own).collect::<Result<_, _>>()?;
         Ok(model.changed(&numbers)?)
     }
 }
@@ -117,15 +119,35 @@ fn change(text: &str) -> Result<Change, String> {
     number_of(name, number)
 }
 
+/// A number as it is typed. A unit is held against the model's once that is read.
 fn number_of(name: &str, number: &str) -> Result<Change, String> {
     let (text, unit) = parted(number);
-    // A unit is compared with the model's once that is read.
     let unit = if unit.starts_with(',') { "" } else { unit };
-    Ok(Change {
-        name: name.trim().into(),
-        number: Numeral { number: finite(number, unit)?, text: text.into() },
-        unit: unit.into(),
-    })
+    let number = Numeral { number: finite(number, unit)?, text: text.into() };
+    Ok(Change { name: name.trim().into(), number, unit: unit.into() })
+}
+
+impl Change {
+    /// The number in the unit that a model has for this path.
+    fn inside(self, path: &str, units: &Units) -> Result<Numeral, CommandError> {
+        let Self { name, number, unit } = self;
+        if unit.is_empty() {
+            return Ok(number);
+        }
+        match units.in_own(path, number.number, &unit) {
+            Some(value) if value == number.number => Ok(number),
+            Some(value) => Ok(value.into()),
+            None => {
+                let own = units.of_number(path);
+                let own = if own.is_empty() {
+                    "is a number without a unit".into()
+                } else {
+                    format!("is in {own} in this model")
+                };
+                Err(CommandError::Words(format!("{name} = {} {}: {name} {own}", number.text, untrusted::value(&unit))))
+            }
+        }
+    }
 }
 
 impl ModelArgument {
@@ -160,13 +182,11 @@ impl ModelArgument {
     fn read_with(&self, session: &mut Session<'_>, needs_follower: bool) -> Result<Model, CommandError> {
         let mut changes = self.changes.clone();
         let model = match &self.file {
-            Some(path) if ends_in(path, &["csv"]) => {
-                let text = assumed(path, &changes.follower, needs_follower)?;
-                // The follower is in the text.
-                changes.follower = FollowerNumbers::default();
+            Some(path) if ends_in(path, &TABLES) => {
+                let text = assumed(path, &mut changes, needs_follower)?;
                 let file = path.with_extension("toml");
                 session.note(&format!(
-                    "no model file: this one is assumed; saved as {}, it can be changed\n{text}",
+                    "no model file: this one is assumed; save it as {} to change it\n{text}",
                     file.display()
                 ));
                 watched("reading the table", |_| Model::parse(&file.to_string_lossy(), &text))?
@@ -184,7 +204,13 @@ impl ModelArgument {
         let model = changes.of(&model)?;
         session.units = model.units.clone();
         session.model = model.name.clone();
-        session.named = named(&model);
+        session.named = match self.file.as_deref().filter(|path| ends_in(path, &TABLES)) {
+            Some(table) => {
+                let file = format!(" {}", shell_word(&table.to_string_lossy()));
+                file + &self.changes.follower.typed() + &changed(&model)
+            }
+            None => named(&model),
+        };
         for words in notes::notes(&model, session.rpm)? {
             session.note(&words);
         }
@@ -201,40 +227,45 @@ impl ModelArgument {
     }
 }
 
-/// The model file that is assumed for a table of lifts and the numbers of a follower.
-fn assumed(table: &Path, follower: &FollowerNumbers, needs_follower: bool) -> Result<String, CommandError> {
+/// Extensions of tables of lifts, which stand in place of a model file.
+pub(super) const TABLES: [&str; 4] = ["csv", "tsv", "txt", "dat"];
+
+/// The model file that is assumed for a table of lifts and the numbers of a follower, which are taken out of the changes.
+fn assumed(table: &Path, changes: &mut Changes, needs_follower: bool) -> Result<String, CommandError> {
     const MODEL: &str = include_str!("templates/assumed.toml");
-    /// What cannot be assumed, and what is where nothing is said.
-    const NEEDED: [&str; 3] = ["mass", "stiffness", "preload"];
-    let given = follower.all();
-    let missing: Vec<&str> =
-        given.iter().filter(|(name, text)| NEEDED.contains(name) && text.is_none()).map(|(name, _)| *name).collect();
+    /// What cannot be assumed, with what it is in.
+    const NEEDED: [(&str, &str); 3] = [("mass", "kg"), ("stiffness", "N/mm"), ("preload", "N")];
+    let is_of_follower = |change: &Change| {
+        let name = change.name.strip_prefix("follower.").unwrap_or(&change.name);
+        FollowerNumbers::default().all().iter().any(|(known, _)| *known == name)
+    };
+    let (given, others): (Vec<Change>, Vec<Change>) = changes.all()?.into_iter().partition(is_of_follower);
+    let of = |name: &str| given.iter().rfind(|change| change.name.trim_start_matches("follower.") == name);
+    let missing: Vec<String> =
+        NEEDED.iter().filter(|(name, _)| of(name).is_none()).map(|(name, unit)| format!("--{name} ({unit})")).collect();
     if needs_follower && !missing.is_empty() {
-        let options: Vec<String> = missing.iter().map(|name| format!("--{name}")).collect();
-        let words = format!(
-            "{}: a table of lifts has no follower: give {} (kg, N/mm and N), or a model file, which `corner-impact new --law table` writes",
-            table.display(),
-            options.join(", ")
-        );
+        let words = format!("{}: a table of lifts has no follower: give {}", table.display(), missing.join(", "));
         return Err(CommandError::Words(words));
     }
+    *changes = Changes { numbers: others, follower: FollowerNumbers::default() };
     let (file, stem) = (table.file_name(), table.file_stem());
+    // TOML escapes as JSON does.
     let [file, stem] =
         [file, stem].map(|name| serde_json::Value::from(name.unwrap_or_default().to_string_lossy()).to_string());
-    let mut text = MODEL.replace("\"lifts.csv\"", &file).replace("\"my-machine\"", &stem);
-    for (name, number) in given {
-        let Some(number) = number else { continue };
-        let change = number_of(name, number).map_err(|words| CommandError::Words(format!("--{name}: {words}")))?;
-        // [units] has a stiffness, too, before that of the follower.
-        let line = text.lines().rfind(|line| line.starts_with(&format!("{name} = "))).map(str::to_owned);
-        let unit = line.as_deref().and_then(|line| line.split_once("# ")).map_or("", |(_, unit)| unit.trim());
-        if !change.unit.is_empty() && change.unit != unit {
-            return Err(CommandError::Words(format!("--{name} {number}: {name} is in {unit} here")));
-        }
-        if let Some(line) = &line {
-            let told = format!("{name} = {:?}", change.number.number);
-            text = text.replace(line, format!("{told:<18}# {unit}").trim_end_matches(['#', ' ']));
-        }
-    }
-    Ok(text)
+    // Units do not hang on the cam.
+    let (head, _) = MODEL.split_once("[cam]").unwrap_or((MODEL, ""));
+    let cam = "[cam]\nlaw = \"harmonic\"\noffset = 0.0\namplitudes = [1.0]\nphases_deg = [0.0]\n";
+    let units = Model::parse("units", &format!("{head}{cam}"))?.units;
+    let line = |line: &str| -> Result<String, CommandError> {
+        let Some((name, rest)) = line.split_once(" = ") else { return Ok(line.to_owned()) };
+        let Some(change) = of(name).filter(|_| rest.ends_with("assumed")) else { return Ok(line.to_owned()) };
+        let number = change.clone().inside(&format!("follower.{name}"), &units)?;
+        let unit =
+            rest.split_once("# ").map_or("", |(_, unit)| unit.trim_end_matches("assumed").trim_end_matches(", "));
+        let told = format!("{name} = {:?}", number.number);
+        Ok(format!("{told:<18}# {unit}").trim_end_matches(['#', ' ']).to_owned())
+    };
+    let text = MODEL.replace("\"lifts.csv\"", &file).replace("\"my-machine\"", &stem);
+    let lines: Vec<String> = text.lines().map(line).collect::<Result<_, _>>()?;
+    Ok(lines.join("\n") + "\n")
 }

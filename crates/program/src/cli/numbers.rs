@@ -19,7 +19,7 @@ pub(super) fn finite(text: &str) -> Result<f64, String> {
 
 /// An angle, rad: `1.57`, `1.57rad` or `90deg`.
 pub(super) fn angle(text: &str) -> Result<f64, String> {
-    match text.trim().strip_suffix("deg") {
+    match text.trim().strip_suffix("deg").or_else(|| text.trim().strip_suffix('\u{b0}')) {
         Some(degrees) => finite(degrees).map(f64::to_radians),
         None => model::finite(text, "rad"),
     }
@@ -59,7 +59,7 @@ impl Span {
     fn bare(self) -> Result<[f64; 2], String> {
         match (self.count, self.spacing) {
             (None, Spacing::Linear) => Ok(self.ends),
-            _ => Err("is a range with a number of values, which this command chooses itself: LO:HI".into()),
+            _ => Err("has a number of values, and this command takes a range alone: LO:HI".into()),
         }
     }
 }
@@ -124,14 +124,18 @@ pub(super) fn speeds(text: &str) -> Result<Speeds, String> {
 pub(super) fn rpm(text: &str) -> Result<f64, String> {
     match speeds(text)? {
         Speeds::One(rpm) => Ok(rpm),
-        Speeds::Span(_) => Err("is a range, and this command takes one speed: R".into()),
+        Speeds::Span(_) => {
+            Err("is a range, and this command takes one speed: R; `speeds` and `diagram` take a range".into())
+        }
     }
 }
 
 /// A range of speeds.
 pub(super) fn rpm_range(text: &str) -> Result<[f64; 2], String> {
     match speeds(text)? {
-        Speeds::One(_) => Err("is one speed, and this command takes a range: LO:HI".into()),
+        Speeds::One(_) => {
+            Err("is one speed, and this command takes a range: LO:HI; `simulate` and `orbit` take one speed".into())
+        }
         Speeds::Span(span) => span.bare(),
     }
 }

@@ -24,7 +24,7 @@ pub(super) fn varied(
         }
         (Some(Speeds::Span(span)), None) => Ok((None, Some((Parameter::Speed.name().into(), span)))),
         (Some(Speeds::One(rpm)), None) => Err(CommandError::Words(format!(
-            "--rpm {rpm} is one speed: --rpm LO:HI is a range of speeds, and --over NAME=LO:HI is what varies at this one"
+            "--rpm {rpm} is one speed: --rpm LO:HI is a range of speeds, --over NAME=LO:HI is what varies at this one, and `simulate` runs at it alone"
         ))),
         (Some(Speeds::One(rpm)), Some(over)) => Ok((Some(rpm), Some(over.clone()))),
         (None, over) => Ok((None, over.cloned())),

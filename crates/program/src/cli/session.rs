@@ -11,6 +11,7 @@ use serde::Serialize;
 
 use super::{CommandError, Exit, complaint, next};
 use crate::show::block::in_units;
+use crate::show::page::options;
 use crate::show::{Page, Paged, json};
 use corner_impact::model::{ModelError, Units};
 use corner_impact::untrusted;
@@ -194,7 +195,16 @@ impl Session<'_> {
             return;
         }
         // A closed pipe leaves nobody to tell.
-        let _ = writeln!(self.err, "note: {}", untrusted::sentence(words));
+        let _ = writeln!(self.err, "{}", self.in_width(&format!("note: {}", untrusted::sentence(words))));
+    }
+
+    /// A sentence in lines of a terminal; for a program it is one line.
+    fn in_width(&self, words: &str) -> String {
+        if self.terminal.err {
+            textwrap::fill(words, options(self.width()).subsequent_indent("  "))
+        } else {
+            words.to_owned()
+        }
     }
 
     /// Notes that some of the parts of a survey failed, and the first of them: tables do not say why.
@@ -203,12 +213,12 @@ impl Session<'_> {
     }
 
     /// Opens the file that was written, if that was asked for, by the program that is there for its kind.
-    pub(super) fn open(&mut self) -> Result<(), CommandError> {
-        match self.wishes.file.as_deref().filter(|path| self.wishes.open && path.as_os_str() != "-") {
-            Some(path) => open::that_detached(path).map_err(|error| {
-                CommandError::Words(format!("{} is written, but cannot be opened: {error}", path.display()))
-            }),
-            None => Ok(()),
+    pub(super) fn open(&mut self) {
+        let file = self.wishes.file.clone().filter(|path| self.wishes.open && path.as_os_str() != "-");
+        if let Some(path) = file
+            && open::that_detached(&path).is_err()
+        {
+            self.note(&format!("{} is written, and nothing here opens it", path.display()));
         }
     }
 
@@ -225,7 +235,8 @@ impl Session<'_> {
     /// Complains on standard error, in the words that every complaint begins with.
     pub(super) fn complain(&mut self, words: &str) {
         // A closed pipe leaves nobody to tell.
-        let _ = writeln!(self.err, "{} {}", complaint::word(self.colours_err()), untrusted::sentence(words));
+        let words = format!("{} {}", complaint::word(self.colours_err()), untrusted::sentence(words));
+        let _ = writeln!(self.err, "{}", self.in_width(&words));
     }
 
     /// Prints a complaint with the line of the model file that it is about.

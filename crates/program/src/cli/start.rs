@@ -19,7 +19,7 @@ pub(super) struct StartArguments {
     /// Position and velocity at the start, in the model's units. A survey of many starts takes it repeatedly, in place of its sample.
     #[arg(long, value_name = "Q,V", value_parser = state, allow_hyphen_values = true, conflicts_with = "relative_velocity")]
     state: Vec<State>,
-    /// Start on the cam and leave it at this velocity, m/s, 0 or more [default: 0].
+    /// Start on the cam and leave it at this velocity, in the model's units, 0 or more [default: 0].
     #[arg(long, value_name = "U", value_parser = not_negative, allow_hyphen_values = true)]
     relative_velocity: Option<f64>,
 }

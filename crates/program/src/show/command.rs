@@ -11,8 +11,13 @@ pub(crate) fn command(name: &str, model: &Model, rest: &str) -> String {
 /// The words that name a model on a command line, each after a blank: its file, and options for the changed numbers.
 pub(crate) fn named(model: &Model) -> String {
     let file = model.path().map(|path| format!(" {}", shell_word(&path.to_string_lossy())));
+    file.unwrap_or_default() + &changed(model)
+}
+
+/// Options for the changed numbers of a model, each after a blank.
+pub(crate) fn changed(model: &Model) -> String {
     let set = |(path, number): &(String, f64)| format!(" --set {}", shell_word(&format!("{path}={number}")));
-    file.into_iter().chain(model.changes().iter().map(set)).collect()
+    model.changes().iter().map(set).collect()
 }
 
 /// A word quoted for a shell if it has anything but plain letters.
