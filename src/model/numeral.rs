@@ -39,7 +39,7 @@ pub fn parted(text: &str) -> (&str, &str) {
     let text = text.trim();
     let ends = text.char_indices().map(|(at, letter)| at + letter.len_utf8());
     let reads = |end: &usize| text[..*end].parse::<f64>().is_ok_and(f64::is_finite);
-    let end = ends.filter(reads).last().unwrap_or(0);
+    let end = ends.rev().find(reads).unwrap_or(0);
     (&text[..end], text[end..].trim())
 }
 

@@ -116,7 +116,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
             .iter()
             .map(|(load, value, one)| (*load, one.map_or(*value, |one| load.of_si(&model.units, value * one))))
             .collect(),
-        against: trade.map(|(lever, ends, count)| (lever, ends, count)),
+        against: trade,
         starts: arguments.start.given(),
         budget: Some(arguments.budget.budget(Budget::DESIGN)?),
     };
