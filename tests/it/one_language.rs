@@ -123,6 +123,13 @@ fn numbers_are_taken_as_people_type_them() {
         ("simulate --rpm 100 --start-angle 90grad", "is not in rad"),
         ("locate --rpm 600:760,5", "may be 760.5 or 7605"),
         ("verify --jsn", "a similar argument exists: '--json'"),
+        (
+            "orbit --rpm 700 --over mass=1:2",
+            "note: --over is an option of design, speeds, diagram, chart, basins, continue, curve\n",
+        ),
+        ("verify --rpm 700:710", "note: --rpm is an option of"),
+        ("speeds --trace run.svg", "note: --trace is an option of simulate"),
+        ("figure fast-impacts --rpm 660:700", "fast-impacts has speeds of its own: --rpm is of slow-trace"),
     ] {
         let (exit, _, why) = run(line);
         assert!(exit == 2 && why.contains(says) && !why.contains("-- --"), "{line}: {why}");

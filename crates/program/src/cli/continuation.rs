@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use super::numbers::{followed, positive, rpm};
 use super::picture::{PictureArguments, Target, picture_or_table, table};
-use super::{CommandError, Exit, ModelArgument, Session, progress::watched};
+use super::{CommandError, Exit, ModelArgument, Session, progress::watched, session::in_columns};
 use crate::figures::{branches_figure, corner_marks};
 use crate::pages;
 use crate::show::{csv, json};
@@ -75,15 +75,16 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         longest_step: arguments.step,
         most_points: arguments.points as usize,
     };
-    let look = arguments.picture.look()?;
+    let (look, columns) = (arguments.picture.look()?, session.columns_err());
     let out = table(arguments.out.as_ref(), arguments.json)?;
     let target = out.map(|path| Target::create(path, &mut *session.out, look)).transpose()?;
     let wanted = Search { revolutions: arguments.revolutions, impacts: arguments.impacts };
     let found = watched("", |watch| branches(&model, arguments.rpm, &wanted, following, arguments.all, watch))?;
     let name = found.following.parameter.name();
     for (index, branch) in found.branches.iter().enumerate() {
+        let account = in_columns(&pages::branches::branch(branch, name, index + 1), columns);
         // Nobody is left to tell where standard error is closed.
-        let _ = session.err.write_all(pages::branches::branch(branch, name, index + 1).as_bytes());
+        let _ = session.err.write_all(account.as_bytes());
     }
     let rows = || csv::branches(name, &found.branches, &model.units);
     let drawn = || {

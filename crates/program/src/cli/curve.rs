@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use super::numbers::{followed, positive, rpm_range};
 use super::picture::{PictureArguments, Target, picture_or_table, table};
-use super::{CommandError, Exit, ModelArgument, Session, progress::watched};
+use super::{CommandError, Exit, ModelArgument, Session, progress::watched, session::in_columns};
 use crate::figures::curve_figure;
 use crate::pages;
 use crate::show::{csv, json, words};
@@ -70,7 +70,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let model = arguments.model.read_as_drawn(session)?;
     let (name, range) = &arguments.over;
     let parameter = Parameter::named(&model, name)?;
-    let look = arguments.picture.look()?;
+    let (look, columns) = (arguments.picture.look()?, session.columns_err());
     let out = table(arguments.out.as_ref(), arguments.json)?;
     let target = out.map(|path| Target::create(path, &mut *session.out, look)).transpose()?;
     let wanted = Search { revolutions: arguments.revolutions, impacts: arguments.impacts };
@@ -91,7 +91,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         );
     }
     // Nobody is left to tell where standard error is closed.
-    let _ = session.err.write_all(accounts.as_bytes());
+    let _ = session.err.write_all(in_columns(&accounts, columns).as_bytes());
     let rows = || csv::curves(name, curves, &model.units);
     let drawn = || {
         let title = format!("{}: events against {name}", model.name);

@@ -59,6 +59,9 @@ struct One {
 
 const SCHEMA: &str = "corner-impact/figure/1";
 
+/// Figures of no corner impact, which may be at any speeds.
+const OF_CHOSEN_SPEEDS: [&str; 4] = ["slow-trace", "slow-phase-plane", "slow-impacts", "interrupted-trace"];
+
 /// A model file, and a figure's name, from one or two words.
 fn named(words: &[String]) -> Result<(Option<&str>, Option<&str>), CommandError> {
     let is_file = |word: &str| word.contains(['.', '/', '\\']);
@@ -76,6 +79,13 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let model = ModelArgument::of(file.map(Path::new), &arguments.changes).read_as_drawn(session)?;
     if id.is_none() && arguments.out.is_some() {
         return Err(CommandError::Words("--out is for one figure: name it, from the list without --out".into()));
+    }
+    if let (Some(id), Some([low, high])) = (id.filter(|id| !OF_CHOSEN_SPEEDS.contains(id)), arguments.rpm) {
+        return Err(CommandError::Words(format!(
+            "{} has speeds of its own: --rpm is of {}; `diagram --rpm {low}:{high} --out FILE.svg` draws impacts at others",
+            untrusted::value(id),
+            OF_CHOSEN_SPEEDS.join(", ")
+        )));
     }
     let subject = watched("verifying the model", |_| FigureContext::new(&model, arguments.rpm))?;
     let page = match id {

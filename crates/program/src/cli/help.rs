@@ -30,7 +30,7 @@ pub(super) fn plain() -> Command {
     Arguments::command().after_help(EXAMPLES)
 }
 
-/// The options that `-h` has; `--help` has all.
+/// The options that `-h` has, by their fields; `--help` has all.
 const ESSENTIAL: &[&str] = &[
     "file",
     "words",
@@ -105,7 +105,7 @@ fn shortened(sub: Command, name: &str, after: &str) -> Command {
         let brief = help[..end].trim_end_matches('.').to_owned();
         let short = |name: &Str| name.split('[').next().unwrap_or_default().to_owned();
         let names: Option<Vec<String>> = argument.get_value_names().map(|names| names.iter().map(short).collect());
-        // A name in brackets is of something that may be left out.
+        // A positional argument keeps its own.
         let argument = match names.filter(|_| !argument.is_positional()) {
             Some(names) => argument.value_names(names),
             None => argument,

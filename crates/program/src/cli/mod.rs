@@ -246,7 +246,7 @@ pub fn run_at(
     let only_prints = matches.as_ref().is_ok_and(|matches| session::only_prints(&command, matches));
     let run = match matches.and_then(|matches| Arguments::from_arg_matches(&matches)) {
         Ok(arguments) => begun(&arguments, only_prints, &mut session),
-        Err(error) => session.refuse(error),
+        Err(error) => session.refuse(&command, error),
     };
     run.unwrap_or_else(|error| {
         // Whoever closes a pipe early, as `head` does, wants no more, nor a complaint.

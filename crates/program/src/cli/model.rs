@@ -30,6 +30,10 @@ pub(super) struct Changes {
     follower: FollowerNumbers,
 }
 
+/// What is not assumed of a follower, with what it is in beside a table of lifts.
+const NEEDED: [(&str, &str); 3] = [("mass", "kg"), ("stiffness", "N/mm"), ("preload", "N")];
+
+/// The heading of these options in `--help`.
 const FOLLOWER: &str = "The follower (a table of lifts needs the first three)";
 
 /// Numbers of the follower: each the same as `--set`, and what a table of lifts has to have beside it.
@@ -58,8 +62,8 @@ struct FollowerNumbers {
 impl FollowerNumbers {
     /// The options as they are typed, each after a blank; those that a table needs with what they are in, where they are missing.
     fn typed(&self) -> String {
-        let usual = [("mass", "KG"), ("stiffness", "N/MM"), ("preload", "N")];
-        let needed = |name: &str| usual.iter().find(|(needed, _)| *needed == name).map(|(_, unit)| (*unit).to_owned());
+        let needed =
+            |name: &str| NEEDED.iter().find(|(needed, _)| *needed == name).map(|(_, unit)| unit.to_uppercase());
         let option = |(name, number): (&str, Option<&String>)| {
             let value = number.map(|number| shell_word(number)).or_else(|| needed(name))?;
             Some(format!(" --{name} {value}"))
@@ -67,6 +71,7 @@ impl FollowerNumbers {
         self.all().into_iter().filter_map(option).collect()
     }
 
+    /// Each name, with what is typed for it.
     fn all(&self) -> [(&'static str, Option<&String>); 6] {
         let Self { mass, stiffness, preload, damping, restitution, gravity } = self;
         let all = [
@@ -233,8 +238,6 @@ pub(super) const TABLES: [&str; 4] = ["csv", "tsv", "txt", "dat"];
 /// The model file that is assumed for a table of lifts and the numbers of a follower, which are taken out of the changes.
 fn assumed(table: &Path, changes: &mut Changes, needs_follower: bool) -> Result<String, CommandError> {
     const MODEL: &str = include_str!("templates/assumed.toml");
-    /// What cannot be assumed, with what it is in.
-    const NEEDED: [(&str, &str); 3] = [("mass", "kg"), ("stiffness", "N/mm"), ("preload", "N")];
     let is_of_follower = |change: &Change| {
         let name = change.name.strip_prefix("follower.").unwrap_or(&change.name);
         FollowerNumbers::default().all().iter().any(|(known, _)| *known == name)

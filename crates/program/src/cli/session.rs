@@ -47,6 +47,33 @@ fn shown(value: &ContextValue) -> ContextValue {
     }
 }
 
+/// The commands that take an option which another refuses; none if there are none.
+fn taken_by(command: &clap::Command, error: &clap::Error) -> Option<String> {
+    let Some(ContextValue::String(option)) =
+        error.get(ContextKind::InvalidArg).filter(|_| error.kind() == Kind::UnknownArgument)
+    else {
+        return None;
+    };
+    let name = option.strip_prefix("--")?.split(['=', ' ']).next()?;
+    let takes = |sub: &&clap::Command| {
+        sub.get_arguments().any(|argument| {
+            argument.get_long() == Some(name) || argument.get_all_aliases().is_some_and(|all| all.contains(&name))
+        })
+    };
+    let names: Vec<&str> = command.get_subcommands().filter(takes).map(clap::Command::get_name).collect();
+    (!names.is_empty()).then(|| format!("note: --{name} is an option of {}", names.join(", ")))
+}
+
+/// Lines in the columns of a terminal, if there is one.
+pub(super) fn in_columns(text: &str, columns: Option<usize>) -> String {
+    let Some(columns) = columns else { return text.to_owned() };
+    let wrapped = |line: &str| {
+        let indent = " ".repeat(line.len() - line.trim_start().len() + 4);
+        textwrap::fill(line, options(columns).subsequent_indent(&indent)) + "\n"
+    };
+    text.lines().map(wrapped).collect()
+}
+
 /// Whether nothing that a command line asks for goes to a file.
 pub(super) fn only_prints(command: &clap::Command, matches: &clap::ArgMatches) -> bool {
     let Some((name, given)) = matches.subcommand() else { return false };
@@ -198,6 +225,11 @@ impl Session<'_> {
         let _ = writeln!(self.err, "{}", self.in_width(&format!("note: {}", untrusted::sentence(words))));
     }
 
+    /// Columns of the terminal behind standard error, if that is one.
+    pub(super) fn columns_err(&self) -> Option<usize> {
+        self.terminal.err.then(|| self.width())
+    }
+
     /// A sentence in lines of a terminal; for a program it is one line.
     fn in_width(&self, words: &str) -> String {
         if self.terminal.err {
@@ -247,7 +279,8 @@ impl Session<'_> {
     }
 
     /// Says what is wrong with a command line, or what help was asked for.
-    pub(super) fn refuse(&mut self, mut error: clap::Error) -> Result<Exit, CommandError> {
+    pub(super) fn refuse(&mut self, command: &clap::Command, mut error: clap::Error) -> Result<Exit, CommandError> {
+        let others = taken_by(command, &error);
         // "-- --json" would be the name of a file.
         if error.kind() == Kind::UnknownArgument {
             error.remove(ContextKind::Suggested);
@@ -265,7 +298,8 @@ impl Session<'_> {
         let text = error.render();
         let shown = |colours: bool| if colours { text.ansi().to_string() } else { text.to_string() };
         if error.use_stderr() {
-            let text = shown(self.colours_err());
+            let text = shown(self.colours_err())
+                + &others.map_or(String::new(), |others| format!("{}\n", self.in_width(&others)));
             // A closed pipe leaves nobody to tell.
             let _ = self.err.write_all(text.as_bytes());
             Ok(Exit::BadInput)
