@@ -9,6 +9,7 @@ use clap::error::{ContextKind, ContextValue, ErrorKind as Kind};
 use clap::{ColorChoice, ValueEnum};
 use serde::Serialize;
 
+use super::picture::ends_in;
 use super::{CommandError, Exit, complaint, next};
 use crate::show::block::in_units;
 use crate::show::page::options;
@@ -244,12 +245,14 @@ impl Session<'_> {
         self.note(&format!("{count} of {all} {what} could not be run; the first is {first}"));
     }
 
-    /// Opens the file that was written, if that was asked for, by the program that is there for its kind.
+    /// Says to a person at a terminal which file was written, and opens it, if that was asked for, by the program that is there for its kind.
     pub(super) fn open(&mut self) {
-        let file = self.wishes.file.clone().filter(|path| self.wishes.open && path.as_os_str() != "-");
-        if let Some(path) = file
-            && open::that_detached(&path).is_err()
-        {
+        let Some(path) = self.wishes.file.clone().filter(|path| path.is_file()) else { return };
+        // `report` prints the name of its page.
+        if self.terminal.err && !ends_in(&path, &["html", "htm"]) {
+            self.note(&format!("wrote {}", path.display()));
+        }
+        if self.wishes.open && open::that_detached(&path).is_err() {
             self.note(&format!("{} is written, and nothing here opens it", path.display()));
         }
     }
