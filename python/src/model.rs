@@ -586,14 +586,15 @@ impl Model {
     }
 
     /// What moved from this model to `other`: the verdicts, the fields that differ, and each number that changed with how far the difference
-    /// may be off: the document of `corner-impact compare --json`, in this model's units. With `external`, by the routes in Python, too.
+    /// may be off: the document of `corner-impact compare --json`, in this model's units. Without `external` the routes in Python are left
+    /// out, as with `--no-external`.
     ///
-    /// >>> found = Model.paper().compare(Model.paper().with_number("restitution", 0.7))
+    /// >>> found = Model.paper().compare(Model.paper().with_number("restitution", 0.7), external=False)
     /// >>> found["verdict"]
     /// {'a': 'nonsmooth-fold', 'b': 'nonsmooth-fold'}
     /// >>> {change["quantity"]: round(change["difference"], 6) for change in found["changes"]}["speed_rpm"]
     /// 11.412107
-    #[pyo3(signature = (other, *, external=false))]
+    #[pyo3(signature = (other, *, external=true))]
     fn compare<'py>(&self, py: Python<'py>, other: &Self, external: bool) -> PyResult<Bound<'py, PyDict>> {
         let external = if external { External::Run } else { External::LeftOut };
         let (a, b) = (&self.model, &other.model);

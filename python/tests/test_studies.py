@@ -33,7 +33,7 @@ from corner_impact import Model
             ["design", "--rpm", "200", "--over", "mass=1:4:3:log"],
         ),
         (lambda it: it.design(200), ["design", "--rpm", "200"]),
-        (lambda it: it.compare(it.with_number("restitution", 0.7)), ["compare", "--set", "restitution=0.7"]),
+        (lambda it: it.compare(it.with_number("restitution", 0.7), external=False), ["compare", "--set", "restitution=0.7", "--no-external"]),
         (lambda it: it.certify((670, 680)), ["certify", "--rpm", "670:680"]),
         (lambda it: it.certify((690, 700), orbits=True), ["certify", "--rpm", "690:700", "--orbits"]),
     ],
