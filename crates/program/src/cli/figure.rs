@@ -8,7 +8,7 @@ use super::model::Changes;
 use super::numbers::rpm_range;
 use super::progress::{Progress, watched};
 use super::{CommandError, Exit, ModelArgument, Session, picture};
-use crate::figures::{FIGURES, FigureContext, Listed, RenderedFigure, listed};
+use crate::figures::{FIGURES, FigureContext, Listed, OF_CHOSEN_SPEEDS, RenderedFigure, listed};
 use crate::show::block::{Block, Column, Table, Words};
 use crate::show::page::WIDTH;
 use crate::show::{Page, json};
@@ -58,9 +58,6 @@ struct One {
 }
 
 const SCHEMA: &str = "corner-impact/figure/1";
-
-/// Figures of no corner impact, which may be at any speeds.
-const OF_CHOSEN_SPEEDS: [&str; 4] = ["slow-trace", "slow-phase-plane", "slow-impacts", "interrupted-trace"];
 
 /// A model file, and a figure's name, from one or two words.
 fn named(words: &[String]) -> Result<(Option<&str>, Option<&str>), CommandError> {

@@ -49,6 +49,9 @@ pub use subject::{Effort, Fast, FigureContext, ShownSpeeds, Slow};
 pub use through_corner::through_corner;
 pub use trace::{TracedRun, time_trace, with_force};
 
+/// Figures of no corner impact, which may be at any speeds.
+pub(crate) const OF_CHOSEN_SPEEDS: [&str; 4] = ["slow-trace", "slow-phase-plane", "slow-impacts", "interrupted-trace"];
+
 /// All figures of the report, in the paper's order.
 pub(crate) const FIGURES: [Entry; 15] = [
     cam_shape::CAM_SHAPE,
@@ -161,7 +164,8 @@ impl Entry {
         let in_units =
             |drawn: Captioned| Captioned { figure: drawn.figure.in_units(|unit| units.spelled(unit)), ..drawn };
         let drawn = (self.draw)(subject, &title).map(in_units);
-        let speeds = subject.rpm.map_or(String::new(), |[low, high]| format!(" --rpm {low}:{high}"));
+        let chosen = subject.rpm.filter(|_| OF_CHOSEN_SPEEDS.contains(&self.id));
+        let speeds = chosen.map_or(String::new(), |[low, high]| format!(" --rpm {low}:{high}"));
         let command = command("figure", &subject.model, &format!("{}{speeds} --out {}.svg", self.id, self.id));
         RenderedFigure { id: self.id, place: self.place, title, command, drawn }
     }
