@@ -47,7 +47,7 @@ impl Candidate {
                 let angle = cycle.impacts[index].cam_angle.to_degrees();
                 let velocity = rates.cam_velocity;
                 return Err(format!(
-                    "a graze at {angle:.4} deg, v = c' = {velocity:.6} m/s: the map has no linear part"
+                    "a graze at {angle:.4} deg, v = c' = {velocity:.6} in the model's units: the map has no linear part"
                 ));
             }
         }

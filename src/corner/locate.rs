@@ -19,7 +19,7 @@ pub enum LocateError {
     NotFound(#[source] Box<NotFound>),
     /// The only candidate touches the corner without relative velocity.
     #[error(
-        "{file}: grazing impact at {speed_rpm:.6} rpm: the follower touches the corner at {:.6} deg with v = c' = {velocity} m/s; \
+        "{file}: grazing impact at {speed_rpm:.6} rpm: the follower touches the corner at {:.6} deg with v = c' = {velocity} in the model's units; \
          there the map has no linear part, so there is no A and B to check",
         cam_angle.to_degrees()
     )]

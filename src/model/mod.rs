@@ -176,7 +176,7 @@ impl Model {
     /// The `[study]` range, or the complaint that it is missing.
     pub fn study(&self) -> Result<Study, ModelError> {
         self.study.ok_or_else(|| {
-            self.reject("study.rpm_min", "is needed here: [study] says where to look for the corner impact")
+            self.reject("study.rpm_min", "is needed here: [study] says where to look for the corner impact; `locate --rpm LO:HI` and `certify --rpm LO:HI` look at any speeds")
         })
     }
 

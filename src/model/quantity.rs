@@ -175,7 +175,7 @@ impl ModelNumber {
         self.path.rsplit('.').next().unwrap_or(self.path)
     }
 
-    /// What it may be, as a complaint says it.
+    /// Allowed range in words, for a complaint.
     pub fn allowed(&self) -> String {
         self.allowed.to_string()
     }

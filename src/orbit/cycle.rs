@@ -63,7 +63,7 @@ pub struct Cycle {
 pub struct NotClosed {
     /// Steps of Newton's method.
     pub steps: usize,
-    /// What the equations are off by, relative to their size.
+    /// Residual of the orbit's equations, relative to their size.
     pub residual: f64,
 }
 

@@ -135,14 +135,14 @@ impl Observer for Unobserved {
 pub enum SimulateError {
     /// The follower is inside the cam: it started there, or a continued cam has a step.
     #[error(
-        "simulate: the follower is {depth:.3e} m below the cam at cam angle {:.4} deg of revolution {revolution}",
+        "simulate: the follower is below the cam by {depth:.3e} in the model's unit of length at cam angle {:.4} deg of revolution {revolution}",
         cam_angle.to_degrees()
     )]
     BelowCam { depth: f64, revolution: u64, cam_angle: f64 },
     /// A flight has passed through the cam, which is impossible: a fault of this program.
     #[error(
-        "simulate: a fault of this program: at {rpm} rpm the follower has passed through the cam, {depth:.3e} m deep at cam angle \
-         {:.4} deg of revolution {revolution}, at position {position} m with velocity {velocity} m/s",
+        "simulate: a fault of this program: at {rpm} rpm the follower has passed through the cam by {depth:.3e} at cam angle \
+         {:.4} deg of revolution {revolution}, at position {position} with velocity {velocity}, in the model's units",
         cam_angle.to_degrees()
     )]
     PassedThrough { depth: f64, revolution: u64, cam_angle: f64, position: f64, velocity: f64, rpm: f64 },

@@ -80,7 +80,7 @@ pub enum StudyError {
     )]
     Lengths { a: String, b: String },
     /// The value at which a search begins is outside the range to be followed.
-    #[error("{file}: {name} = {value}, where orbits are looked for, is outside of {}:{}", range[0], range[1])]
+    #[error("{file}: {name} = {value}, where orbits are looked for, is outside of {}:{}: --set {name}=VALUE, or --rpm R where the speed varies, looks for them elsewhere", range[0], range[1])]
     Outside { file: String, name: String, value: f64, range: [f64; 2] },
     /// A search found no orbit.
     #[error("{file}: no periodic orbit of {revolutions} revolution(s) found at {rpm} rpm to follow")]
@@ -137,8 +137,8 @@ fn inside(model: &Model, rpm: f64, following: &Following) -> Result<f64, StudyEr
 /// Hypotheses on the machine for proofs by intervals of doubles.
 #[doc(hidden)]
 pub fn hypotheses(cam: &Cam) -> Vec<&'static str> {
-    let doubles = "the machine is the one whose numbers are the doubles that those of the model file became";
-    let meets = "where one law of the lift ends the next goes on with the same lift and the same slope, as the model means it, but at corners \
-                 where the velocity jumps";
+    let doubles = "the machine's numbers are the doubles nearest to those of the model file";
+    let meets = "adjacent segments of the lift join with the same lift and the same slope, as the model means it, except at corners where the \
+                 velocity jumps";
     if cam.segments().len() > 1 { vec![doubles, meets] } else { vec![doubles] }
 }

@@ -220,7 +220,7 @@ fn models_and_starts_that_cannot_be() {
         place.refuses(&format!("{command} MODEL {rest} --no-such"), &["--no-such"]);
     }
     let below = "--state 0.3999,0 --start-angle 0.5";
-    let says = ["1.000e-4 m below the cam", "28.6479 deg", "revolution 0"];
+    let says = ["below the cam by 1.000e-4 in the model's unit of length", "28.6479 deg", "revolution 0"];
     place.refuses(&format!("simulate MODEL --rpm 700 {below} --events out.csv --trace out.svg"), &says);
     for start in ["fixed", "up", "down"] {
         let line = format!("diagram MODEL --rpm 600:700:3 {below} --start {start} --out out.csv");

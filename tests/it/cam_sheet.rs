@@ -38,6 +38,6 @@ fn polynomials_are_listed_where_they_are_the_cam_that_is_meant() {
         assert!(sheet.segments.len() >= rows.len() && sheet.segments.last().unwrap().end == TAU);
         assert_eq!(format!("{:?}", sheet.blocks()).contains("Segments of the cam"), lists, "{spline}");
         let told = sheet.text().unwrap();
-        assert!(told.contains("degrees; --json lists them"), "{told}");
+        assert!(told.contains("deg long; --json lists them"), "{told}");
     }
 }

@@ -358,7 +358,7 @@ fn hypotheses_stand_beside_what_is_proved() {
     assert!(begins(&of(&["verify", "--json"])) && begins(&of(&["explain", "T*", "--json"])));
     assert!(of(&["verify", "--json", "--no-external"])["hypotheses"].is_null());
     let page = text(corner_impact(["verify"]).stdout);
-    assert!(in_one_line(&page).contains(&format!("Taken for granted: {decimals}")), "{page}");
+    assert!(in_one_line(&page).contains(&format!("Hypotheses: {decimals}")), "{page}");
 }
 
 /// The list is found by another program than `orbit`'s, and neither may have an orbit that the other lacks.

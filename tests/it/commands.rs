@@ -236,7 +236,7 @@ fn a_diagram_has_a_summary() {
     assert_eq!(summary["threads"], 2);
     // One for each speed is as many as there is work for, and followed speeds have work for one.
     for (options, threads) in [(["--threads", "9"], 3), (["--start", "up"], 1)] {
-        let sweep = [&sweep[..8], &options].concat();
+        let sweep = [&sweep[..8], &options, &["--quiet"]].concat();
         assert_eq!(document(&[&sweep[..], &["--summary"]].concat())["threads"], threads, "{options:?}");
         let page = prints(&sweep);
         assert!(page.contains(if threads == 1 { " on 1 thread," } else { " on 3 threads," }), "{page}");

@@ -158,7 +158,7 @@ fn a_load_that_is_low_enough_again_further_on_is_told() {
         assert_eq!((damping.again, trade.known == Evidence::Sampled), (trade.pairs[0].again, is_again), "{damping:?}");
         assert_eq!(damping.again.is_some(), is_again, "{damping:?}");
         let Some(again) = damping.again else { continue };
-        assert!(damping.note.contains("it is so again") && again > 2.0 * trade.pairs[0].other.unwrap(), "{damping:?}");
+        assert!(damping.note.contains("met again with") && again > 2.0 * trade.pairs[0].other.unwrap(), "{damping:?}");
         assert!(found.text().unwrap().contains(", and "), "{}", found.text().unwrap());
         let damped = model.changed(&[("damping".into(), again)]).unwrap();
         let loads = design(&damped, &Asked { rpm: Some([3600.0, 3601.0]), speeds: 2, ..Asked::default() }, &Unwatched)

@@ -248,7 +248,7 @@ fn the_page_says_what_was_looked_at() {
     assert!(words.contains("Orbits of one impact: all, which is proved."), "{page}");
     assert!(
         words.contains("each 2 % faster than the one before")
-            && words.contains("too few to tell how many more there may be"),
+            && words.contains("too few for an estimate of how many both missed"),
         "{page}"
     );
     assert!(page.lines().all(|line| line.chars().count() <= 100), "{page}");

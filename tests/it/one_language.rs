@@ -95,6 +95,60 @@ fn speeds_and_axes_have_one_form() {
     assert!(found["attractors"][0]["shares"].as_array().unwrap().len() < 10, "{found}");
 }
 
+/// A document of branches or curves has what their table has.
+#[test]
+fn branches_and_curves_are_documents_too() {
+    for (line, lists, value) in [
+        ("continue --rpm 700 --over rpm=699:701", "branches", "value"),
+        ("curve --rpm 670:680 --over restitution=0.79:0.81 --event corner", "curves", "speed_rpm"),
+    ] {
+        let table = printed(&format!("{line} --quiet"));
+        let document: serde_json::Value = serde_json::from_str(&printed(&format!("{line} --json"))).unwrap();
+        let points = document[lists].as_array().unwrap().iter().flat_map(|list| list["points"].as_array().unwrap());
+        let of_document: Vec<f64> = points.map(|point| point[value].as_f64().unwrap()).collect();
+        let first_cell = |row: &str| row.split(',').next().unwrap().parse::<f64>().unwrap();
+        let of_table: Vec<f64> = table.lines().skip(1).map(first_cell).collect();
+        assert!(of_table == of_document && of_table.len() > 60, "{line}");
+        // What each passes is a note.
+        assert!(run(line).2.contains(" 1: ") && run(&format!("{line} --quiet")).2.is_empty(), "{line}");
+    }
+}
+
+/// The loads that `simulate` prints, against the events and the trace of the same run.
+#[test]
+fn loads_of_a_run_are_those_of_its_events() {
+    let line = "simulate --rpm 183 --revolutions 3";
+    let found: serde_json::Value = serde_json::from_str(&printed(&format!("{line} --json"))).unwrap();
+    let rows = |table: &str| -> Vec<Vec<String>> {
+        let rows = table.lines().skip(1).map(|row| row.split(',').map(str::to_owned).collect());
+        rows.collect()
+    };
+    let number = |cell: &str| cell.parse::<f64>().unwrap();
+    let (mut hardest, mut off, mut left) = (0.0_f64, 0.0, None);
+    // Columns: revolution, time, cam angle, event, position, velocity before and after, velocity of the cam.
+    for row in rows(&printed(&format!("{line} --events -"))) {
+        match row[3].as_str() {
+            "release" => left = Some(number(&row[1])),
+            "stick" => off += number(&row[1]) - left.take().expect("it flies"),
+            _ => hardest = hardest.max((number(&row[5]) - number(&row[7])).abs()),
+        }
+    }
+    assert!(left.is_none(), "it ends on the cam");
+    let gaps = rows(&printed(&format!("{line} --out -"))).into_iter().map(|row| number(&row[4]));
+    let gap = gaps.fold(0.0, f64::max);
+    let of = |name: &str| found[name].as_f64().unwrap();
+    assert!(hardest > 3.0 && (of("hardest_impact_m_s") - hardest).abs() < 1e-9 * hardest, "{hardest}: {found}");
+    assert!((of("off_cam_share") - off / (3.0 * 60.0 / 183.0)).abs() < 1e-9, "{off}: {found}");
+    // The trace has a row a degree.
+    assert!((0.0..1e-3 * gap).contains(&(of("largest_gap_m") - gap)), "{gap}: {found}");
+    // An orbit of more impacts than its page lists has the hardest of all.
+    let page = printed("orbit --rpm 183");
+    assert!(page.contains(&format!("deg: {hardest:.6} m/s relative to the cam")), "{hardest}: {page}");
+    let long: serde_json::Value =
+        serde_json::from_str(&printed("simulate --rpm 183 --revolutions 120 --json")).unwrap();
+    assert_eq!((of("loads_over_revolutions"), long["loads_over_revolutions"].as_f64()), (3.0, Some(100.0)));
+}
+
 #[test]
 fn numbers_are_taken_as_people_type_them() {
     assert_eq!(
@@ -105,8 +159,17 @@ fn numbers_are_taken_as_people_type_them() {
         let output = corner_impact(["cam", "models/laws/program.toml", "--set", value]);
         (output.status.code(), text(output.stderr))
     };
-    assert_eq!(set("mass=2 kg").0, Some(0));
-    assert_eq!(set("mass=2000g").0, Some(0));
+    let [kilograms, grams] = ["2 kg", "2000g"].map(|mass| {
+        let words =
+            ["simulate", "models/laws/program.toml", "--rpm", "300", "--set", &format!("mass={mass}"), "--events", "-"];
+        let output = corner_impact(words);
+        assert_eq!(output.status.code(), Some(0), "{}", text(output.stderr));
+        text(output.stdout)
+    });
+    // A command that comes after a number is no unit.
+    assert!(printed("--threads 2 cam models/laws/program.toml").contains("Cam of program"));
+    let as_in_the_file = printed("simulate models/laws/program.toml --rpm 300 --events -");
+    assert!(kilograms == grams && kilograms != as_in_the_file);
     for (value, says) in [
         ("mass=900N", "mass is in kg in this model"),
         ("preload=3kg", "is not a number of this model"),
@@ -119,8 +182,27 @@ fn numbers_are_taken_as_people_type_them() {
     }
     for (line, says) in [
         ("simulate --rpm 1904,8", "may be 1904.8 or 19048"),
-        ("simulate --rpm 30Hz", "\"30Hz\" is not in rpm"),
-        ("simulate --rpm 100 --start-angle 90grad", "is not in rad"),
+        ("simulate --rpm 30Hz", "\"30Hz\" is not in rpm: 1800 rpm, if that is the speed of the cam"),
+        ("speeds --rpm 3000-5000", "a range has a colon: 3000:5000"),
+        ("simulate --rmp 700", "a similar argument exists: '--rpm'"),
+        ("simulate --spring 700", "Usage: corner-impact simulate [OPTIONS]"),
+        ("diagram --over rpm=600:700:3 --over mass=1:2:3", "note: `chart` goes over two numbers"),
+        ("basins --rpm 700", "example: corner-impact basins --rpm 678"),
+        ("figure slow-trce", "did you mean slow-trace? there are: cam-shape,"),
+        ("c0.cvs", "c0.cvs: cannot be read: there is no such file"),
+        ("cam models/osorio-2009.toml", "did you mean osorio-2008.toml?"),
+        ("cam models", "it is a folder"),
+        ("design help", "the command comes first"),
+        ("analyse lifts.csv", "note: `corner-impact MODEL` says what can be done"),
+        ("models/osorio-2008.toml desing", "a similar subcommand exists: 'design'"),
+        ("--rpm 700 simulate", "note: options of a command come after it"),
+        ("design --svg a.svg", "a similar argument exists: '--out'"),
+        ("explain models/osorio-2008.toml preload", "explain preload models/osorio-2008.toml"),
+        ("speeds --starts four", "must be a whole number"),
+        ("models/osorio-2008.toml --rpm 700", "Usage: corner-impact MODEL [COMMAND]"),
+        ("verify models/laws/program.toml", "`locate --rpm LO:HI` and `certify --rpm LO:HI`"),
+        ("simulate --rpm 100 --start-angle 90grad", "write 90deg, or 90rad"),
+        ("design --rpm 3000..6000", "a range has a colon: 3000:6000"),
         ("locate --rpm 600:760,5", "may be 760.5 or 7605"),
         ("verify --jsn", "a similar argument exists: '--json'"),
         (
@@ -128,7 +210,10 @@ fn numbers_are_taken_as_people_type_them() {
             "note: --over is an option of design, speeds, diagram, chart, basins, continue, curve\n",
         ),
         ("verify --rpm 700:710", "note: --rpm is an option of"),
-        ("speeds --trace run.svg", "note: --trace is an option of simulate"),
+        ("speeds --trace run.svg", "a similar argument exists: '--out'"),
+        ("diagram --parameter restitution=0.6:0.9:4", "a similar argument exists: '--over'"),
+        ("claims --verdict wrong", "must be one of"),
+        ("certify --rpm 673", "corner impacts are certified over a range, --rpm LO:HI"),
         ("figure fast-impacts --rpm 660:700", "fast-impacts has speeds of its own: --rpm is of slow-trace"),
     ] {
         let (exit, _, why) = run(line);
@@ -175,6 +260,10 @@ fn a_result_ends_with_what_comes_next() {
     assert_eq!(next(&of_cam).unwrap(), format!("next: corner-impact design {model} --set follower.mass=2"));
     assert!(told(&of_cam, true).0.ends_with("mass=2\n"), "the last line");
     assert_eq!(next("orbit --rpm 700").unwrap(), "next: corner-impact continue --rpm 700 --over rpm=665:735");
+    assert_eq!(
+        next("chart --over rpm=660:700:2 --over restitution=0.7:0.8:2 --transient 5 --record 5").unwrap(),
+        "next: corner-impact curve --rpm 660:700 --over restitution=0.7:0.8"
+    );
     for quiet in [format!("{of_cam} --quiet"), format!("{of_cam} --json")] {
         assert_eq!(next(&quiet), None, "{quiet}");
     }
@@ -229,16 +318,31 @@ fn a_table_of_lifts_is_enough() {
     let [as_set, named] = [["--set", "mass=0.2"], ["--mass", "0.2"]]
         .map(|change| run(&[&["design", "valve.toml", "--speeds", "2", "--json"][..], &change].concat()).1);
     assert!(as_set == named && named != of_table && !named.is_empty());
+    let twice = ["design", "valve.csv", "--mass", "1", "--set", "mass=2", "--stiffness", "3", "--preload", "2"];
+    let (exit, _, why) = run(&twice);
+    assert!(exit == 2 && why.contains("follower.mass is set twice"), "{why}");
     let (exit, page, _) = run(&["valve.csv", "--mass", "0.11 kg"]);
-    let typed = "corner-impact cam valve.csv --mass '0.11 kg' --stiffness N/MM --preload N\n";
-    assert!(exit == 0 && page.replace(" \\\n      ", " ").contains(typed), "{page}");
+    let typed = "corner-impact design valve.csv --mass '0.11 kg' --stiffness N/MM --preload N\n";
+    assert!(
+        exit == 0 && page.contains(typed) && page.contains("corner-impact cam valve.csv --mass '0.11 kg'\n"),
+        "{page}"
+    );
     let (exit, _, why) = run(&["design", "valve.csv", "--mass", "1"]);
     assert!(exit == 2 && why.contains("give --stiffness (N/mm), --preload (N)"), "{why}");
     let (exit, _, why) = run(&["cam", "valve.csv", "--mass", "3 N"]);
     assert!(exit == 2 && why.contains("mass is in kg in this model"), "{why}");
     // In other units, and by --set.
-    let numbers =
-        ["--set", "mass=110g", "--stiffness", "30000 N/m", "--preload", "0.22kN", "--set", "follower.restitution=0.4"];
+    let numbers = [
+        "--set",
+        "mass=110g",
+        "--stiffness",
+        "30000",
+        "N/m",
+        "--preload",
+        "0.22kN",
+        "--set",
+        "follower.restitution=40%",
+    ];
     assert_eq!(run(&[&["design", "valve.csv", "--speeds", "2", "--json"][..], &numbers].concat()).1, of_table);
 }
 

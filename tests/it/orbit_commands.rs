@@ -320,7 +320,7 @@ fn what_cannot_be_followed_is_refused_with_a_reason() {
     let followed = |parameter: &str| refused(&["continue", MODEL, "--from-rpm", "700", "--parameter", parameter]);
     assert!(followed("spring=1:2").contains("spring is not a number of this model; there are: rpm, cam.base_radius"));
     assert!(followed("restitution=0.9:0.95").contains("outside of 0.9:0.95"));
-    assert!(followed("restitution=0.9").contains("must be LO:HI"));
+    assert!(followed("restitution=0.9").contains("must be NAME=LO:HI"));
     assert!(followed("restitution=0.9:0.95:3").contains("takes a range alone"));
     assert!(followed("restitution=0.9:0.1").contains("is not below"));
     let none = refused(&["continue", MODEL, "--from-rpm", "700", "--parameter", "rpm=600:800", "--impacts", "9"]);

@@ -54,13 +54,13 @@ pub enum LookError {
     #[expect(missing_docs, reason = "what the words say")]
     Size { size: f64, width: f64, low: f64, high: f64 },
     /// A range that shows no data.
-    #[error("{axis} from {} to {} shows nothing: what is drawn lies from {} to {}", shown[0], shown[1], drawn[0], drawn[1])]
+    #[error("{axis} from {} to {} shows nothing: what is drawn lies from {} to {}", shown[0], shown[1], drawn[0] as f32, drawn[1] as f32)]
     #[expect(missing_docs, reason = "what the words say")]
     Aside { axis: &'static str, shown: [f64; 2], drawn: [f64; 2] },
     /// A range that shows too little of the data.
     #[error(
         "{axis} from {} to {} is less than a hundredth of what is drawn, from {} to {}: compute the figure anew over a narrower range",
-        shown[0], shown[1], drawn[0], drawn[1]
+        shown[0], shown[1], drawn[0] as f32, drawn[1] as f32
     )]
     #[expect(missing_docs, reason = "what the words say")]
     Narrow { axis: &'static str, shown: [f64; 2], drawn: [f64; 2] },

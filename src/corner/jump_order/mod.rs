@@ -66,7 +66,7 @@ impl Approach {
 pub enum JumpOrderError {
     /// The follower does not fall onto the corner.
     #[error(
-        "jump order: at {angular_velocity} rad/s the follower closes on the corner at {cam_angle} rad at {closing} m/s; it must come in from above"
+        "jump order: at {angular_velocity} rad/s the follower closes on the corner at {cam_angle} rad at {closing} in the model's units; it must come in from above"
     )]
     NotFromAbove { closing: f64, angular_velocity: f64, cam_angle: f64 },
     /// No stretch around the corner is free of other events.

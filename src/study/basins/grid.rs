@@ -118,7 +118,7 @@ impl SectionStarts {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum GridError {
     /// A run could not go on.
-    #[error("basins: from q = {} m, v = {} m/s: {error}", state.position, state.velocity)]
+    #[error("basins: from q = {}, v = {} in the model's units: {error}", state.position, state.velocity)]
     Simulate {
         /// Start of the run.
         state: State,

@@ -270,7 +270,7 @@ pub(super) fn answer(
     let stuck = found
         .stuck
         .map(|value| format!("at {} {unit} a run makes no progress, which is taken not to do", told(value) as f32));
-    let again = found.again.map(|value| format!("with {} {unit} it is so again", told(value) as f32));
+    let again = found.again.map(|value| format!("met again with {} {unit}", told(value) as f32));
     let notes = [found.note.clone()].into_iter().filter(|note| !note.is_empty()).chain(again).chain(stuck);
     Ok(Answer {
         need: text.into(),

@@ -23,10 +23,10 @@ pub struct Over<'a> {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum OverError {
     /// No speed is given, and the number that varies is not the speed.
-    #[error("{} rpm: --rpm says at which speed", .0.as_ref().map_or("neither axis is".into(), |name| format!("{name} is not")))]
+    #[error("{}, and the speed is missing: --rpm R says at which", .0.as_ref().map_or("neither axis is rpm".into(), |name| format!("{name} varies")))]
     NoSpeed(Option<String>),
     /// A speed is given, but the speed is the number that varies.
-    #[error("--rpm R is for a survey of which no axis is rpm")]
+    #[error("--rpm R says at which speed another number varies: leave it out where rpm is an axis")]
     TwoSpeeds,
     /// The machine is impossible.
     #[error(transparent)]

@@ -5,8 +5,7 @@ use std::path::Path;
 
 use clap::CommandFactory;
 
-use super::model::TABLES;
-use super::picture::ends_in;
+use super::model::is_file_name;
 use super::{CommandError, Exit, ModelArgument, Session};
 use crate::show::block::{Block, words};
 use crate::show::{Page, words};
@@ -15,7 +14,12 @@ use corner_impact::study::speeds::usual_range;
 
 /// Says what can be done with a model: the same as `corner-impact MODEL`.
 #[derive(clap::Args)]
-#[command(hide = true)]
+#[command(
+    hide = true,
+    override_usage = "corner-impact MODEL [COMMAND] [OPTIONS]",
+    after_help = "Examples:\n\
+    \x20 corner-impact models/osorio-2008.toml"
+)]
 pub(super) struct Arguments {
     #[command(flatten)]
     model: ModelArgument,
@@ -24,12 +28,11 @@ pub(super) struct Arguments {
 /// The command line with this command before a model that stands where a command is expected.
 pub(super) fn named(mut words: Vec<OsString>) -> Vec<OsString> {
     let is_command = |word: &OsString| super::Arguments::command().find_subcommand(word).is_some();
-    let is_model = |word: &&OsString| {
-        let path = Path::new(word);
-        !is_command(word) && (ends_in(path, &["toml"]) || ends_in(path, &TABLES) || path.is_file())
-    };
+    let is_model =
+        |word: &&OsString| !is_command(word) && (word.to_str().is_some_and(is_file_name) || Path::new(word).is_file());
     if words.get(1).filter(is_model).is_some() {
-        match words.get(2).filter(|word| is_command(word)) {
+        match words.get(2).filter(|word| !word.to_string_lossy().starts_with('-')) {
+            // A word that is no command is refused as one.
             Some(_) => words.swap(1, 2),
             None => words.insert(1, "about".into()),
         }
@@ -43,8 +46,10 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let [low, high] = usual_range(&model)?;
     let of_acceleration = cam.corners().iter().filter(|corner| corner.jump_order == 2).count();
     let corners = words::many(of_acceleration as u64, "corner");
+    let missing = arguments.model.still_needed();
+    let of = if missing.is_empty() { "" } else { " of the assumed follower" };
     let lead = format!(
-        "cam of law \"{}\" with {corners} where the acceleration jumps; without --rpm, `speeds` looks at {low} to {high} rpm",
+        "cam of law \"{}\" with {corners} where the acceleration jumps; without --rpm, `speeds` shows the motions{of} at {low} to {high} rpm",
         model.cam.law()
     );
     let mut uses = vec![
@@ -63,7 +68,12 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     }
     let named = session.named.clone();
     let entry = |(name, rest, what): (&str, String, &'static str)| {
-        [Block::Command(format!("corner-impact {name}{named}{rest}")), Block::Line(words![format!("    {what}")])]
+        // The cam needs no follower.
+        let missing = if name == "cam" { "" } else { &missing };
+        [
+            Block::Command(format!("corner-impact {name}{named}{missing}{rest}")),
+            Block::Line(words![format!("    {what}")]),
+        ]
     };
     let mut blocks = vec![Block::Title(words![&model.name]), Block::paragraph(lead), Block::Gap];
     blocks.extend(uses.into_iter().flat_map(entry));

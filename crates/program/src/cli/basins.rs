@@ -78,7 +78,7 @@ fn cells(text: &str) -> Result<Cells, String> {
         part.trim().parse::<usize>().map_err(|_| format!("\"{}\" is not a number of cells", untrusted::value(part)))
     };
     let Some((columns, rows)) = text.split_once('x') else {
-        return Err("must be NxM: cells along the positions and along the velocities".into());
+        return Err("must be NxM, such as 60x40: cells along the positions and along the velocities".into());
     };
     let (columns, rows) = (count(columns)?, count(rows)?);
     match columns.checked_mul(rows) {

@@ -23,7 +23,7 @@ pub(super) struct Arguments {
     #[command(flatten)]
     model: ModelArgument,
     /// Range of speeds, rpm; with --orbits also one speed, with --resting only one [default: the model's [study]].
-    #[arg(long, value_name = "LO:HI", value_parser = rpm_or_range)]
+    #[arg(long, value_name = "LO:HI|R", value_parser = rpm_or_range)]
     rpm: Option<[f64; 2]>,
     /// Turns of the cam after which the orbits repeat, and no fewer.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=Search::MOST_REVOLUTIONS))]
@@ -34,7 +34,7 @@ pub(super) struct Arguments {
     /// Prove all periodic orbits of one impact and of two in one revolution at the speed of --rpm, instead of corner impacts; at every speed of a range, how many there are of one impact.
     #[arg(long, requires = "rpm", conflicts_with = "revolutions")]
     orbits: bool,
-    /// Prove what becomes of a follower that rests on the cam at the speed of --rpm, with twice as many bits as often as it takes.
+    /// Prove that the motion of a follower that rests on the cam at the speed of --rpm is periodic. The bits are doubled until the proof succeeds.
     #[arg(long, requires = "rpm", conflicts_with_all = ["revolutions", "orbits"])]
     resting: bool,
     #[command(flatten)]
@@ -62,6 +62,12 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         return Ok(Exit::Agrees);
     }
     let range = match arguments.rpm {
+        Some([low, high]) if low == high => {
+            let words = format!(
+                "--rpm {low} is one speed: corner impacts are certified over a range, --rpm LO:HI; --orbits and --resting take one speed"
+            );
+            return Err(CommandError::Words(words));
+        }
         Some([rpm_min, rpm_max]) => Study { rpm_min, rpm_max },
         None => model.study()?,
     };

@@ -38,7 +38,10 @@ pub(super) struct Arguments {
 
 /// A value by the name that documents have for it.
 fn named<T: serde::de::DeserializeOwned>(name: &str) -> Result<T, String> {
-    serde_json::from_value(name.into()).map_err(|_| "there is none of that name".into())
+    serde_json::from_value(name.into()).map_err(|error| match error.to_string().split_once("expected one of ") {
+        Some((_, names)) => format!("must be one of {}", names.replace('`', "")),
+        None => "there is none of that name".into(),
+    })
 }
 
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {

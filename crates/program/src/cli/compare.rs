@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 
 use super::external::ExternalArguments;
-use super::model::Changes;
+use super::model::{Changes, TABLES};
+use super::picture::ends_in;
 use super::{AnswerArguments, CommandError, Exit, ModelArgument, Session, progress::watched};
 use corner_impact::study::compare::compare;
 
@@ -35,7 +36,10 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
-    let a = ModelArgument::of(arguments.first.as_deref(), &Changes::default()).read_as_drawn(session)?;
+    // A table of lifts has no follower of its own.
+    let is_table = arguments.first.as_deref().is_some_and(|file| ends_in(file, &TABLES));
+    let changes = if is_table && arguments.second.is_some() { &arguments.changes } else { &Changes::default() };
+    let a = ModelArgument::of(arguments.first.as_deref(), changes).read_as_drawn(session)?;
     let b = match &arguments.second {
         Some(file) => ModelArgument::of(Some(file), &arguments.changes).read_as_drawn(session)?,
         None => arguments.changes.of(&a)?,

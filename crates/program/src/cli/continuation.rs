@@ -82,9 +82,11 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let found = watched("", |watch| branches(&model, arguments.rpm, &wanted, following, arguments.all, watch))?;
     let name = found.following.parameter.name();
     for (index, branch) in found.branches.iter().enumerate() {
-        let account = in_columns(&pages::branches::branch(branch, name, index + 1), columns);
-        // Nobody is left to tell where standard error is closed.
-        let _ = session.err.write_all(account.as_bytes());
+        let account = in_columns(&pages::branches::branch(branch, (name, &model.units), index + 1), columns);
+        if !session.quiet {
+            // Nobody is left to tell where standard error is closed.
+            let _ = session.err.write_all(account.as_bytes());
+        }
     }
     let rows = || csv::branches(name, &found.branches, &model.units);
     let drawn = || {

@@ -80,8 +80,10 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let Curves { own, sharp, curves, .. } = &found;
     let own = *own;
     let (name, [low, high]) = (following.parameter.name(), arguments.rpm);
-    let accounts =
-        curves.iter().zip(1..).map(|(found, index)| pages::branches::curve(found, (name, own), index, sharp));
+    let accounts = curves
+        .iter()
+        .zip(1..)
+        .map(|(found, index)| pages::branches::curve(found, (name, own, &model.units), index, sharp));
     let mut accounts: String = accounts.collect();
     if curves.is_empty() {
         let turns = wanted.revolutions;
@@ -90,8 +92,10 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
             words::any_of(events)
         );
     }
-    // Nobody is left to tell where standard error is closed.
-    let _ = session.err.write_all(in_columns(&accounts, columns).as_bytes());
+    if !session.quiet {
+        // Nobody is left to tell where standard error is closed.
+        let _ = session.err.write_all(in_columns(&accounts, columns).as_bytes());
+    }
     let rows = || csv::curves(name, curves, &model.units);
     let drawn = || {
         let title = format!("{}: events against {name}", model.name);

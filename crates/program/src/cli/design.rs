@@ -18,7 +18,7 @@ use corner_impact::study::survey::{Axis, Values};
 
 /// Tells up to which speed the follower stays on the cam.
 ///
-/// It tells as well how hard the follower hits beyond that speed, and what must be changed so that it stays.
+/// Beyond that speed, it lists how hard the follower hits. With `--need`, it finds how stiff, light or preloaded the machine must be to stay on the cam.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n\
     \x20 corner-impact design\n\
@@ -43,7 +43,7 @@ pub(super) struct Arguments {
     /// Values of a range of which no number is written.
     #[arg(long, value_name = "N", default_value_t = 21, value_parser = clap::value_parser!(u32).range(2..=10_000))]
     speeds: u32,
-    /// What the machine is to meet: "no separation to 4500 rpm", "impact speed below 0.5 m/s to 6000 rpm"; also gap and energy (may
+    /// A requirement: "no separation to 4500 rpm", "impact speed below 0.5 m/s to 6000 rpm"; also gap and energy (may
     /// be repeated).
     #[arg(long, value_name = "TEXT", value_parser = need)]
     need: Vec<(String, Need)>,

@@ -174,6 +174,9 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     if !to_standard {
         session.answer(&swept, &arguments.answer)?;
     }
+    if target.is_none() && !arguments.answer.json {
+        session.note("the rows are not kept: --out FILE.csv writes them, --out FILE.svg draws them");
+    }
     Ok(Exit::Agrees)
 }
 

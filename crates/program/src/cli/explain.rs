@@ -1,15 +1,17 @@
 //! `corner-impact explain WHAT [MODEL]`.
 
 use super::external::ExternalArguments;
+use super::model::is_file_name;
 use super::{AnswerArguments, CommandError, Exit, ModelArgument, Session, progress::watched};
 use crate::explain::{Findings, Links};
 use crate::show::Page;
 use crate::show::block::{Block, words};
+use crate::show::command::shell_word;
 use corner_impact::study::verify::{External, verify_watched};
 
 /// Says what a name stands for, with its formula and evidence.
 ///
-/// It has inputs, the value by every route, how it is known, and what evaluates, proves and tests it.
+/// The page has the inputs of the formula, its value by every route, how it is known, and where it is computed, proved and tested.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n\
     \x20 corner-impact explain B_minus\n\
@@ -44,6 +46,11 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         session.print(&page)?;
         return Ok(Exit::Agrees);
     };
+    let swapped = arguments.model.file().filter(|file| is_file_name(what) && !file.exists());
+    if let Some(file) = swapped {
+        let (file, model) = (file.display(), shell_word(what));
+        return Err(CommandError::Words(format!("the name comes first: corner-impact explain {file} {model}")));
+    }
     let model = arguments.model.read_as_drawn(session)?;
     let needed = links.needs(what, &model)?;
     let verified = needed

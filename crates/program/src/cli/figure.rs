@@ -4,15 +4,15 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use super::model::Changes;
+use super::model::{Changes, is_file_name};
 use super::numbers::rpm_range;
 use super::progress::{Progress, watched};
 use super::{CommandError, Exit, ModelArgument, Session, picture};
-use crate::figures::{FIGURES, FigureContext, Listed, OF_CHOSEN_SPEEDS, RenderedFigure, listed};
+use crate::figures::{Entry, FIGURES, FigureContext, Listed, RenderedFigure, listed};
 use crate::show::block::{Block, Column, Table, Words};
 use crate::show::page::WIDTH;
 use crate::show::{Page, json};
-use corner_impact::model::Model;
+use corner_impact::model::{Model, nearest};
 use corner_impact::untrusted;
 
 /// Lists the figures of the report, or draws one.
@@ -61,14 +61,23 @@ const SCHEMA: &str = "corner-impact/figure/1";
 
 /// A model file, and a figure's name, from one or two words.
 fn named(words: &[String]) -> Result<(Option<&str>, Option<&str>), CommandError> {
-    let is_file = |word: &str| word.contains(['.', '/', '\\']);
     match words {
         [] => Ok((None, None)),
-        [word] if is_file(word) => Ok((Some(word), None)),
+        [word] if is_file_name(word) => Ok((Some(word), None)),
         [word] => Ok((None, Some(word))),
         [model, id] => Ok((Some(model), Some(id))),
         _ => Err(CommandError::Words("at most a model file and a figure".into())),
     }
+}
+
+/// The figure of this name.
+fn entry(id: &str) -> Result<&'static Entry, CommandError> {
+    let ids = || FIGURES.iter().map(|entry| entry.id);
+    FIGURES.iter().find(|entry| entry.id == id).ok_or_else(|| {
+        let meant = nearest(id, ids()).map_or(String::new(), |meant| format!("did you mean {meant}? "));
+        let there = ids().collect::<Vec<_>>().join(", ");
+        CommandError::Words(format!("no figure called \"{}\"; {meant}there are: {there}", untrusted::value(id)))
+    })
 }
 
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
@@ -77,22 +86,18 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     if id.is_none() && arguments.out.is_some() {
         return Err(CommandError::Words("--out is for one figure: name it, from the list without --out".into()));
     }
-    if let (Some(id), Some([low, high])) = (id.filter(|id| !OF_CHOSEN_SPEEDS.contains(id)), arguments.rpm) {
+    let entry = id.map(entry).transpose()?;
+    if let (Some(Entry { id, takes_rpm: false, .. }), Some([low, high])) = (entry, arguments.rpm) {
+        let others: Vec<&str> = FIGURES.iter().filter(|entry| entry.takes_rpm).map(|entry| entry.id).collect();
         return Err(CommandError::Words(format!(
-            "{} has speeds of its own: --rpm is of {}; `diagram --rpm {low}:{high} --out FILE.svg` draws impacts at others",
-            untrusted::value(id),
-            OF_CHOSEN_SPEEDS.join(", ")
+            "{id} has speeds of its own: --rpm is of {}; `diagram --rpm {low}:{high} --out FILE.svg` draws impacts at others",
+            others.join(", ")
         )));
     }
     let subject = watched("verifying the model", |_| FigureContext::new(&model, arguments.rpm))?;
-    let page = match id {
+    let page = match entry {
         None => list(&model, &subject, arguments.json, session)?,
-        Some(id) => {
-            let Some(entry) = FIGURES.iter().find(|entry| entry.id == id) else {
-                let there = FIGURES.map(|entry| entry.id).join(", ");
-                let id = untrusted::value(id);
-                return Err(CommandError::Words(format!("no figure called \"{id}\"; there are: {there}")));
-            };
+        Some(entry) => {
             // Opened before the work: a name that cannot be is told at once.
             let canvas = arguments
                 .out
@@ -106,7 +111,9 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
                 (Ok(drawn), Some(canvas)) => super::commit(vec![canvas.draw(drawn.figure.clone(), &model.units)?])?,
                 // A document says why there is none; a file cannot.
                 (Err(_), None) if arguments.json => {}
-                (Err(why), _) => return Err(CommandError::Words(format!("{}: no figure {id}: {why}", model.file()))),
+                (Err(why), _) => {
+                    return Err(CommandError::Words(format!("{}: no figure {}: {why}", model.file(), entry.id)));
+                }
                 (Ok(_), None) => {}
             }
             one(&subject, plate, arguments, session)?

@@ -8,7 +8,7 @@ use corner_impact::study::locate::{LocateRangeError, locate};
 
 /// Lists the speeds at which an orbit hits a corner of the cam.
 ///
-/// It says what happens there.
+/// Each has the map on both sides of the corner and the type of the bifurcation.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n\
     \x20 corner-impact locate --rpm 600:760\n\

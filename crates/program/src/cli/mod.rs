@@ -67,7 +67,7 @@ pub enum Exit {
     BadInput = 2,
 }
 
-/// Re-proves the corner-impact bifurcation of a cam-follower system: closed forms against simulation.
+/// Motions of a follower on a cam: separation, impacts, chaos, and the corner-impact bifurcation, proved by independent routes.
 #[derive(Parser)]
 #[command(name = "corner-impact", bin_name = "corner-impact", version)]
 struct Arguments {
@@ -100,7 +100,7 @@ macro_rules! subcommands {
                 }
             }
 
-            /// What usually follows; empty for nothing.
+            /// Template of the command that usually follows; empty for none.
             fn next(&self) -> &'static str {
                 match self {
                     $($(Self::$name(_) => $next,)+)+
@@ -124,18 +124,18 @@ subcommands! {
         Compare = compare => "explain speed_rpm{model}",
     "Attractors, periodic orbits and bifurcations":
         Diagram = diagram => "chart{model} --over rpm={range} --over restitution=0.5:0.95",
-        Chart = chart => "curve{model} --rpm LO:HI --over NAME=LO:HI",
+        Chart = chart => "curve{model} --rpm {range} --over {axis}",
         Basins = basins => "orbit{model} --rpm {rpm}",
         Orbit = orbit => "continue{model} --rpm {rpm} --over rpm={range}",
-        Continue = continuation => "curve{model} --rpm {range} --over NAME=LO:HI",
-        Curve = curve => "chart{model} --over rpm={range} --over NAME=LO:HI --with-curves --out FILE.svg",
-        Chaos = chaos => "figure{model}",
+        Continue = continuation => "curve{model} --rpm {range} --over {axis}",
+        Curve = curve => "chart{model} --over rpm={range} --over {axis} --with-curves --out chart.svg",
+        Chaos = chaos => "orbit{model} --rpm {rpm}",
     "The paper's result, on its model or yours":
         Verify = verify => "report{model}",
-        Locate = locate => "certify{model} --rpm {range}",
+        Locate = locate => "orbit{model} --rpm {rpm}",
         Certify = certify => "chaos{model} --rpm {rpm}",
         Claims = claims => "explain feigin{model}",
-        Explain = explain => "verify{model}",
+        Explain = explain => "",
         Figure = figure => "report{model}",
     "The shell":
         Completions = completions => "",
@@ -224,7 +224,7 @@ pub fn run_at(
     out: &mut dyn Write,
     err: &mut dyn Write,
 ) -> Exit {
-    let words = about::named(arguments.into_iter().collect());
+    let words = about::named(numbers::with_units(arguments));
     // What is wrong with a command line is coloured as it says itself.
     let mut session = Session {
         out,
@@ -240,13 +240,13 @@ pub fn run_at(
         wishes: Wishes::default(),
     };
     let mut command = help::command(session.width(), help::is_short(&words));
-    let matches = command.try_get_matches_from_mut(words);
+    let matches = command.try_get_matches_from_mut(&words);
     session.rpm = matches.as_ref().ok().and_then(session::speeds);
     session.wishes = matches.as_ref().map(Wishes::of).unwrap_or_default();
     let only_prints = matches.as_ref().is_ok_and(|matches| session::only_prints(&command, matches));
     let run = match matches.and_then(|matches| Arguments::from_arg_matches(&matches)) {
         Ok(arguments) => begun(&arguments, only_prints, &mut session),
-        Err(error) => session.refuse(&command, error),
+        Err(error) => session.refuse(&command, &words, error),
     };
     run.unwrap_or_else(|error| {
         // Whoever closes a pipe early, as `head` does, wants no more, nor a complaint.

@@ -2,11 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
+use clap::{Arg, ArgMatches, CommandFactory, FromArgMatches};
+
 use super::picture::ends_in;
 use super::{CommandError, progress::watched, session::Session};
 use crate::show::command::{changed, named, shell_word};
 use crate::show::notes;
-use corner_impact::model::{Model, Numeral, Units, finite, parted};
+use corner_impact::model::{Model, ModelError, ModelNumber, Numeral, Units, finite, nearest, parted};
 use corner_impact::orbit::Parameter;
 use corner_impact::untrusted;
 
@@ -30,59 +32,84 @@ pub(super) struct Changes {
     follower: FollowerNumbers,
 }
 
-/// What is not assumed of a follower, with what it is in beside a table of lifts.
-const NEEDED: [(&str, &str); 3] = [("mass", "kg"), ("stiffness", "N/mm"), ("preload", "N")];
-
 /// The heading of these options in `--help`.
-const FOLLOWER: &str = "The follower (a table of lifts needs the first three)";
+const FOLLOWER: &str = "The follower (mass, stiffness and preload beside a table)";
 
-/// Numbers of the follower: each the same as `--set`, and what a table of lifts has to have beside it.
-#[derive(clap::Args, Clone, Default)]
-struct FollowerNumbers {
-    /// Mass that moves, and a third of the spring.
-    #[arg(long, value_name = "VALUE", help_heading = FOLLOWER, allow_hyphen_values = true)]
-    mass: Option<String>,
-    /// Stiffness of the spring.
-    #[arg(long, value_name = "VALUE", help_heading = FOLLOWER, allow_hyphen_values = true)]
-    stiffness: Option<String>,
-    /// Force of the spring on the base circle.
-    #[arg(long, value_name = "VALUE", help_heading = FOLLOWER, allow_hyphen_values = true)]
-    preload: Option<String>,
-    /// Damping.
-    #[arg(long, value_name = "VALUE", help_heading = FOLLOWER, allow_hyphen_values = true)]
-    damping: Option<String>,
-    /// Velocity after an impact over that before, 0 to 1.
-    #[arg(long, value_name = "VALUE", help_heading = FOLLOWER, allow_hyphen_values = true)]
-    restitution: Option<String>,
-    /// Gravity along the follower.
-    #[arg(long, value_name = "VALUE", help_heading = FOLLOWER, allow_hyphen_values = true)]
-    gravity: Option<String>,
+/// A number of the follower that has an option of its own.
+struct FollowerOption {
+    name: &'static str,
+    /// Unit beside a table of lifts.
+    unit: &'static str,
+    /// Value beside a table of lifts where none is given, in this unit.
+    assumed: f64,
+    /// Whether a motion cannot be computed with the assumed value.
+    is_needed: bool,
+}
+
+/// Every number of the follower that has an option, in the order of a model file.
+const FOLLOWER_OPTIONS: [FollowerOption; 6] = [
+    FollowerOption { name: "mass", unit: "kg", assumed: 0.1, is_needed: true },
+    FollowerOption { name: "stiffness", unit: "N/mm", assumed: 30.0, is_needed: true },
+    FollowerOption { name: "preload", unit: "N", assumed: 200.0, is_needed: true },
+    FollowerOption { name: "damping", unit: "N s/m", assumed: 0.0, is_needed: false },
+    FollowerOption { name: "gravity", unit: "m/s^2", assumed: 0.0, is_needed: false },
+    FollowerOption { name: "restitution", unit: "", assumed: 0.3, is_needed: false },
+];
+
+impl FollowerOption {
+    fn path(&self) -> String {
+        format!("follower.{}", self.name)
+    }
+}
+
+/// Units of the model that is assumed for a table of lifts.
+const BESIDE_A_TABLE: &str = "[units]\nlength = \"mm\"\nstiffness = \"N/mm\"\n";
+
+/// The options of `FOLLOWER_OPTIONS` that are given, each with its text.
+#[derive(Clone, Default)]
+struct FollowerNumbers(Vec<(&'static str, String)>);
+
+impl clap::Args for FollowerNumbers {
+    fn augment_args(command: clap::Command) -> clap::Command {
+        FOLLOWER_OPTIONS.iter().fold(command, |command, option| {
+            let meaning = ModelNumber::of(&option.path()).map_or("", |number| number.meaning);
+            let help = match option.unit {
+                "" => format!("Set the {meaning}"),
+                unit => {
+                    format!("Set the {meaning}, in the model's unit (beside a table of lifts {unit}) or with its own")
+                }
+            };
+            let arg = Arg::new(option.name).long(option.name).value_name("VALUE").help(help);
+            command.arg(arg.help_heading(FOLLOWER).allow_hyphen_values(true))
+        })
+    }
+
+    fn augment_args_for_update(command: clap::Command) -> clap::Command {
+        Self::augment_args(command)
+    }
+}
+
+impl FromArgMatches for FollowerNumbers {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
+        let given = |option: &FollowerOption| Some((option.name, matches.get_one::<String>(option.name)?.clone()));
+        Ok(Self(FOLLOWER_OPTIONS.iter().filter_map(given).collect()))
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
+        Self::from_arg_matches(matches).map(|given| *self = given)
+    }
 }
 
 impl FollowerNumbers {
-    /// The options as they are typed, each after a blank; those that a table needs with what they are in, where they are missing.
+    /// The options as they are typed, each after a blank.
     fn typed(&self) -> String {
-        let needed =
-            |name: &str| NEEDED.iter().find(|(needed, _)| *needed == name).map(|(_, unit)| unit.to_uppercase());
-        let option = |(name, number): (&str, Option<&String>)| {
-            let value = number.map(|number| shell_word(number)).or_else(|| needed(name))?;
-            Some(format!(" --{name} {value}"))
-        };
-        self.all().into_iter().filter_map(option).collect()
+        self.0.iter().map(|(name, text)| format!(" --{name} {}", shell_word(text))).collect()
     }
 
-    /// Each name, with what is typed for it.
-    fn all(&self) -> [(&'static str, Option<&String>); 6] {
-        let Self { mass, stiffness, preload, damping, restitution, gravity } = self;
-        let all = [
-            ("mass", mass),
-            ("stiffness", stiffness),
-            ("preload", preload),
-            ("damping", damping),
-            ("restitution", restitution),
-            ("gravity", gravity),
-        ];
-        all.map(|(name, number)| (name, number.as_ref()))
+    /// The options that a table of lifts still needs.
+    fn missing(&self) -> impl Iterator<Item = &'static FollowerOption> {
+        let is_given = |option: &&FollowerOption| self.0.iter().any(|(name, _)| *name == option.name);
+        FOLLOWER_OPTIONS.iter().filter(move |option| option.is_needed && !is_given(option))
     }
 }
 
@@ -98,11 +125,11 @@ struct Change {
 impl Changes {
     /// All numbers that are given, in either way.
     fn all(&self) -> Result<Vec<Change>, CommandError> {
-        let named = |(name, text): (&str, Option<&String>)| {
-            let change = number_of(&format!("follower.{name}"), text?);
-            Some(change.map_err(|words| CommandError::Words(format!("--{name}: {words}"))))
+        let named = |(name, text): &(&str, String)| {
+            let change = number_of(&format!("follower.{name}"), text);
+            change.map_err(|words| CommandError::Words(format!("--{name}: {words}")))
         };
-        let own = self.follower.all().into_iter().filter_map(named);
+        let own = self.follower.0.iter().map(named);
         self.numbers.iter().cloned().map(Ok).chain(own).collect()
     }
 
@@ -142,6 +169,7 @@ impl Change {
         match units.in_own(path, number.number, &unit) {
             Some(value) if value == number.number => Ok(number),
             Some(value) => Ok(value.into()),
+            None if unit == "%" && units.of_number(path).is_empty() => Ok((number.number / 100.0).into()),
             None => {
                 let own = units.of_number(path);
                 let own = if own.is_empty() {
@@ -155,10 +183,56 @@ impl Change {
     }
 }
 
+/// Why no model can be read at a path, with the file that may be meant. A stream or a device is no reason.
+fn missing(path: &Path) -> Result<(), CommandError> {
+    let shown = path.display();
+    if path.is_dir() {
+        return Err(CommandError::Words(format!("{shown}: cannot be read: it is a folder, and a model is one file")));
+    }
+    if path.exists() {
+        return Ok(());
+    }
+    let word = path.to_string_lossy();
+    if super::Arguments::command().find_subcommand(&*word).is_some() || word == "help" {
+        return Err(CommandError::Words(format!(
+            "{shown} is not a model: the command comes first, and `--help` after it explains it"
+        )));
+    }
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let files = std::fs::read_dir(folder).into_iter().flatten().flatten().map(|file| file.path());
+    let models = files.filter(|file| ends_in(file, &["toml"]) || ends_in(file, &TABLES));
+    let names: Vec<String> =
+        models.filter_map(|file| Some(file.file_name()?.to_string_lossy().into_owned())).take(MOST_FILES).collect();
+    let wanted = path.file_name().unwrap_or_default().to_string_lossy();
+    let meant = nearest(&wanted, names.iter().map(String::as_str));
+    let meant = meant.map_or(String::new(), |meant| format!("; did you mean {}?", untrusted::value(meant)));
+    Err(CommandError::Words(format!("{word}: cannot be read: there is no such file{meant}")))
+}
+
+/// Most files of a folder that a misspelt name is compared with.
+const MOST_FILES: usize = 1000;
+
+/// Whether a word of a command line is meant as a file's name.
+pub(super) fn is_file_name(word: &str) -> bool {
+    word.contains(['.', '/', '\\']) && !word.starts_with('-')
+}
+
 impl ModelArgument {
     /// The model in a file, or the one that is built in, with some numbers changed.
     pub(super) fn of(file: Option<&Path>, changes: &Changes) -> Self {
         Self { file: file.map(Path::to_path_buf), changes: changes.clone() }
+    }
+
+    /// The file that is named, if one is.
+    pub(super) fn file(&self) -> Option<&Path> {
+        self.file.as_deref()
+    }
+
+    /// Options of the follower that a table of lifts still needs, each after a blank, with units as placeholders. Empty for a model file.
+    pub(super) fn still_needed(&self) -> String {
+        let is_table = self.file.as_deref().is_some_and(|path| ends_in(path, &TABLES));
+        let missing = self.changes.follower.missing().filter(|_| is_table);
+        missing.map(|option| format!(" --{} {}", option.name, option.unit.to_uppercase())).collect()
     }
 
     /// A number that an option goes through the values of; refused where --set gives it one.
@@ -186,6 +260,9 @@ impl ModelArgument {
 
     fn read_with(&self, session: &mut Session<'_>, needs_follower: bool) -> Result<Model, CommandError> {
         let mut changes = self.changes.clone();
+        if let Some(path) = self.file.as_deref().filter(|path| !path.is_file()) {
+            missing(path)?;
+        }
         let model = match &self.file {
             Some(path) if ends_in(path, &TABLES) => {
                 let text = assumed(path, &mut changes, needs_follower)?;
@@ -194,7 +271,12 @@ impl ModelArgument {
                     "no model file: this one is assumed; save it as {} to change it\n{text}",
                     file.display()
                 ));
-                watched("reading the table", |_| Model::parse(&file.to_string_lossy(), &text))?
+                // The assumed model is in no file of that name.
+                let assumed = |error: ModelError| ModelError {
+                    file: format!("{} and what is assumed beside it", path.display()).into(),
+                    ..error
+                };
+                watched("reading the table", |_| Model::parse(&file.to_string_lossy(), &text).map_err(assumed))?
             }
             Some(path) => {
                 // A table of a million lifts takes its time.
@@ -237,38 +319,46 @@ pub(super) const TABLES: [&str; 4] = ["csv", "tsv", "txt", "dat"];
 
 /// The model file that is assumed for a table of lifts and the numbers of a follower, which are taken out of the changes.
 fn assumed(table: &Path, changes: &mut Changes, needs_follower: bool) -> Result<String, CommandError> {
-    const MODEL: &str = include_str!("templates/assumed.toml");
-    let is_of_follower = |change: &Change| {
+    let of_follower = |change: &Change| {
         let name = change.name.strip_prefix("follower.").unwrap_or(&change.name);
-        FollowerNumbers::default().all().iter().any(|(known, _)| *known == name)
+        FOLLOWER_OPTIONS.iter().find(|option| option.name == name)
     };
-    let (given, others): (Vec<Change>, Vec<Change>) = changes.all()?.into_iter().partition(is_of_follower);
-    let of = |name: &str| given.iter().rfind(|change| change.name.trim_start_matches("follower.") == name);
-    let missing: Vec<String> =
-        NEEDED.iter().filter(|(name, _)| of(name).is_none()).map(|(name, unit)| format!("--{name} ({unit})")).collect();
-    if needs_follower && !missing.is_empty() {
+    let (given, others): (Vec<Change>, Vec<Change>) =
+        changes.all()?.into_iter().partition(|change| of_follower(change).is_some());
+    let units = units_beside_a_table()?;
+    let (mut lines, mut missing) = (String::new(), Vec::new());
+    for option in &FOLLOWER_OPTIONS {
+        let (path, unit) = (option.path(), option.unit);
+        let mut values = given.iter().filter(|change| of_follower(change).is_some_and(|of| of.name == option.name));
+        let (value, remark) = match (values.next(), values.next()) {
+            (Some(_), Some(_)) => return Err(CommandError::Words(format!("{path} is set twice"))),
+            (Some(change), None) => (change.clone().inside(&path, &units)?.number, unit.to_owned()),
+            (None, _) if needs_follower && option.is_needed => {
+                missing.push(format!("--{} ({unit})", option.name));
+                continue;
+            }
+            (None, _) if unit.is_empty() => (option.assumed, "assumed".into()),
+            (None, _) => (option.assumed, format!("{unit}, assumed")),
+        };
+        let line = format!("{:<18}# {remark}", format!("{} = {value:?}", option.name));
+        lines += &format!("{}\n", line.trim_end_matches(['#', ' ']));
+    }
+    if !missing.is_empty() {
         let words = format!("{}: a table of lifts has no follower: give {}", table.display(), missing.join(", "));
         return Err(CommandError::Words(words));
     }
     *changes = Changes { numbers: others, follower: FollowerNumbers::default() };
-    let (file, stem) = (table.file_name(), table.file_stem());
     // TOML escapes as JSON does.
-    let [file, stem] =
-        [file, stem].map(|name| serde_json::Value::from(name.unwrap_or_default().to_string_lossy()).to_string());
-    // Units do not hang on the cam.
-    let (head, _) = MODEL.split_once("[cam]").unwrap_or((MODEL, ""));
+    let [file, name] = [table.file_name(), table.file_stem()]
+        .map(|name| serde_json::Value::from(name.unwrap_or_default().to_string_lossy()).to_string());
+    let cam = format!("[cam]\nlaw = \"table\"\nfile = {file}\nspline = \"smoothing\"\n");
+    Ok(format!("name = {name}\n\n{BESIDE_A_TABLE}\n[follower]\n{lines}\n{cam}"))
+}
+
+/// Units of the model that is assumed for a table of lifts, read before the table is.
+fn units_beside_a_table() -> Result<Units, CommandError> {
+    let follower =
+        "[follower]\nmass = 1.0\nstiffness = 1.0\npreload = 1.0\ndamping = 0.0\ngravity = 0.0\nrestitution = 0.0\n";
     let cam = "[cam]\nlaw = \"harmonic\"\noffset = 0.0\namplitudes = [1.0]\nphases_deg = [0.0]\n";
-    let units = Model::parse("units", &format!("{head}{cam}"))?.units;
-    let line = |line: &str| -> Result<String, CommandError> {
-        let Some((name, rest)) = line.split_once(" = ") else { return Ok(line.to_owned()) };
-        let Some(change) = of(name).filter(|_| rest.ends_with("assumed")) else { return Ok(line.to_owned()) };
-        let number = change.clone().inside(&format!("follower.{name}"), &units)?;
-        let unit =
-            rest.split_once("# ").map_or("", |(_, unit)| unit.trim_end_matches("assumed").trim_end_matches(", "));
-        let told = format!("{name} = {:?}", number.number);
-        Ok(format!("{told:<18}# {unit}").trim_end_matches(['#', ' ']).to_owned())
-    };
-    let text = MODEL.replace("\"lifts.csv\"", &file).replace("\"my-machine\"", &stem);
-    let lines: Vec<String> = text.lines().map(line).collect::<Result<_, _>>()?;
-    Ok(lines.join("\n") + "\n")
+    Ok(Model::parse("units", &format!("name = \"units\"\n{BESIDE_A_TABLE}{follower}{cam}"))?.units)
 }

@@ -9,6 +9,12 @@
 //!
 //! A command that has no use for a form says which one it takes.
 
+use std::f64::consts::PI;
+use std::ffi::OsString;
+use std::path::Path;
+
+use clap::CommandFactory;
+
 use corner_impact::model;
 use corner_impact::study::survey::{Spacing, Values, limits};
 use corner_impact::untrusted;
@@ -17,11 +23,47 @@ pub(super) fn finite(text: &str) -> Result<f64, String> {
     model::finite(text, "")
 }
 
+/// The command line with each unit in the word of the number before it: `--mass 0.12 kg` is `--mass "0.12 kg"`.
+pub(super) fn with_units(words: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
+    /// Most letters of a unit: `N/mm`.
+    const LONGEST: usize = 4;
+    let is_unit = |word: &str| {
+        (1..=LONGEST).contains(&word.len())
+            && word.chars().all(|letter| letter.is_alphabetic() || letter == '/')
+            && super::Arguments::command().find_subcommand(word).is_none()
+            && !Path::new(word).exists()
+    };
+    let is_number = |word: &str| {
+        let (number, rest) = model::parted(word.rsplit('=').next().unwrap_or(word));
+        !number.is_empty() && rest.is_empty()
+    };
+    let mut joined: Vec<OsString> = Vec::new();
+    for word in words {
+        let [.., option, number] = joined.as_mut_slice() else {
+            joined.push(word);
+            continue;
+        };
+        let is_option = option.to_string_lossy().starts_with("--") || number.to_string_lossy().starts_with("--");
+        if is_option && word.to_str().is_some_and(is_unit) && number.to_str().is_some_and(is_number) {
+            number.push(" ");
+            number.push(word);
+        } else {
+            joined.push(word);
+        }
+    }
+    joined
+}
+
 /// An angle, rad: `1.57`, `1.57rad` or `90deg`.
 pub(super) fn angle(text: &str) -> Result<f64, String> {
     match text.trim().strip_suffix("deg").or_else(|| text.trim().strip_suffix('\u{b0}')) {
         Some(degrees) => finite(degrees).map(f64::to_radians),
-        None => model::finite(text, "rad"),
+        None => model::finite(text, "rad").map_err(|words| match model::parted(text) {
+            (number, unit) if !number.is_empty() && !unit.is_empty() && !unit.starts_with(',') => {
+                format!("\"{}\" is not an angle: write {number}deg, or {number}rad", untrusted::value(text))
+            }
+            _ => words,
+        }),
     }
 }
 
@@ -100,12 +142,22 @@ fn span(text: &str, number: fn(&str) -> Result<f64, String>, what: &str) -> Resu
 
 /// `LO:HI`, any numbers.
 pub(super) fn range(text: &str) -> Result<[f64; 2], String> {
+    if !text.contains(':') {
+        return Err("must be LO:HI: the lowest and the highest value".into());
+    }
     span(text, finite, "value")?.bare()
 }
 
 /// A speed that a simulation can turn at.
 fn speed(text: &str) -> Result<f64, String> {
-    limits::speed(model::finite(text, "rpm")?)
+    let (number, unit) = model::parted(text);
+    let in_rpm = match unit {
+        "Hz" | "1/s" | "/s" | "rps" => 60.0,
+        "rad/s" => 30.0 / PI,
+        _ => return limits::speed(model::finite(text, "rpm")?),
+    };
+    let turns = in_rpm * number.parse::<f64>().unwrap_or(f64::NAN);
+    Err(format!("\"{}\" is not in rpm: {turns} rpm, if that is the speed of the cam", untrusted::value(text)))
 }
 
 /// One speed, or several of them.
@@ -117,7 +169,15 @@ pub(super) enum Speeds {
 
 /// A speed, a range, or speeds.
 pub(super) fn speeds(text: &str) -> Result<Speeds, String> {
-    if text.contains(':') { span(text, speed, "speed").map(Speeds::Span) } else { speed(text).map(Speeds::One) }
+    if text.contains(':') {
+        return span(text, speed, "speed").map(Speeds::Span);
+    }
+    // As people write ranges elsewhere.
+    let parts = ["..", " to ", "\u{2013}", "-", " "].iter().find_map(|between| text.trim().split_once(between));
+    match parts.map(|(low, high)| (speed(low), speed(high))) {
+        Some((Ok(low), Ok(high))) => Err(format!("a range has a colon: {low}:{high}")),
+        _ => speed(text).map(Speeds::One),
+    }
 }
 
 /// One speed.
@@ -148,7 +208,7 @@ pub(super) fn rpm_or_range(text: &str) -> Result<[f64; 2], String> {
     }
 }
 
-/// What varies, and over which values.
+/// The name of a number, and the values that it takes.
 pub(super) type NamedSpan = (String, Span);
 
 /// An axis.
@@ -165,6 +225,9 @@ pub(super) fn axis(text: &str) -> Result<NamedSpan, String> {
 
 /// An axis of a command that chooses its own values.
 pub(super) fn followed(text: &str) -> Result<(String, [f64; 2]), String> {
+    if !text.contains(':') {
+        return Err("must be NAME=LO:HI: what changes, and from where to where".into());
+    }
     let (name, span) = axis(text)?;
     Ok((name, span.bare()?))
 }

@@ -1,4 +1,4 @@
-//! What a survey goes over, and the one speed that it is at.
+//! The axis of a survey, and its one speed where the axis is another number.
 
 use super::numbers::{NamedSpan, Span, Speeds};
 use super::{CommandError, ModelArgument};
@@ -13,7 +13,7 @@ pub(super) fn values(count: usize) -> Result<u32, CommandError> {
     count.map_err(|count| CommandError::Words(format!("{count} values: there must be 2 to 100000")))
 }
 
-/// The one speed of a survey, where it has one, and what it goes over: the speed, or a number of the model; none if nothing says.
+/// Speed of a survey that has one, and name and range of its axis: the speed, or a number of the model. The axis is `None` if no option names it.
 pub(super) fn varied(
     rpm: Option<Speeds>,
     over: Option<&NamedSpan>,
@@ -31,7 +31,7 @@ pub(super) fn varied(
     }
 }
 
-/// The same with the values of what varies, `usual` of them if no number is written.
+/// Speed and axis of a survey, with the values along the axis: `usual` of them if their number is not written.
 pub(super) fn over(
     (argument, model): (&ModelArgument, &Model),
     rpm: Option<Speeds>,

@@ -1,4 +1,4 @@
-//! What a command talks to: the two streams, and what is known about the terminal that they may be.
+//! The two streams of a command, and the terminal behind them.
 
 use std::ffi::OsString;
 use std::io::{ErrorKind, IsTerminal, Write};
@@ -14,10 +14,10 @@ use super::{CommandError, Exit, complaint, next};
 use crate::show::block::in_units;
 use crate::show::page::options;
 use crate::show::{Page, Paged, json};
-use corner_impact::model::{ModelError, Units};
+use corner_impact::model::{ModelError, Units, nearest};
 use corner_impact::untrusted;
 
-/// The colours that a command line asks for before it is known to be one.
+/// Value of `--color`, read before the command line is parsed.
 pub(super) fn said(words: &[OsString]) -> ColorChoice {
     let mut said = ColorChoice::Auto;
     let mut words = words.iter().skip(1).filter_map(|word| word.to_str()).take_while(|word| *word != "--");
@@ -28,10 +28,19 @@ pub(super) fn said(words: &[OsString]) -> ColorChoice {
     said
 }
 
-/// The lowest and the highest of the speeds that a command line asks for by `--rpm`, as far as they can be read.
+/// The ranges of `--over`, as `NAME=LO:HI`.
+fn axes(of_command: &clap::ArgMatches) -> impl Iterator<Item = String> {
+    let all = of_command.try_get_raw("over").ok().flatten().into_iter().flatten();
+    all.filter_map(|axis| Some(axis.to_str()?.split(':').take(2).collect::<Vec<_>>().join(":")))
+}
+
+/// The lowest and the highest of the speeds that a command line asks for by `--rpm` or `--over rpm=`, as far as they can be read. The axis
+/// comes first.
 pub(super) fn speeds(matches: &clap::ArgMatches) -> Option<[f64; 2]> {
     let (_, of_command) = matches.subcommand()?;
-    let text = of_command.try_get_raw("rpm").ok().flatten()?.next()?.to_str()?;
+    let axis = axes(of_command).find_map(|axis| axis.strip_prefix("rpm=").map(str::to_owned));
+    let rpm = || Some(of_command.try_get_raw("rpm").ok().flatten()?.next()?.to_str()?.to_owned());
+    let text = axis.or_else(rpm)?;
     let mut parts = text.split(':').map(|part| part.trim().parse::<f64>().ok());
     let low = parts.next()??;
     Some([low, parts.next().flatten().unwrap_or(low)])
@@ -48,18 +57,59 @@ fn shown(value: &ContextValue) -> ContextValue {
     }
 }
 
+/// The option that a command does not know, without its hyphens.
+fn unknown_option(error: &clap::Error) -> Option<&str> {
+    let unknown = error.get(ContextKind::InvalidArg).filter(|_| error.kind() == Kind::UnknownArgument);
+    let Some(ContextValue::String(option)) = unknown else { return None };
+    option.strip_prefix("--")?.split(['=', ' ']).next()
+}
+
+/// Words that other programs, or earlier versions of other commands, have for an option.
+const SYNONYMS: [(&str, &str); 15] = [
+    ("parameter", "over"),
+    ("against", "over"),
+    ("from-rpm", "rpm"),
+    ("summary", "json"),
+    ("trace", "out"),
+    ("speed", "rpm"),
+    ("output", "out"),
+    ("file", "out"),
+    ("svg", "out"),
+    ("png", "out"),
+    ("pdf", "out"),
+    ("csv", "out"),
+    ("spring", "stiffness"),
+    ("rate", "stiffness"),
+    ("verbose", "all"),
+];
+
+/// The option of a command that an unknown one stands for: by a typing error, or in the words of other programs.
+fn near_option(command: &clap::Command, error: &clap::Error) -> Option<String> {
+    let longs = || command.get_arguments().filter(|argument| !argument.is_hide_set()).filter_map(clap::Arg::get_long);
+    let unknown = unknown_option(error)?;
+    let same = SYNONYMS.iter().find(|(other, own)| *other == unknown && longs().any(|long| long == *own));
+    same.map(|(_, own)| *own).or_else(|| nearest(unknown, longs())).map(|near| format!("--{near}"))
+}
+
+/// The first example in the help of a command.
+fn example(command: &clap::Command) -> Option<String> {
+    let help = command.get_after_help()?.to_string();
+    help.lines().map(str::trim).find(|line| line.starts_with("corner-impact ")).map(str::to_owned)
+}
+
+/// Whether an error is about this option.
+fn is_of(error: &clap::Error, context: ContextKind, option: &str) -> bool {
+    matches!(error.get(context), Some(ContextValue::String(name)) if name.starts_with(option))
+}
+
 /// The commands that take an option which another refuses; none if there are none.
 fn taken_by(command: &clap::Command, error: &clap::Error) -> Option<String> {
-    let Some(ContextValue::String(option)) =
-        error.get(ContextKind::InvalidArg).filter(|_| error.kind() == Kind::UnknownArgument)
-    else {
-        return None;
-    };
-    let name = option.strip_prefix("--")?.split(['=', ' ']).next()?;
+    if error.kind() == Kind::ArgumentConflict && is_of(error, ContextKind::InvalidArg, "--over") {
+        return is_of(error, ContextKind::PriorArg, "--over").then(|| "note: `chart` goes over two numbers".into());
+    }
+    let name = unknown_option(error)?;
     let takes = |sub: &&clap::Command| {
-        sub.get_arguments().any(|argument| {
-            argument.get_long() == Some(name) || argument.get_all_aliases().is_some_and(|all| all.contains(&name))
-        })
+        sub.get_arguments().any(|argument| argument.get_long() == Some(name) && !argument.is_hide_set())
     };
     let names: Vec<&str> = command.get_subcommands().filter(takes).map(clap::Command::get_name).collect();
     (!names.is_empty()).then(|| format!("note: --{name} is an option of {}", names.join(", ")))
@@ -109,7 +159,7 @@ impl Terminal {
     /// The fewest that a page is laid out for, and the most that can be read with ease.
     const ALLOWED: [usize; 2] = [40, 120];
 
-    /// That of this process. COLUMNS goes before what the terminal says.
+    /// Terminal of this process. COLUMNS takes precedence over the measured width.
     pub fn of_process() -> Self {
         let set = |name: &str| std::env::var(name).ok().filter(|value| !value.is_empty());
         let (out, err) = (std::io::stdout().is_terminal(), std::io::stderr().is_terminal());
@@ -165,11 +215,11 @@ pub(super) struct Session<'a> {
     pub(super) model: String,
     /// The words that name it on a command line, each after a blank.
     pub(super) named: String,
-    /// What is to follow the result.
+    /// Destination and form of the result.
     pub(super) wishes: Wishes,
 }
 
-/// How a command tells its result.
+/// The form of a result.
 #[derive(clap::Args)]
 pub(super) struct AnswerArguments {
     /// Print one JSON document instead of the page.
@@ -180,7 +230,7 @@ pub(super) struct AnswerArguments {
     pub(super) all: bool,
 }
 
-/// What a command line asks for beside the result, and where that goes.
+/// Destination and form of a result, as the command line asks for them.
 #[derive(Debug, Default)]
 pub(super) struct Wishes {
     /// The file that the result goes to, if it goes to one.
@@ -189,15 +239,18 @@ pub(super) struct Wishes {
     open: bool,
     /// Whether the result is for a program.
     json: bool,
+    /// The range of a number other than the speed, without the number of its values.
+    axis: Option<String>,
 }
 
 impl Wishes {
-    /// As far as clap knows; a command that chooses the name of its file has to add it.
+    /// Reads them from the parsed command line. A command that chooses the name of its file adds it later.
     pub(super) fn of(matches: &clap::ArgMatches) -> Self {
         let Some((_, given)) = matches.subcommand() else { return Self::default() };
         let flag = |name: &str| given.try_get_one::<bool>(name).ok().flatten() == Some(&true);
         let file = |name: &&str| Some(PathBuf::from(given.try_get_raw(name).ok().flatten()?.next()?));
-        Self { file: ["out", "phase_plane"].iter().find_map(file), open: flag("open"), json: flag("json") }
+        let axis = axes(given).find(|axis| !axis.starts_with("rpm="));
+        Self { file: ["out", "phase_plane"].iter().find_map(file), open: flag("open"), json: flag("json"), axis }
     }
 }
 
@@ -263,7 +316,7 @@ impl Session<'_> {
         if template.is_empty() || !self.terminal.out || self.quiet || self.wishes.json || is_table {
             return Ok(());
         }
-        let next = next::filled(template, &self.named, self.rpm);
+        let next = next::filled(template, &self.named, self.rpm, self.wishes.axis.as_deref());
         self.print(&format!("next: corner-impact {next}\n"))
     }
 
@@ -282,11 +335,27 @@ impl Session<'_> {
     }
 
     /// Says what is wrong with a command line, or what help was asked for.
-    pub(super) fn refuse(&mut self, command: &clap::Command, mut error: clap::Error) -> Result<Exit, CommandError> {
+    pub(super) fn refuse(
+        &mut self,
+        command: &clap::Command,
+        words: &[OsString],
+        mut error: clap::Error,
+    ) -> Result<Exit, CommandError> {
         let others = taken_by(command, &error);
-        // "-- --json" would be the name of a file.
+        let called = words.iter().skip(1).find_map(|word| command.find_subcommand(word));
+        let place = |name: &str| words.iter().position(|word| word.to_string_lossy().starts_with(name));
+        let unknown = unknown_option(&error).and_then(|option| place(&format!("--{option}")));
+        let is_early = unknown.zip(called).is_some_and(|(option, called)| Some(option) < place(called.get_name()));
         if error.kind() == Kind::UnknownArgument {
+            // "-- --json" would be the name of a file.
             error.remove(ContextKind::Suggested);
+            error.remove(ContextKind::SuggestedArg);
+            if let Some(near) = called.filter(|_| !is_early).and_then(|called| near_option(called, &error)) {
+                error.insert(ContextKind::SuggestedArg, ContextValue::String(near));
+            }
+            // Clap writes the option that it would suggest into the usage.
+            let usage = called.filter(|_| !is_early).unwrap_or(command).clone().render_usage();
+            error.insert(ContextKind::Usage, ContextValue::StyledStr(usage));
         }
         // Advice that repeats what nobody can read is none.
         let is_odd =
@@ -298,11 +367,22 @@ impl Session<'_> {
         for (kind, value) in foreign {
             error.insert(kind, value);
         }
+        let others = match error.kind() {
+            _ if is_early => Some("note: options of a command come after it".into()),
+            Kind::InvalidSubcommand => {
+                Some("note: `corner-impact MODEL` says what can be done with a model file or a table of lifts".into())
+            }
+            _ => others,
+        };
         let text = error.render();
         let shown = |colours: bool| if colours { text.ansi().to_string() } else { text.to_string() };
         if error.use_stderr() {
-            let text = shown(self.colours_err())
-                + &others.map_or(String::new(), |others| format!("{}\n", self.in_width(&others)));
+            let text = in_columns(&shown(self.colours_err()), self.columns_err());
+            let text = text.replace("invalid digit found in string", "must be a whole number");
+            let text = text.replace("<--out <FILE>>", "--out <FILE>");
+            let others = others.map_or(String::new(), |others| format!("{}\n", self.in_width(&others)));
+            let example = called.and_then(example).map_or(String::new(), |line| format!("example: {line}\n"));
+            let text = format!("{text}{others}{example}");
             // A closed pipe leaves nobody to tell.
             let _ = self.err.write_all(text.as_bytes());
             Ok(Exit::BadInput)

@@ -7,7 +7,7 @@ use corner_impact::study::verify::verify_watched;
 
 /// Computes the map at a corner impact by every route.
 ///
-/// It finds the corner impact of a model first, and says whether the routes agree.
+/// First, it finds the corner impact of the model. At the end it says whether the routes agree.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n\
     \x20 corner-impact verify\n\

@@ -15,6 +15,7 @@ use corner_impact_plot::{BREAK, Colour, Data, Figure, FigureAxis, Marker, Panel,
 pub(crate) const FAST_IMPACTS: Entry = Entry {
     id: "fast-impacts",
     place: "Figure 5(c)",
+    takes_rpm: false,
     title: |subject| {
         subject.fast_title("impacts and orbits around the corner impact", |Fast { range: [low, high], .. }| {
             format!("impacts and orbits, {low} to {high} rpm")

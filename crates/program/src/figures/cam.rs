@@ -10,6 +10,7 @@ use corner_impact_plot::{BREAK, Colour, Figure, FigureAxis, Mark, Panel, Series,
 pub(crate) const CAM: Entry = Entry {
     id: "cam",
     place: "Figure 3(b)",
+    takes_rpm: false,
     title: |subject| format!("{}: lift, velocity and acceleration of the cam", subject.model.name),
     draw: |subject, title| {
         drawn(

@@ -15,6 +15,7 @@ use corner_impact_plot::{BREAK, Beside, Colour, Figure, FigureAxis, Label, Marke
 pub(crate) const CAM_SHAPE: Entry = Entry {
     id: "cam-shape",
     place: "Figures 3(a) and 9",
+    takes_rpm: false,
     title: |subject| format!("{}: the cam, its segments and corners", subject.model.name),
     draw: |subject, title| {
         let outline = Outline::new(&subject.cam);

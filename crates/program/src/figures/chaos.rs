@@ -14,6 +14,7 @@ use corner_impact_plot::{
 pub(crate) const CHAOTIC_SET: Entry = Entry {
     id: "chaotic-set",
     place: "",
+    takes_rpm: false,
     title: |subject| {
         subject.fast_title("a set of chaotic motions beyond the corner impact", |fast| {
             format!("a set of chaotic motions at {} rpm, proved", fast.beyond)

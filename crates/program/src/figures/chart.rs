@@ -39,7 +39,7 @@ type Class = (String, Colour, f64);
 const BANDS: usize = 9;
 
 /// The classes, and the function that maps a point to its class; the last class is for failed points.
-fn classes(found: &Charted, coloured: Coloured) -> (Vec<Class>, impl Fn(&Point) -> usize) {
+fn classes(found: &Charted, coloured: Coloured, units: &Units) -> (Vec<Class>, impl Fn(&Point) -> usize) {
     let number: fn(&Point) -> f64 = match coloured {
         Coloured::Growth => |point| point.growth.value,
         Coloured::Impacts => |point| point.impact_rate,
@@ -55,7 +55,10 @@ fn classes(found: &Charted, coloured: Coloured) -> (Vec<Class>, impl Fn(&Point) 
     let mut classes: Vec<Class> = match coloured {
         Coloured::Period => PERIODS.map(|(label, colour, strength)| (label.into(), colour, strength)).into(),
         Coloured::Regime => REGIMES.map(|(kind, colour, strength)| (words::kind(kind).into(), colour, strength)).into(),
-        _ => bands(&edges, exponent, coloured),
+        _ => {
+            let unit = if coloured == Coloured::ImpactSpeed { units.spelled("m/s") } else { String::new() };
+            bands(&edges, exponent, &unit)
+        }
     };
     let plain = classes.len();
     classes.push(("no growth: it rests".into(), Colour::Grey, 0.4));
@@ -110,9 +113,9 @@ fn period(point: &Point) -> usize {
 }
 
 /// Bands between `edges` and beyond both ends. Colours are stronger away from 0; negative growth is blue.
-fn bands(edges: &[Tick], exponent: i32, coloured: Coloured) -> Vec<Class> {
+fn bands(edges: &[Tick], exponent: i32, unit: &str) -> Vec<Class> {
     let power = if exponent == 0 { String::new() } else { format!("e{exponent}") };
-    let unit = if coloured == Coloured::ImpactSpeed { " m/s" } else { "" };
+    let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
     // Bands before this index are below 0.
     let zero = edges.partition_point(|edge| edge.at <= 0.0);
     let above = edges.len() + 1 - zero;
@@ -136,7 +139,7 @@ fn bands(edges: &[Tick], exponent: i32, coloured: Coloured) -> Vec<Class> {
 /// Draws the points of a chart in the colours of their classes, with curves of events over them; numbers are coloured in bands.
 pub fn chart_figure(found: &Charted, coloured: Coloured, curves: &[EventCurve], units: &Units) -> Figure {
     let (x, y) = (&found.chart.x, &found.chart.y);
-    let (classes, class_of) = classes(found, coloured);
+    let (classes, class_of) = classes(found, coloured, units);
     let range = |axis: &survey::Axis| {
         // The ends of the axis are the centres of the outermost cells; a single value has a cell of some width.
         let ([low, high], count) = (axis.ends().map(|end| axis.spacing.place(end)), axis.values.len() as f64);

@@ -31,6 +31,7 @@ use corner_impact_plot::{BREAK, Beside, Colour, Figure, FigureAxis, Label, Marke
 pub(crate) const COMPOSITION: Entry = Entry {
     id: "composition",
     place: "Figure 6",
+    takes_rpm: false,
     title: |subject| format!("{}: the map of one revolution, composed of three", subject.model.name),
     draw: |subject, title| {
         drawn(

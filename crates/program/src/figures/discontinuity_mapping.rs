@@ -9,6 +9,7 @@ use corner_impact_plot::{BREAK, Beside, Colour, Figure, FigureAxis, Label, Marke
 pub(crate) const DISCONTINUITY_MAPPING: Entry = Entry {
     id: "discontinuity-mapping",
     place: "Figure 7",
+    takes_rpm: false,
     title: |subject| format!("{}: the discontinuity mapping on either side of the corner", subject.model.name),
     draw: |subject, title| {
         let shown = subject.composition()?;

@@ -13,6 +13,7 @@ use corner_impact_plot::{Cloud, Colour, Data, Density, Figure, FigureAxis, Panel
 pub(crate) const SLOW_IMPACTS: Entry = Entry {
     id: "slow-impacts",
     place: "Figure 5(a)",
+    takes_rpm: true,
     title: |subject| {
         subject.slow_title("impacts on the cam above detachment", |Slow { range: [low, high], .. }| {
             format!("impacts on the cam, {low} to {high} rpm")

@@ -20,6 +20,7 @@ use corner_impact_plot::{BREAK, Beside, Colour, Figure, FigureAxis, Label, Mark,
 pub(crate) const LOCAL_MAP: Entry = Entry {
     id: "local-map",
     place: "Figure 8",
+    takes_rpm: false,
     title: |subject| format!("{}: the orbits of the local map", subject.model.name),
     draw: |subject, title| {
         let shown = subject.next_to_corner()?;

@@ -49,11 +49,8 @@ pub use subject::{Effort, Fast, FigureContext, ShownSpeeds, Slow};
 pub use through_corner::through_corner;
 pub use trace::{TracedRun, time_trace, with_force};
 
-/// Figures of no corner impact, which may be at any speeds.
-pub(crate) const OF_CHOSEN_SPEEDS: [&str; 4] = ["slow-trace", "slow-phase-plane", "slow-impacts", "interrupted-trace"];
-
 /// All figures of the report, in the paper's order.
-pub(crate) const FIGURES: [Entry; 15] = [
+pub(crate) static FIGURES: [Entry; 15] = [
     cam_shape::CAM_SHAPE,
     cam::CAM,
     trace::SLOW_TRACE,
@@ -82,6 +79,8 @@ pub(crate) struct Entry {
     pub(crate) id: &'static str,
     /// Corresponding figure of the paper; empty for none.
     place: &'static str,
+    /// Whether it is drawn at the speeds of `--rpm`, rather than at those of the corner impact.
+    pub(crate) takes_rpm: bool,
     title: fn(&FigureContext) -> String,
     /// Draws the figure under a title, or says why there is none.
     draw: fn(&FigureContext, &str) -> Result<Captioned, String>,
@@ -164,7 +163,7 @@ impl Entry {
         let in_units =
             |drawn: Captioned| Captioned { figure: drawn.figure.in_units(|unit| units.spelled(unit)), ..drawn };
         let drawn = (self.draw)(subject, &title).map(in_units);
-        let chosen = subject.rpm.filter(|_| OF_CHOSEN_SPEEDS.contains(&self.id));
+        let chosen = subject.rpm.filter(|_| self.takes_rpm);
         let speeds = chosen.map_or(String::new(), |[low, high]| format!(" --rpm {low}:{high}"));
         let command = command("figure", &subject.model, &format!("{}{speeds} --out {}.svg", self.id, self.id));
         RenderedFigure { id: self.id, place: self.place, title, command, drawn }

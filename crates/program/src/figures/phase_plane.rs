@@ -10,6 +10,7 @@ use corner_impact_plot::{Colour, Figure, FigureAxis, Mark, Panel, Series, Stroke
 pub(crate) const SLOW_PHASE_PLANE: Entry = Entry {
     id: "slow-phase-plane",
     place: "Figure 4(c)",
+    takes_rpm: true,
     title: |subject| {
         subject.slow_title("gap and its velocity", |slow| format!("gap and its velocity at {} rpm", slow.chattering))
     },

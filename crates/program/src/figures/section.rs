@@ -15,6 +15,7 @@ use corner_impact_plot::{BREAK, Cloud, Colour, Data, Density, Figure, FigureAxis
 pub(crate) const FAST_SECTION: Entry = Entry {
     id: "fast-section",
     place: "Figure 5(d)",
+    takes_rpm: false,
     title: |subject| {
         subject.fast_title("once a revolution around the corner impact", |Fast { range: [low, high], .. }| {
             format!("once a revolution, {low} to {high} rpm")
@@ -39,6 +40,7 @@ pub(crate) const FAST_SECTION: Entry = Entry {
 pub(crate) const BEYOND_ATTRACTOR: Entry = Entry {
     id: "beyond-attractor",
     place: "",
+    takes_rpm: false,
     title: |subject| {
         subject.fast_title("what the motion settles on beyond the corner impact", |fast| {
             format!("what the motion settles on at {} rpm", fast.beyond)

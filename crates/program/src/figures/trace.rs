@@ -13,6 +13,7 @@ use corner_impact_plot::{Colour, Data, Figure, FigureAxis, Marker, Panel, Series
 pub(crate) const SLOW_TRACE: Entry = Entry {
     id: "slow-trace",
     place: "Figure 4(a) and (b)",
+    takes_rpm: true,
     title: |subject| {
         let what = if subject.is_paper { "chattering" } else { "the motion" };
         subject.slow_title("a slow motion", |slow| format!("{what} at {} rpm", slow.chattering))
@@ -30,6 +31,7 @@ pub(crate) const SLOW_TRACE: Entry = Entry {
 pub(crate) const INTERRUPTED_TRACE: Entry = Entry {
     id: "interrupted-trace",
     place: "Figure 5(b)",
+    takes_rpm: true,
     title: |subject| {
         subject.slow_title("another slow motion", |slow| format!("the motion at {} rpm", slow.interrupted))
     },
@@ -50,6 +52,7 @@ pub(crate) const INTERRUPTED_TRACE: Entry = Entry {
 pub(crate) const CORNER_ORBIT: Entry = Entry {
     id: "corner-orbit",
     place: "Figure 5(e)",
+    takes_rpm: false,
     title: |subject| {
         let at = subject.found().map(|found| format!(" at {:.6} rpm", found.at.speed_rpm())).unwrap_or_default();
         format!("{}: the orbit whose impact is at the corner{at}", subject.model.name)
@@ -61,6 +64,7 @@ pub(crate) const CORNER_ORBIT: Entry = Entry {
 pub(crate) const BEYOND_TRACE: Entry = Entry {
     id: "beyond-trace",
     place: "Figure 5(f)",
+    takes_rpm: false,
     title: |subject| {
         subject.fast_title("the motion beyond the corner impact", |fast| format!("the motion at {} rpm", fast.beyond))
     },

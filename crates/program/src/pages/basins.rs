@@ -6,12 +6,16 @@ use crate::show::digits::Digits;
 use crate::show::words;
 use corner_impact::study::basins::{Basin, Basins, BasinsOver, Summary};
 
+/// Head of the lines below it.
+const HEAD: &str = "  share of the starts, motion that they end on (number of starts)";
+
 impl Paged for Summary {
     fn blocks(&self) -> Vec<Block> {
         let Self { model, rpm, basins, wall_s, .. } = self;
         let angle = basins.begun.cam_angle().to_degrees();
         let mut lines =
             vec![format!("{model} at {rpm} rpm, {} at {angle:.4} deg", words::many(basins.starts as u64, "start"))];
+        lines.push(HEAD.into());
         lines.extend(basins.parts.iter().map(|part| format!("  {}", ending(part))));
         lines.extend(words::transient_chaos(&basins.wandering).map(|words| format!("  {words}")));
         lines.extend(below_cam(basins).map(|words| format!("  {words}")));
@@ -25,6 +29,7 @@ impl Paged for BasinsOver {
     fn blocks(&self) -> Vec<Block> {
         let angle = self.cam_angle.to_degrees();
         let mut lines = vec![format!("{}, {}, starts at {angle:.4} deg", self.model, self.over.range(self.range))];
+        lines.push(HEAD.into());
         for at in &self.at {
             lines.push(format!("  {}", self.over.words(Digits::Significant(6).text(at.place.across()))));
             let parts = at.found.iter().flat_map(|found| &found.parts);

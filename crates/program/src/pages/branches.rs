@@ -1,21 +1,24 @@
 //! The texts of `continue` and `curve`: special points along a branch of orbits and along a curve of events, and their ends.
 
+use crate::show::digits::Digits;
 use crate::show::words;
 use corner_impact::border_collision::event_curve::EventPoint;
 use corner_impact::border_collision::{EventCurve, RoundedCorner};
+use corner_impact::model::Units;
 use corner_impact::orbit::branch::{Branch, BranchPoint, Special, SpecialKind, UndecidedGraze};
 use corner_impact::tolerance;
 
 /// Special points of a branch, and its ends.
-pub(crate) fn branch(branch: &Branch, parameter: &str, index: usize) -> String {
+pub(crate) fn branch(branch: &Branch, (parameter, units): (&str, &Units), index: usize) -> String {
     /// Most special points that are listed.
     const LISTED: usize = 40;
     let points = &branch.points;
     let (Some(first), Some(last)) = (points.first(), points.last()) else { return String::new() };
-    let place = |point: &BranchPoint| format!("{parameter} = {:.9}", point.value);
+    let unit = unit_after(parameter, units);
+    let place = |point: &BranchPoint| format!("{parameter} = {:.9}{unit}", point.value);
     let special = |point: &BranchPoint| {
         let Special { kind, bracket, residual } = point.special?;
-        let (what, width) = (passed(point, kind), bracket[1] - bracket[0]);
+        let (what, width) = (passed(point, kind, units), bracket[1] - bracket[0]);
         Some(format!("  {}  {what}  (bracket {width:.1e}, residual {residual:.1e})", place(point)))
     };
     let mut lines = vec![
@@ -29,17 +32,26 @@ pub(crate) fn branch(branch: &Branch, parameter: &str, index: usize) -> String {
     lines.join("\n")
 }
 
-fn passed(point: &BranchPoint, kind: SpecialKind) -> String {
+/// The unit of a number, after a blank. The name of the speed is its unit.
+fn unit_after(parameter: &str, units: &Units) -> String {
+    match units.of_number(parameter) {
+        unit if unit.is_empty() || unit == parameter => String::new(),
+        unit => format!(" {unit}"),
+    }
+}
+
+fn passed(point: &BranchPoint, kind: SpecialKind, units: &Units) -> String {
     match kind {
         SpecialKind::Fold => "fold: a multiplier is 1".into(),
         SpecialKind::Branching => "branching: a multiplier is 1, and another branch crosses".into(),
         SpecialKind::Flip => "flip: a multiplier is -1".into(),
         SpecialKind::Corner { impact, jump_order, .. } => {
             let angle = point.orbit.impacts().nth(impact).map_or(f64::NAN, |impact| impact.cam_angle.to_degrees());
-            format!("corner impact: impact {} at {angle:.4} deg, jump of order {jump_order}", impact + 1)
+            let angle = Digits::Fixed(4).text(angle);
+            format!("corner impact: impact {} at {angle} deg, jump of order {jump_order}", impact + 1)
         }
         SpecialKind::Graze { before, after, first, .. } => {
-            let beyond = first.map(words::first_touch).unwrap_or_default();
+            let beyond = first.map_or_else(String::new, |touch| words::first_touch(touch, units));
             format!("graze: from {before} to {after} impacts{beyond}")
         }
         SpecialKind::Type { .. }
@@ -82,19 +94,22 @@ fn on_curve(kind: SpecialKind) -> String {
 /// Special points and ends of a curve over the named number, which is `own` in the model.
 pub(crate) fn curve(
     curve: &EventCurve,
-    (parameter, own): (&str, f64),
+    (parameter, own, units): (&str, f64, &Units),
     index: usize,
     sharp: &[(f64, RoundedCorner)],
 ) -> String {
     let (Some(first), Some(last)) = (curve.points.first(), curve.points.last()) else { return String::new() };
     let here = curve.points.iter().find(|point| point.value == own).unwrap_or(first);
     let (count, impacts, angle) = (curve.points.len(), here.impacts, here.cam_angle.to_degrees());
-    let place = |point: &EventPoint| format!("{parameter} = {:.9}, {:.6} rpm", point.value, point.rpm);
+    let unit = unit_after(parameter, units);
+    let place = |point: &EventPoint| format!("{parameter} = {:.9}{unit}, {:.6} rpm", point.value, point.rpm);
     let what = words::events(curve.kind);
+    let of_orbit =
+        || format!("of {} in {}", words::many(impacts as u64, "impact"), words::many(here.revolutions, "revolution"));
     let of_what = match curve.kind {
         // If an event could not be followed at all, its cam angle is unknown.
         SpecialKind::Graze { .. } if !angle.is_finite() => format!("from {impacts} to {} impacts", impacts + 1),
-        _ if !angle.is_finite() => format!("of {impacts} impact(s) in {} revolution(s)", here.revolutions),
+        _ if !angle.is_finite() => of_orbit(),
         SpecialKind::Corner { impact, jump_order, .. } => {
             format!("impact {} of {impacts} at {angle:.4} deg, jump of order {jump_order}", impact + 1)
         }
@@ -105,7 +120,7 @@ pub(crate) fn curve(
         SpecialKind::Graze { .. } => format!("from {impacts} to {} impacts, at {angle:.4} deg", impacts + 1),
         SpecialKind::Detachment => format!("at {angle:.4} deg"),
         SpecialKind::Chatter => format!("where the cam lets go at {angle:.4} deg"),
-        _ => format!("of {impacts} impact(s) in {} revolution(s)", here.revolutions),
+        _ => of_orbit(),
     };
     let mut lines = vec![
         format!("curve {index}: {count} {what}, {of_what}"),

@@ -118,7 +118,11 @@ fn segments(sheet: &CamSheet) -> Vec<Block> {
         return vec![Block::Heading(title.into()), Block::Table(table)];
     }
     let [least, most] = spans.map(|span| (span, Digits::Significant(6)));
-    let spans = words!["spans from ", least, " to ", most, " degrees; --json lists them"];
+    let spans = if spans[0] == spans[1] {
+        words!["each ", least, " deg long; --json lists them"]
+    } else {
+        words!["each from ", least, " to ", most, " deg long; --json lists them"]
+    };
     if sheet.is_smoothed() {
         return vec![Block::Heading(title.into()), Block::paragraph(spans)];
     }

@@ -21,10 +21,17 @@ impl Paged for Certified {
         };
         let mut page = vec![
             Block::Title(format!("Certificates of corner impacts of {}", self.model.name).into()),
-            Block::paragraph(format!(
-                "{low} to {high} rpm: {count}, with {} bits. Of every number below each digit is proved, but for one unit of the last.",
-                self.bits
-            )),
+            Block::paragraph(words![
+                format!(
+                    "{low} to {high} rpm: {count}, with {} bits. Of every number below each digit is proved, but for one unit of the last. \
+                     Positions are in ",
+                    self.bits
+                ),
+                Span::Unit("m"),
+                ", velocities in ",
+                Span::Unit("m/s"),
+                ", times in s."
+            ]),
         ];
         self.corner_impacts.iter().for_each(|one| page.extend(certificate(one)));
         page.extend(words::hypotheses(&self.hypotheses()).map(Block::paragraph));
@@ -40,10 +47,11 @@ impl Paged for ProvedOrbits {
             let start = |start: &ProvedStart| {
                 let words = words![
                     &start.cam_angle_rad.mid,
-                    " rad, leaves at ",
+                    " rad, leaves the cam at ",
                     &start.relative_velocity_m_s.mid,
                     " ",
-                    Span::Unit("m/s")
+                    Span::Unit("m/s"),
+                    " relative to it"
                 ];
                 ("impact".into(), words)
             };

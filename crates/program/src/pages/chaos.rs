@@ -1,6 +1,6 @@
 //! The page of `chaos`: the theorem first, then its basis, then the places where nothing is proved.
 
-use crate::show::block::{Block, Column, Table, TextMark, words};
+use crate::show::block::{Block, Column, Span, Table, TextMark, Words, words};
 use crate::show::digits::{Digits, at_least};
 use crate::show::{Paged, words};
 use corner_impact::covering::prove::Refused;
@@ -18,7 +18,15 @@ impl Paged for Chaos {
         page.push(Block::paragraph(statement(self)));
         match self.theorems.as_slice() {
             [] => page.push(Block::Gap),
-            all if low == high => page.extend(all.iter().map(|theorem| Block::Table(strips(theorem)))),
+            all if low == high => {
+                page.extend(all.iter().map(|theorem| Block::Table(strips(theorem))));
+                page.push(Block::Note(words![
+                    "x and y are coordinates in a parallelogram of impacts, of cam angle in deg and velocity after the impact \
+                     relative to the cam in ",
+                    Span::Unit("m/s"),
+                    "; they have no unit. --json has its centre and its sides."
+                ]));
+            }
             _ => page.push(Block::Table(ranges(self))),
         }
         let is_region_proved = self.trapping.as_ref().is_some_and(|trapping| !trapping.regions.is_empty());
@@ -87,7 +95,7 @@ pub(crate) fn statement(found: &Chaos) -> String {
 }
 
 /// States what is proved about a region.
-fn trapped(found: &Trapped, rpm: f64) -> String {
+fn trapped(found: &Trapped, rpm: f64) -> Words {
     let Region { cells, velocities_m_s, part, angles_deg, .. } = found.region;
     let chaos = match found.holds_chaos {
         true => " All strips lie in it, and so the set of chaotic motions does.",
@@ -103,15 +111,20 @@ fn trapped(found: &Trapped, rpm: f64) -> String {
         )
     });
     let percent = 100.0 * part;
-    format!(
-        "Proved: a region traps motions at {rpm} rpm. After an impact in one of its {}, all impacts are in them: the follower flies and hits \
-         for ever, and never rests on the cam. They are from {} deg and {} m/s relative to the cam, {} % of all \
-         angles and velocities up to there.{chaos}{parted}",
-        words::many(cells as u64, "cell"),
-        words::range(outwards(angles_deg), Digits::UpTo(4)),
-        words::range(outwards(velocities_m_s), Digits::UpTo(4)),
-        if percent < 0.01 { Digits::Size } else { Digits::Significant(2) }.text(percent),
-    )
+    words![
+        format!(
+            "Proved: a region traps motions at {rpm} rpm. After an impact in one of its {}, all impacts are in them: the follower flies and \
+             hits for ever, and never rests on the cam. They are from {} deg and {} ",
+            words::many(cells as u64, "cell"),
+            words::range(outwards(angles_deg), Digits::UpTo(4)),
+            words::range(outwards(velocities_m_s), Digits::UpTo(4)),
+        ),
+        Span::Unit("m/s"),
+        format!(
+            " relative to the cam, {} % of all angles and velocities up to there.{chaos}{parted}",
+            if percent < 0.01 { Digits::Size } else { Digits::Significant(2) }.text(percent),
+        ),
+    ]
 }
 
 /// Ends of a range to four places, rounded outwards.
@@ -120,23 +133,22 @@ fn outwards([low, high]: [f64; 2]) -> [f64; 2] {
 }
 
 /// Explains why no trapping region was proved, and after how many cells.
-fn escaped(escapes: &[OpenRegion], rpm: f64) -> String {
+fn escaped(escapes: &[OpenRegion], rpm: f64) -> Words {
     let each = escapes.iter().map(|escape| {
         let [angle, velocity] = escape.at;
         let why = match escape.flight {
-            Some(flight) => {
-                format!(
-                    "from an impact at {angle:.3} deg that leaves with {velocity:.4} m/s {}",
-                    words::unproved(flight)
-                )
-            }
-            None if escape.cells == 0 => "there was no impact to begin with".to_owned(),
-            None => "there were too many".to_owned(),
+            Some(flight) => words![
+                format!("from an impact at {angle:.3} deg that leaves with {velocity:.4} "),
+                Span::Unit("m/s"),
+                format!(" {}", words::unproved(flight))
+            ],
+            None if escape.cells == 0 => "there was no impact to begin with".into(),
+            None => "there were too many".into(),
         };
         let size = words::many(escape.squares_per_degree.into(), "square");
-        format!("with {size} a degree, after {}, {why}", words::many(escape.cells as u64, "cell"))
+        words![format!("with {size} a degree, after {}, ", words::many(escape.cells as u64, "cell")), why]
     });
-    format!("No region that traps is proved at {rpm} rpm: {}.", each.collect::<Vec<_>>().join("; "))
+    words![format!("No region that traps is proved at {rpm} rpm: "), Words::joined(each, "; "), "."]
 }
 
 /// Table of the strips, with what is proved about each.

@@ -13,6 +13,7 @@ impl Paged for Charted {
         let at = chart.speed().map_or_else(String::new, |rpm| format!(" at {rpm} rpm"));
         let points = self.points.len();
         let mut lines = vec![format!("{}{at}, {y} over {x}, {points} points", chart.model.name)];
+        lines.push("  share of the points, motion (number of points)".into());
         for (kind, number) in self.counts() {
             let share = number as f64 / points as f64;
             // Chaos is said with how long it was seen.

@@ -5,6 +5,7 @@ use serde_json::Value;
 use crate::show::Paged;
 use crate::show::block::{Block, Column, Span, Table, TextMark, Words, words};
 use crate::show::digits::Digits;
+use crate::show::words;
 use corner_impact::study::compare::{Change, ModelComparison};
 
 /// Ratio of a difference to its error above which only a bound is shown.
@@ -18,7 +19,9 @@ impl Paged for ModelComparison {
         let is_word = |change: &&Change| change.difference.is_none() && change.a.is_some() && change.b.is_some();
         let others = self.changes.iter().filter(is_word).count();
         let verdict = match self.verdict_changed() {
-            false if others > 0 => words!["the same: ", a, format!("; but {others} findings are of another kind")],
+            false if others > 0 => {
+                words!["the same: ", a, format!("; but {} of another kind", words::many(others as u64, "finding"))]
+            }
             false => words!["the same: ", (TextMark::Good, a.as_str())],
             true => {
                 words![(TextMark::Bad, "changed"), Span::Break, "first:  ", a, Span::Break, "second: ", b]
@@ -44,11 +47,18 @@ impl Paged for ModelComparison {
             let is_told = known.iter().filter_map(|change| change.times_error).any(|times| times <= MANY);
             let times = if is_told { "times error: the difference over how far it may be off. " } else { "" };
             let note = format!(
-                "The speeds of the corner impact and of separation stand first, then what moved most. moved: the difference over \
+                "The speeds of the corner impact and of separation come first, then what moved most. moved: the difference over \
                  the size of the first. {times}Errors are how far routes differ, or an estimate's own, and what a measured cam \
-                 leaves open, of both models. What has the same digits in both stands in one line. All computed."
+                 leaves open, of both models. Quantities with the same digits in both models share a line. All are computed. Where no unit \
+                 is named, positions are in "
             );
-            page.push(Block::Note(note.into()));
+            page.push(Block::Note(words![
+                note,
+                Span::Unit("m"),
+                ", velocities in ",
+                Span::Unit("m/s"),
+                ", times in s and speeds of linear ranges in rpm."
+            ]));
         }
         page.extend(named("The first alone has", alone.iter().copied().filter(|change| change.b.is_none())));
         page.extend(named("The second alone has", alone.iter().copied().filter(|change| change.a.is_none())));

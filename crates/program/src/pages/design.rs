@@ -29,7 +29,7 @@ impl Paged for Design {
         if !self.over.is_speed() {
             let name = self.over.own_name();
             page.push(Block::paragraph(format!(
-                "That, and the speeds of rounded corners, are with the model's own {name}."
+                "The separation speed and those of rounded corners are for the model's own {name}."
             )));
         }
         let unknown = self.measured.as_ref().and_then(|measured| measured.noise_unknown.as_deref());
@@ -163,18 +163,20 @@ pub(crate) fn speeds(found: &Design) -> Vec<Block> {
     let heading = if found.over.is_speed() { "Speeds".into() } else { format!("Over {}", found.over.at_speed("")) };
     let mut blocks = vec![Block::Heading(heading.as_str().into()), Block::Table(table)];
     blocks.push(Block::Note(
-        "least force: between follower and cam as long as they touch, where it is below 0 they part; computed.".into(),
+        "least force: of the cam on the follower while they touch, computed. Where it is below 0, they separate."
+            .into(),
     ));
     if !found.loads.is_empty() {
         let transient = found.budget.transient;
         let words = format!(
-            "The other columns are the most of what the starts come to, four unless they are given: over 8 revolutions after up to {transient}; \
-             sampled: another start may come to more. Energy is what impacts take, force that between them."
+            "The other columns are the largest values of runs from four starts, unless others are given, over 8 revolutions after at most \
+             {transient}. They are sampled: another motion may reach more. impact: speed of the follower relative to the cam. lost: energy \
+             that impacts take. most force: of the cam on the follower between impacts."
         );
         blocks.push(Block::Note(words.as_str().into()));
         if found.loads.iter().any(|loads| loads.errors.is_some()) {
-            let words = "± is what the cam leaves open, by what cams that are as likely come to. A load that may be as little as none is told \
-                         as what it is less than; the last three columns have no more digits than are left them, and --json has the ± of each.";
+            let words = "± is the uncertainty of the measured cam, from runs with cams that fit its rows as well. A load that may be 0 shows its \
+                         upper bound. The last three columns are rounded to their uncertainty; --json has the ± of each.";
             blocks.push(Block::Note(words.into()));
         }
     }
@@ -187,7 +189,8 @@ fn limits(found: &Design) -> Vec<Block> {
         let name = passed.limit.to_string().replace('-', " ");
         let limit = words![format!("{name} of "), (passed.value, SIX), format!(" {}: ", passed.unit)];
         let values = if found.over.is_speed() { "speeds" } else { "values" };
-        let open = if is_open { ", of the cam as it is drawn: what it leaves open is the ± above" } else { "" };
+        let open = if is_open { "; for the cam as drawn, with the ± above" } else { "" };
+        let lowest = found.loads.first().map(|loads| loads.place.across());
         match passed.at {
             Some(at) => {
                 words![
@@ -195,10 +198,11 @@ fn limits(found: &Design) -> Vec<Block> {
                     Span::Marked(TextMark::Bad, "passed".into()),
                     " at ",
                     (at.across(), Digits::Significant(4)),
-                    if found.over.is_speed() {
-                        " rpm first, as far as the speeds above tell"
+                    if found.over.is_speed() { " rpm" } else { "" },
+                    if lowest == Some(at.across()) {
+                        format!(" already, the lowest of the {values} with loads")
                     } else {
-                        " first, as far as the values above tell"
+                        format!(" first, among the {values} above")
                     },
                     open
                 ]

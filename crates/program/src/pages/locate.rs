@@ -147,12 +147,13 @@ fn searched(found: &Located) -> String {
         )
     } else {
         format!(
-            "{corners} corner(s) of the cam{knots}. Orbits of one impact: {}. Orbits of several impacts were looked for in two ways that know \
-             nothing of each other: on branches through what a search finds at {} speeds, each {:.0} % faster than the one before, and \
-             through what branches off there with twice the period ({} stretches of branches); and by {VELOCITIES} shots from each \
-             corner at speeds {:.1} % apart. {} Of up to {MOST_IMPACTS} impacts a revolution, none of them within {:.2} deg of the one on \
-             the corner. A search of a part of the range finds the same there. Orbits on which the follower sticks forget where they hit: they are left \
-             out.",
+            "{} of the cam{knots}. Orbits of one impact: {}. Orbits of several impacts were looked for in two independent ways. The first \
+             follows branches of the orbits that a search finds at {} speeds, each {:.0} % faster than the one before, and the branches of \
+             twice the period that begin there ({} stretches of branches). The second fires {VELOCITIES} shots from each corner at speeds \
+             {:.1} % apart. {} Both cover orbits of up to {MOST_IMPACTS} impacts a revolution with no other impact within {:.2} deg of the \
+             corner. A search of a part of the range finds the same there. Orbits on which the follower sticks are left out: their motion does \
+             not depend on where they hit before.",
+            words::many(corners as u64, "corner"),
             if undecided.is_empty() { "all, which is proved" } else { "all but for what is not decided" },
             searched.speeds.len(),
             100.0 * (GRID_RATIO - 1.0),
@@ -181,11 +182,14 @@ fn found_by(found: &Located) -> String {
     /// Fewest corner impacts found by both searches from which the missing ones are estimated.
     const TELLING: usize = 10;
     let missing = match recaptured.values().map(Recaptured::missing).sum::<f64>() {
-        _ if both < TELLING => "too few to tell how many more there may be".to_owned(),
+        _ if both < TELLING => "too few for an estimate of how many both missed".to_owned(),
         some if some >= 0.1 => {
-            format!("by that some {some:.1} more are to be expected, and the more the harder they are to find")
+            format!(
+                "the overlap gives an estimate of {some:.1} that both missed, or more of those that are hard to find"
+            )
         }
-        _ => "by that no more are to be expected, but for those that are hard to find both ways".to_owned(),
+        _ => "the overlap gives an estimate of none that both missed, except those that are hard to find both ways"
+            .to_owned(),
     };
     let alone = |way: Way| {
         let numbers =
@@ -197,9 +201,7 @@ fn found_by(found: &Located) -> String {
     if branches + shots == 0 {
         return "Neither found any.".into();
     }
-    format!(
-        "The first found {branches}, the second {shots}, {both} of them the same: {missing}.{on_branches}{by_shots}"
-    )
+    format!("The first found {branches}, the second {shots}, and {both} are in both: {missing}.{on_branches}{by_shots}")
 }
 
 /// Agreement of the routes, in a word or two.

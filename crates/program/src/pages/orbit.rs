@@ -24,6 +24,11 @@ impl Paged for Orbits {
             page.extend(one(index + 1, orbit, error.as_ref()));
             page.extend(self.measured.as_ref().map(|cam| left_open(cam, error.as_ref())));
         }
+        if self.orbits.iter().any(|orbit| orbit.impacts().next().is_some()) {
+            page.push(Block::paragraph(
+                "q and v are the follower's position and velocity, v before and after an impact; v is not relative to the cam.",
+            ));
+        }
         page.extend(self.complete.iter().map(complete));
         page.extend(some_of(&self.undecided, "place", undecided));
         page.extend(how_known(&self.orbits));
@@ -56,8 +61,7 @@ fn how_known(orbits: &[PeriodicOrbit]) -> Option<Block> {
     let judged = orbits.iter().filter(|orbit| orbit.judgement.known == Evidence::Proved).count();
     (proved > 0).then(|| {
         Block::paragraph(format!(
-            "Existence is proved of {proved} of these orbits, stability or instability of {judged}. All digits are computed, those of \
-             the multipliers too."
+            "Proved: the existence of {proved} of these orbits, and the stability or instability of {judged}. All digits are computed."
         ))
     })
 }
@@ -150,7 +154,14 @@ fn one(number: usize, orbit: &PeriodicOrbit, error: Option<&OrbitUncertainty>) -
         line(words![text, Span::Unit("m/s")]);
     }
     if impacts > SHOWN {
-        line(format!("     and {} more", impacts - SHOWN).into());
+        let speeds = orbit.impacts().map(|impact| ((impact.velocity_before - impact.cam_velocity).abs(), impact));
+        let mut more = words![format!("     and {} more", impacts - SHOWN)];
+        if let Some((speed, impact)) = speeds.max_by(|one, two| one.0.total_cmp(&two.0)) {
+            let (angle, speed) = (of_angle.text(impact.cam_angle.to_degrees()), of_velocity.text(speed));
+            let hardest = format!("; the hardest is at {angle} deg: {speed} ");
+            more.push(words![hardest, Span::Unit("m/s"), " relative to the cam"]);
+        }
+        line(more);
     }
     for rest in orbit.rests() {
         let (angle, turn) = (of_angle.text(rest.cam_angle.to_degrees()), rest.revolution);

@@ -26,13 +26,17 @@ impl Paged for Run {
         ];
         if let Some(loads) = &self.loads {
             let turns = words::many(loads.loads_over_revolutions, "revolution");
-            let part = if loads.loads_over_revolutions as f64 + 1.0 > *revolutions { "" } else { "the last " };
+            let part = if loads.loads_over_revolutions as f64 + 1.0 > *revolutions {
+                "the whole run of "
+            } else {
+                "the last "
+            };
             lines.push(sentence![
                 "  hardest impact ",
                 (loads.hardest_impact_m_s, Digits::Significant(5)),
                 " ",
                 Span::Unit("m/s"),
-                ", largest gap ",
+                " relative to the cam, largest gap ",
                 (loads.largest_gap_m, Digits::Significant(5)),
                 " ",
                 Span::Unit("m"),
@@ -48,7 +52,7 @@ impl Paged for Run {
             lines.push(format!("  in the long run {}", words::followed(ending, *followed)).into());
             lines.push(format!("  Lyapunov exponent {exponent:.4}{error} per revolution{why}").into());
         }
-        lines.push(format!("  {wall_s:.3} s{}", per_turn(*wall_s, *revolutions)).into());
+        lines.push(format!("  computed in {wall_s:.3} s{}", per_turn(*wall_s, *revolutions)).into());
         lines.into_iter().map(Block::Line).collect()
     }
 }
@@ -67,9 +71,9 @@ impl Paged for Swept {
                     "  each run followed for {}{}",
                     words::many(self.followed, "revolution"),
                     if self.is_judged {
-                        ", and longer where growth or attractors are judged"
+                        ", and longer where growth or attractors are asked for"
                     } else {
-                        ", and not judged"
+                        "; what they settle on is not classified"
                     }
                 )
                 .into(),

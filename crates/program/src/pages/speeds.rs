@@ -18,8 +18,11 @@ impl Paged for SpeedSurvey {
         let leaves = if self.over.is_speed() { "  leaves the cam first at  " } else { "  leaves the cam at        " };
         page.push(Block::Line(words![leaves, detachment(self)]));
         let together = together(self);
-        let together =
-            if together.is_empty() { "nowhere".into() } else { words![Words::joined(together, ", "), unit(self)] };
+        let together = if together.is_empty() {
+            format!("at no {value}", value = self.over.value()).into()
+        } else {
+            words![Words::joined(together, ", "), unit(self)]
+        };
         page.extend([
             Block::Line(words!["  several attractors        ", together]),
             Block::Gap,
@@ -112,10 +115,9 @@ pub(crate) fn measured_speed(rpm: f64, digits: Digits, error: Option<f64>, cam: 
 
 /// Method of the search, and what it can miss.
 pub(crate) fn how(found: &SpeedSurvey) -> String {
-    const LOCATED: &str = " A speed with six decimals was located by the equations of what happens there; others are known from runs \
-                           alone, to the digits shown.";
-    const VALUE_LOCATED: &str = " A value with nine digits was located by the equations of what happens there; others are known from \
-                                 runs alone, to the digits shown.";
+    const LOCATED: &str = " A speed with six decimals was located by its equations; others are known from runs alone, to the digits shown.";
+    const VALUE_LOCATED: &str = " A value with nine digits was located by its equations; others are known from runs alone, to the \
+                                 digits shown.";
     let located = match (Measured::noisy(&found.measured), found.over.is_speed()) {
         (Some(_), _) => "",
         (None, true) => LOCATED,
@@ -124,23 +126,20 @@ pub(crate) fn how(found: &SpeedSurvey) -> String {
     let value = found.over.value();
     let Budget { transient, patience, .. } = found.budget;
     let followed = format!(
-        " Runs that settle on nothing within {transient} revolutions are followed for {patience} more, all of a {value} together, before \
-         that is called chaos: a rest that is rarer than that is not seen."
+        " Runs that do not settle within {transient} revolutions are followed for {patience} more, shared by all runs of a {value}, \
+         before the motion is called chaotic: a rest that is rarer is not seen."
     );
     let unit = if found.over.spacing == Spacing::Logarithmic { " decades".into() } else { unit(found) };
     let step = format!("at each of the {value}s {}{unit} apart", found.step);
     if let Sample::Given(starts) = &found.sample {
         let starts = words::many(starts.len() as u64, "start");
-        return format!(
-            "Sampled: {starts} that {} given, {step}.{followed}{located}",
-            if starts == "1 start" { "is" } else { "are" }
-        );
+        return format!("Sampled: {step}, runs begin from the given {starts}.{followed}{located}");
     }
     let listed = if found.two_impacts { ", and of two in one that a search by intervals finds" } else { "" };
     format!(
-        "Sampled: {} starts {step}, on the cam at any angle and up to the velocity that impacts keep \
-         up; rest on the cam wherever that lets go; and the stable orbits of one impact in up to three revolutions{listed}. Another \
-         attractor with a basin of less than {:.1} % of the starts may be missed at a {value}, and what is there between two {value}s only.{followed}{located}",
+        "Sampled: {step}, runs begin from {} starts on the cam (any angle, up to the velocity that impacts sustain), from rest wherever \
+         the cam releases a follower, and on the stable orbits of one impact in up to three revolutions{listed}. An attractor with a basin \
+         of less than {:.1} % of the starts may be missed at a {value}, and so may one that exists only between two {value}s.{followed}{located}",
         found.sample.count(),
         100.0 * found.missed(),
     )
@@ -177,7 +176,7 @@ fn rests(attractor: &AttractorRow) -> Option<String> {
             rests.revolutions
         ),
         None => format!(
-            "Where {id} is chaotic, it did not rest on the cam once in {} revolutions: if it ever does there, it is less than once in {:.0}.",
+            "Where {id} is chaotic, no rest was seen in {} revolutions: rests are rarer than one in {:.0} revolutions, if there are any.",
             rests.revolutions,
             1.0 / rests.rate
         ),
@@ -242,7 +241,8 @@ fn other_kinds(found: &SpeedSurvey, attractor: &AttractorRow) -> Option<String> 
     let all = words::many(attractor.at.len() as u64, found.over.value());
     let others = kinds(&attractor.at).into_iter().filter(|(kind, _)| *kind != attractor.kind);
     let others: Vec<String> = others.map(|(kind, count)| format!("{} at {count}", words::is_of(kind))).collect();
-    (!others.is_empty()).then(|| format!("Of {all} at which {} was seen, it {}.", attractor.id, others.join(" and ")))
+    (!others.is_empty())
+        .then(|| format!("{} was seen at {all}: it {} of them.", attractor.id, others.join(" of them and ")))
 }
 
 /// Digits of a located value: six decimals for a speed.

@@ -282,7 +282,7 @@ impl Column {
         Self { head: head.into(), gap: 0, least, left: false, missable: 0 }
     }
 
-    /// The same column, left out of a page that is too narrow after those of a higher rank.
+    /// Marks the column as one that a narrow page leaves out. Columns of a higher rank go first.
     pub(crate) fn missable(self, rank: u8) -> Self {
         Self { missable: rank, ..self }
     }

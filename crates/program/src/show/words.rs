@@ -18,7 +18,7 @@ use corner_impact::covering::UnprovedFlight;
 use corner_impact::covering::prove::Relation;
 use corner_impact::known::Evidence;
 use corner_impact::measured::Measured;
-use corner_impact::model::{Reading, Separator};
+use corner_impact::model::{Reading, Separator, Units};
 use corner_impact::orbit::Stability;
 use corner_impact::orbit::branch::{self, Bifurcation, Doubt, FirstTouch, GrazeClass};
 use corner_impact::orbit::long_run::{Kind, LongRun};
@@ -53,12 +53,14 @@ pub(crate) fn events(kind: branch::SpecialKind) -> &'static str {
 }
 
 /// Description of the motions beyond the graze of an orbit without impacts, to follow the name of the graze.
-pub(crate) fn first_touch(touch: FirstTouch) -> String {
+pub(crate) fn first_touch(touch: FirstTouch, units: &Units) -> String {
     let beyond = match (touch.class, touch.back, touch.doubt) {
         (GrazeClass::Jump, Some((passages, depth)), _) => {
             let (passages, depth) = (many(passages, "passage"), Digits::Significant(2).text(depth));
+            let unit = units.spelled("m");
             format!(
-                "nothing nearby attracts, since {passages} of the cam's top later an impact is followed by a harder one,                  up to a depth of some {depth} m"
+                "nothing nearby attracts, since {passages} of the cam's top later an impact is followed by a harder one, \
+                 up to a depth of some {depth} {unit}"
             )
         }
         (GrazeClass::PeriodAdding, ..) => {
@@ -112,9 +114,9 @@ pub(crate) fn shared(decimals: Option<u32>) -> String {
     }
 }
 
-/// A name with spaces for its hyphens and underscores.
+/// A name with spaces for its hyphens and underscores. A formula, which has spaces already, stays as it is.
 pub(crate) fn spoken(name: &str) -> String {
-    name.replace(['_', '-'], " ")
+    if name.contains(' ') { name.to_owned() } else { name.replace(['_', '-'], " ") }
 }
 
 /// Name of a verdict in the ledger.
@@ -223,8 +225,8 @@ fn local_attractor(attractor: &LocalAttractor) -> String {
 pub(crate) fn returns(danger: &Danger) -> Vec<Words> {
     let line = |attractor: &LocalAttractor| {
         let Returns { position, velocity, any } = attractor.returns?;
-        let size = |size: Option<f64>, unit: &str| match size {
-            Some(size) => words![(size, Digits::Power(3)), " ", unit],
+        let size = |size: Option<f64>, unit: &'static str| match size {
+            Some(size) => words![(size, Digits::Power(3)), " ", Span::Unit(unit)],
             None => "any size".into(),
         };
         let name = format!("{} {}", speeds(Some(attractor.speeds)), local_attractor(attractor));
@@ -342,13 +344,13 @@ pub(crate) fn kind(kind: Kind) -> &'static str {
     match kind {
         Kind::Stays => "stays on the cam",
         Kind::Periodic => "periodic",
-        Kind::Resting => "rests on the cam",
+        Kind::Resting => "rests in each period",
         Kind::Chaotic => "chaotic",
         Kind::Undecided => "undecided",
     }
 }
 
-/// Kind of motion as a predicate: `is chaotic`, `rests on the cam`.
+/// Kind of motion as a predicate: `is chaotic`, `rests in each period`.
 pub(crate) fn is_of(kind: Kind) -> String {
     let is = if matches!(kind, Kind::Stays | Kind::Resting) { "" } else { "is " };
     format!("{is}{}", self::kind(kind))
@@ -497,5 +499,5 @@ pub(crate) fn reading(reading: &Reading) -> String {
 
 /// Hypotheses of the proofs on a page, in one sentence; `None` if there are none.
 pub fn hypotheses(all: &[impl Borrow<str>]) -> Option<String> {
-    (!all.is_empty()).then(|| format!("Taken for granted: {}.", all.join("; ")))
+    (!all.is_empty()).then(|| format!("Hypotheses: {}.", all.join("; ")))
 }
