@@ -108,8 +108,8 @@ $(MUTATION): $(VENV) tests/mutants/requirements.txt
 mutants: $(MUTATION) ## change operators, conditions and values in the formulas, one at a time; each must fail a test (many hours)
 	.venv/bin/python tests/mutants/mutants.py
 
-mutants-sample: $(MUTATION) ## the same of a hundredth of them, drawn by the commit (three minutes)
-	.venv/bin/python tests/mutants/mutants.py --parts 100 --seed $$(git rev-parse HEAD) --longest 3 --jobs $$(nproc)
+mutants-sample: $(MUTATION) ## the same of some 120 of them, drawn by the commit, of files that have changed since all were asked (none, or ten minutes)
+	.venv/bin/python tests/mutants/mutants.py --changed --most 120 --seed $$(git rev-parse HEAD) --longest 3 --jobs $$(nproc)
 
 # Each round looks at other cases; what fails is shown with its seed, and the round is the same whenever that is given.
 FUZZ_SECONDS ?= 600

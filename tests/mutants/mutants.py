@@ -9,10 +9,12 @@ which a first run of each test notes. How long each takes is kept beside the bui
     python tests/mutants/mutants.py                   every mutant of every stage: some hours
     python tests/mutants/mutants.py simulate/again    those in files whose path has these words
     python tests/mutants/mutants.py --parts 100 --seed 7       one part of a hundred, drawn by the seed; or --seconds 60, as many as fit
+    python tests/mutants/mutants.py --changed --most 120       of the files that have changed since all their mutants were asked
     python tests/mutants/mutants.py --out tried.jsonl          in several sittings: the next goes on where one was broken off
-    python tests/mutants/mutants.py --learn tried.jsonl        no mutant: adds to failing.toml what has failed there
+    python tests/mutants/mutants.py --learn tried.jsonl        no mutant: adds to failing.toml what has failed there, and notes in
+                                                               asked.toml the files of which all have been asked, in open.toml what has passed
 
-What survives and is not in explained.toml, with a reason, is listed, and the exit code is 1.
+What survives is listed, and the exit code is 1, unless explained.toml has a reason, or open.toml knows it as one to decide.
 """
 
 import argparse
@@ -43,6 +45,10 @@ COPY = ROOT / "target" / "mutants"
 REACHED = COPY / "reached.json"
 SECONDS = COPY / "seconds.json"
 FAILING = ROOT / "tests" / "mutants" / "failing.toml"
+EXPLAINED = ROOT / "tests" / "mutants" / "explained.toml"
+ASKED = ROOT / "tests" / "mutants" / "asked.toml"
+OPEN = ROOT / "tests" / "mutants" / "open.toml"
+UNVIABLE = COPY / "unviable.json"
 STAGES = ["model", "cam", "flight", "impact", "simulate", "section", "orbit", "corner", "border_collision", "study", "interval"]
 
 ARITHMETIC = {"+": "-*", "-": "+/", "*": "+/", "/": "*%", "%": "/+"}
@@ -355,9 +361,50 @@ def compiled(again):
     return done, [json.loads(line) for line in done.stdout.splitlines() if line.startswith("{")]
 
 
+def refused_by_compiler():
+    return set(json.loads(UNVIABLE.read_text())) if UNVIABLE.exists() else set()
+
+
+def name_of(mutant):
+    return tuple(mutant[key] for key in ("file", "function", "operator", "ordinal", "replacement"))
+
+
+def names_of(files):
+    """The names of mutants in a table of files: rows of function, operator, its ordinal and the replacements."""
+    return {(file, *place, other) for file, known in files.items() if file != "why" for *place, others in known for other in others}
+
+
+def explained():
+    """The names of the mutants that explained.toml has a reason for."""
+    return set().union(*map(names_of, tomllib.loads(EXPLAINED.read_text())["reason"]))
+
+
+def undecided():
+    """The names of the mutants that have passed the tests that they were asked, without a reason."""
+    return names_of(tomllib.loads(OPEN.read_text())) if OPEN.exists() else set()
+
+
+def digest(path):
+    """Digest of the code of a file, whatever its layout, its comments and its texts."""
+    words, left = [], [tree_sitter.Parser(tree_sitter.Language(tree_sitter_rust.language())).parse((ROOT / path).read_bytes()).root_node]
+    while left:
+        node = left.pop()
+        if node.type in ("line_comment", "block_comment", "string_literal", "raw_string_literal"):
+            continue
+        left.extend(reversed(node.children))
+        if not node.children:
+            words.append(node.text.decode())
+    return hashlib.sha256(" ".join(words).encode()).hexdigest()[:16]
+
+
+def unasked():
+    """The files that have changed since all their mutants were asked."""
+    asked = tomllib.loads(ASKED.read_text()) if ASKED.exists() else {}
+    return [str(path) for path in sources([]) if asked.get(str(path)) != digest(path)]
+
+
 def built(words, drawn, again):
     """The binary with the tests of all drawn mutants that compile of these files, and the mutants; `again` if others of them are compiled soon."""
-    known = COPY / "unviable.json"
     copied()
     if not (COPY / "target" / "release").exists() and (ROOT / "target" / "release").exists():
         # What the package needs is compiled already. Not by links: cargo writes into what it has there. What another build takes away
@@ -365,7 +412,7 @@ def built(words, drawn, again):
         (COPY / "target" / "release").mkdir(parents=True)
         for part in ("deps", "build", ".fingerprint"):
             subprocess.run(["cp", "-a", ROOT / "target" / "release" / part, COPY / "target" / "release" / part], stderr=subprocess.DEVNULL)
-    unviable = set(json.loads(known.read_text())) if known.exists() else set()
+    unviable = refused_by_compiler()
     while True:
         files, mutants = schemata(lambda key: key not in unviable and drawn(key), words)
         for file in files:
@@ -394,7 +441,7 @@ def built(words, drawn, again):
                 sys.exit("\n".join(errors) or done.stderr)
             break
         unviable |= {mutants[id]["key"] for id in refused}
-        known.write_text(json.dumps(sorted(unviable)))
+        UNVIABLE.write_text(json.dumps(sorted(unviable)))
     binary = next(message["executable"] for message in messages if message.get("executable") and message["target"]["name"] == "it")
     return binary, mutants
 
@@ -479,6 +526,8 @@ def main():
     ask = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     ask.add_argument("words", nargs="*", help="parts of the paths of the files to look at")
     ask.add_argument("--parts", type=int, default=1, help="one part of so many, the same mutants each time that it is drawn")
+    ask.add_argument("--changed", action="store_true", help="look at the files alone that have changed since all their mutants were asked")
+    ask.add_argument("--most", type=int, help="at most about so many, in place of --parts")
     ask.add_argument("--seed", default="", help="what draws the part, and the order")
     ask.add_argument("--seconds", type=float, default=float("inf"), help="begin no mutant after so long")
     ask.add_argument("--longest", type=float, default=10.0, help="no test that takes longer, s")
@@ -492,15 +541,18 @@ def main():
     if asked.learn:
         return learned(asked.learn)
     begun = time.monotonic()
-    listed = tomllib.loads((ROOT / "tests/mutants/explained.toml").read_text())
-    name = lambda mutant: tuple(mutant[key] for key in ("file", "function", "operator", "ordinal", "replacement"))
-    told = {(file, *place, other) for reason in listed["reason"] for file, known in reason.items()
-            if file != "why" and Path(file) in sources(asked.words) for *place, others in known for other in others}
-
-    gone = told - {name(mutant) for mutant in schemata(lambda key: True, asked.words)[1]}
+    told, still_open = explained(), undecided()
+    gone = told - {name_of(mutant) for mutant in schemata(lambda key: True, [])[1]}
     if gone:
         sys.exit(f"listed, and there is no such mutant: {sorted(gone)}")
-    binary, mutants = built(asked.words, lambda key: (number(key) - number(asked.seed)) % asked.parts == 0, asked.parts == 1)
+    if asked.changed:
+        asked.words = [path for path in unasked() if not asked.words or any(word in path for word in asked.words)]
+        if not asked.words:
+            return print("no file has changed since all its mutants were asked")
+        print("changed since all their mutants were asked:", *asked.words, flush=True)
+    if asked.most:
+        asked.parts = max(1, round(len(schemata(lambda key: True, asked.words)[1]) / asked.most))
+    binary, mutants = built(asked.words, lambda key: (number(key) - number(asked.seed)) % asked.parts == 0, asked.parts == 1 and not asked.changed)
     # A place notes the number of its first mutant.
     chosen = list(range(len(mutants)))
     stage = lambda id: Path(mutants[id]["file"]).parts[1].removesuffix(".rs")
@@ -508,7 +560,7 @@ def main():
     random.Random(asked.seed).shuffle(chosen)
     if asked.list:
         for id in sorted(chosen):
-            print(*name(mutants[id]), mutants[id]["code"], sep=" | ")
+            print(*name_of(mutants[id]), mutants[id]["code"], sep=" | ")
         return
     print(f"ready after {time.monotonic() - begun:.0f} s", flush=True)
 
@@ -517,8 +569,10 @@ def main():
         lines = [json.loads(line) for line in Path(asked.out).read_text().splitlines()]
         before = {line["key"]: (line["tests"], line["failed"]) for line in lines if line["tests"] != "pass"}
     out = open(asked.out, "a") if asked.out else None
-    end_of = {id: ("explained", []) if name(mutants[id]) in told else before[mutants[id]["key"]]
-              for id in chosen if name(mutants[id]) in told or mutants[id]["key"] in before}
+    end_of = {id: before[mutants[id]["key"]] for id in chosen if mutants[id]["key"] in before}
+    end_of |= {id: ("explained", []) for id in chosen if name_of(mutants[id]) in told}
+    # A part leaves out what is known to be open; a run of all asks it again.
+    end_of |= {id: ("open", []) for id in chosen if name_of(mutants[id]) in still_open and asked.most}
     left = {}
     kills = Counter()
     turn = threading.Lock()
@@ -602,7 +656,7 @@ def main():
     count = Counter((stage(id), end) for id, (end, _) in end_of.items())
     for part in in_all:
         print(f"{part}: {in_all[part]} mutants, {sum(number for (of, _), number in count.items() if of == part)} tried, {count[part, 'fail']} fail a test, "
-              f"{count[part, 'too long']} take eight times as long, {count[part, 'explained']} explained, "
+              f"{count[part, 'too long']} take eight times as long, {count[part, 'explained']} explained, {count[part, 'open']} open, "
               f"{count[part, 'pass']} survive")
     print(f"{len(end_of)} mutants in {time.monotonic() - began:.0f} s")
     sys.exit(bool(alive))
@@ -610,7 +664,8 @@ def main():
 
 def learned(tried):
     """Adds to what is listed of each file until each of its mutants that failed a test fails one of those: each time the one that most of
-    what is left fail for the time that it takes."""
+    what is left fail for the time that it takes. Notes the files of which each mutant has been asked, is explained or does not compile, and
+    the mutants that have passed."""
     listed = tomllib.loads(FAILING.read_text())["of"]
     seconds = defaultdict(lambda: 1.0, json.loads(SECONDS.read_text()))
     failed = defaultdict(dict)
@@ -625,6 +680,25 @@ def learned(tried):
     lines = ["# Tests that the mutants of a file fail, those first that most of them do: by mutants.py --learn.", "", "[of]"]
     lines += [f"{json.dumps(file)} = {json.dumps(tests, indent=4)}" for file, tests in sorted(listed.items())]
     FAILING.write_text("\n".join(lines) + "\n")
+    tried_keys = {key for of_file in failed.values() for key in of_file}
+    settled = refused_by_compiler() | {key for of_file in failed.values() for key, tests in of_file.items() if tests}
+    told, unasked_files, passed = explained(), set(), defaultdict(lambda: defaultdict(list))
+    for mutant in schemata(lambda key: True, [])[1]:
+        file, *place, other = name_of(mutant)
+        if mutant["key"] in settled or name_of(mutant) in told:
+            continue
+        if mutant["key"] in tried_keys:
+            passed[file][tuple(place)].append(other)
+        else:
+            unasked_files.add(file)
+    lines = ["# Digests of the files of which each mutant has been asked, is explained or does not compile: by mutants.py --learn."]
+    lines += [f"{json.dumps(str(path))} = {json.dumps(digest(path))}" for path in sources([]) if str(path) not in unasked_files]
+    ASKED.write_text("\n".join(lines) + "\n")
+    lines = ["# Mutants that have passed the tests that they were asked, each to be decided by a test or a reason: by mutants.py --learn."]
+    for file, places in sorted(passed.items()):
+        rows = [f"    {json.dumps([*place, others])}," for place, others in places.items()]
+        lines += [f"{json.dumps(file)} = [", *rows, "]"]
+    OPEN.write_text("\n".join(lines) + "\n")
 
 
 def same_place(one, other):
