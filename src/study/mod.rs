@@ -137,7 +137,7 @@ fn inside(model: &Model, rpm: f64, following: &Following) -> Result<f64, StudyEr
 /// Hypotheses on the machine for proofs by intervals of doubles.
 #[doc(hidden)]
 pub fn hypotheses(cam: &Cam) -> Vec<&'static str> {
-    let doubles = "the machine's numbers are the doubles nearest to those of the model file";
+    let doubles = "the machine's numbers are the doubles taken from those of the model file";
     let meets = "adjacent segments of the lift join with the same lift and the same slope, as the model means it, except at corners where the \
                  velocity jumps";
     if cam.segments().len() > 1 { vec![doubles, meets] } else { vec![doubles] }

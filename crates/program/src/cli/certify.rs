@@ -34,7 +34,7 @@ pub(super) struct Arguments {
     /// Prove all periodic orbits of one impact and of two in one revolution at the speed of --rpm, instead of corner impacts; at every speed of a range, how many there are of one impact.
     #[arg(long, requires = "rpm", conflicts_with = "revolutions")]
     orbits: bool,
-    /// Prove that the motion of a follower that rests on the cam at the speed of --rpm is periodic. The bits are doubled until the proof succeeds.
+    /// Prove the motion that follows a rest on the cam at the speed of --rpm. The bits are doubled where they do not suffice.
     #[arg(long, requires = "rpm", conflicts_with_all = ["revolutions", "orbits"])]
     resting: bool,
     #[command(flatten)]

@@ -150,7 +150,7 @@ fn searched(found: &Located) -> String {
             "{} of the cam{knots}. Orbits of one impact: {}. Orbits of several impacts were looked for in two independent ways. The first \
              follows branches of the orbits that a search finds at {} speeds, each {:.0} % faster than the one before, and the branches of \
              twice the period that begin there ({} stretches of branches). The second fires {VELOCITIES} shots from each corner at speeds \
-             {:.1} % apart. {} Both cover orbits of up to {MOST_IMPACTS} impacts a revolution with no other impact within {:.2} deg of the \
+             {:.1} % apart. {} Both look for orbits of up to {MOST_IMPACTS} impacts a revolution with no other impact within {:.2} deg of the \
              corner. A search of a part of the range finds the same there. Orbits on which the follower sticks are left out: their motion does \
              not depend on where they hit before.",
             words::many(corners as u64, "corner"),

@@ -26,11 +26,8 @@ impl Paged for Run {
         ];
         if let Some(loads) = &self.loads {
             let turns = words::many(loads.loads_over_revolutions, "revolution");
-            let part = if loads.loads_over_revolutions as f64 + 1.0 > *revolutions {
-                "the whole run of "
-            } else {
-                "the last "
-            };
+            let part =
+                if loads.loads_over_revolutions as f64 >= *revolutions { "the whole run of " } else { "the last " };
             lines.push(sentence![
                 "  hardest impact ",
                 (loads.hardest_impact_m_s, Digits::Significant(5)),

@@ -176,7 +176,7 @@ fn rests(attractor: &AttractorRow) -> Option<String> {
             rests.revolutions
         ),
         None => format!(
-            "Where {id} is chaotic, no rest was seen in {} revolutions: rests are rarer than one in {:.0} revolutions, if there are any.",
+            "Where {id} is chaotic, no rest was seen in {} revolutions: with 95 % confidence rests are rarer than one in {:.0} revolutions.",
             rests.revolutions,
             1.0 / rests.rate
         ),
