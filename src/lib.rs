@@ -131,6 +131,7 @@ pub mod inner {
     pub use crate::corner::extrapolation::{Powers, extrapolate};
     pub use crate::file::Unfinished;
     pub use crate::file::held;
+    pub use crate::orbit::branch::onward;
     pub use crate::orbit::chain::{Link, determinant, solve};
     pub use crate::orbit::complete::{OneImpact, joined};
     pub use crate::simulate::contact::{GapAt, Outcome, first_contact};

@@ -134,12 +134,12 @@ impl Homogeneous {
         let count = 8 * half_edge;
         let at = |[x, y]: [Interval; 2]| place([x.middle(), y.middle()], half_edge);
         let corner = |index: usize| point(index, half_edge).map(Interval::from);
-        // The whole image is on the left of the point that it begins after, and on the right of the one that it ends before.
+        // Indices go on around the square. The whole image is on the left of the point that it begins after, and on the right of the one that it ends before.
         let is_right_of = |index: usize| [start, end].iter().all(|of| cross(corner(index), *of).is_positive());
         let is_left_of = |index: usize| [start, end].iter().all(|of| cross(*of, corner(index)).is_positive());
         let (from, to) = (at(start)?.floor() as usize + count, at(end)?.ceil() as usize + count);
-        let first = (0..MOVED).map(|moved| (from - moved) % count).find(|index| is_right_of(*index))?;
-        let last = (0..MOVED).map(|moved| (to + moved) % count).find(|index| is_left_of(*index))?;
+        let first = (0..MOVED).map(|moved| from - moved).find(|index| is_right_of(*index))?;
+        let last = (0..MOVED).map(|moved| to + moved).find(|index| is_left_of(*index))?;
         if !cross(corner(first), corner(last)).is_positive() {
             return None;
         }

@@ -332,7 +332,8 @@ impl<'a> OneSidedMap<'a> {
 
     /// Angle from the corner's original place to the corner's impact, rad; 0 where that impact is not among the events. `None` unless
     /// the events are the orbit's impacts, each on its own segment.
-    fn past_corner(&self, whole: &Cam, section: f64, events: &[Event]) -> Option<f64> {
+    #[doc(hidden)]
+    pub fn past_corner(&self, whole: &Cam, section: f64, events: &[Event]) -> Option<f64> {
         let flights = &self.stretch.flights;
         if events.len() != flights.len() || events.iter().any(|event| event.kind != EventKind::Impact) {
             return None;

@@ -260,9 +260,9 @@ impl Units {
         if self.degrees { angle.to_degrees() } else { angle }
     }
 
-    /// Conversion of the values of a field or column whose name changes in these units; `None` for lengths, which need none.
+    /// Conversion of the values of a field or column by its name in SI units; `None` for lengths, which need none.
     pub fn converted(&self, name: &str) -> Option<Converted> {
-        if name.ends_with("_rad") && self.degrees {
+        if name.ends_with("_rad") {
             Some(Self::angle)
         } else if name.ends_with("_n") {
             Some(|units, force| units.force.told(force))

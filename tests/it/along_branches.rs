@@ -719,6 +719,17 @@ fn a_follower_leaves_at_the_top_and_not_on_a_dwell_that_presses_or_is_slack() {
         let speeds = [0.7 * rpm(rise), 1.4 * rpm(rise)];
         let (_, leaves) = resting(&with(base, gravity, slack), 0.8 * rpm(rise), speeds, SpecialKind::Detachment);
         assert!((leaves.rpm / rpm(rise) - 1.0).abs() < 1e-9, "{base} {gravity}: {}", leaves.rpm);
+        if gravity == 0.0 {
+            // Whatever the stiffness, the spring stays slack on the dwell.
+            let loose = with(base, gravity, slack);
+            let number = following(&loose, "stiffness", [0.5 * stiffness, 2.0 * stiffness], 0.1);
+            let curve = curve(&loose, &leaves, [0.5 * rpm(rise), 2.0 * rpm(rise)], &number);
+            assert_eq!(curve.ends, [End::Range, End::Range], "{base}");
+            for point in &curve.points {
+                let leaves = rpm(rise) * (point.value / stiffness).sqrt();
+                assert!((point.rpm / leaves - 1.0).abs() < 1e-9, "{base}: {point:?}");
+            }
+        }
         let pressed = with(base, gravity, slack - 0.2 * rise);
         let (_, leaves) = resting(&pressed, 0.8 * rpm(rise), speeds, SpecialKind::Detachment);
         assert!((leaves.rpm / rpm(1.2 * rise) - 1.0).abs() < 1e-9, "{base} {gravity}: {}", leaves.rpm);

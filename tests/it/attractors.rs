@@ -443,7 +443,7 @@ fn plain_runs_end_on_what_is_listed() {
     check(10, |case| {
         // Each of thousands of revolutions would be as many swings.
         let swings = case.machine.flight().omega0_squared().sqrt() / case.machine.angular_velocity();
-        if swings > 30.0 {
+        if swings > 12.0 {
             return Ok(());
         }
         let step = common::step(0.2 * case.rpm);

@@ -48,8 +48,10 @@ fn examples(help: &str) -> Vec<String> {
 #[test]
 #[ignore = "slow"]
 fn examples_work_as_written() {
-    /// What `make report` runs, which every landing calls, and what takes longest of all: the report's own study of speeds.
-    const LONG: [&str; 2] = ["corner-impact report", "corner-impact speeds"];
+    /// What `make verify` and `make report` run, which every landing calls, what other tests of this file run, and what takes longest of all:
+    /// the report's own study of speeds.
+    const LONG: [&str; 4] =
+        ["corner-impact verify", "corner-impact report", "corner-impact speeds", "corner-impact claims"];
     let folder = TempDir::new().unwrap();
     std::fs::create_dir(folder.path().join("models")).unwrap();
     for path in ["models", "models/laws"] {
@@ -147,7 +149,6 @@ fn pages_fit_the_width_that_is_asked_for() {
         ("speeds --rpm 600:760 --speeds 40", narrow),
         ("basins --rpm 678 --grid 6x6", narrow),
         ("chaos --rpm 670", narrow),
-        ("claims", narrow),
         ("simulate --rpm 183 --revolutions 5", all),
         ("--help", all),
         ("diagram --help", all),

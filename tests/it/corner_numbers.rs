@@ -381,6 +381,28 @@ fn units_and_roundings_of_a_gap_are_those_of_its_impact() {
     }
 }
 
+/// A run whose event is no impact is another way around, though it has as many events as the orbit.
+#[test]
+fn a_sample_of_other_events_is_none_of_the_orbit() {
+    let model = common::osorio();
+    let (cam, all) = found(&model, [673.2, 673.3], 1);
+    let at = &all[0];
+    let map = OneSidedMap::new(&model, &cam, at, Side::Minus).unwrap();
+    let machine = Machine::new(cam.clone(), &model.follower, TAU / at.period);
+    let mut events: Vec<Event> = Vec::new();
+    let mut motion = machine.start(0.0, at.state).unwrap();
+    let goal = Goal { revolution: 1, cam_angle: 0.0 };
+    let ended = machine.advance(&mut motion, goal, &mut |event: &Event| {
+        events.push(*event);
+        ControlFlow::Continue(())
+    });
+    assert!(ended.unwrap().is_continue() && events.len() == 1, "{events:?}");
+    assert!(map.past_corner(&cam, 0.0, &events).is_some());
+    events[0].kind = EventKind::Stick;
+    assert_eq!(map.past_corner(&cam, 0.0, &events), None);
+    assert_eq!(map.past_corner(&cam, 0.0, &[]), None);
+}
+
 /// Where the nose ends, and how round it is, is nothing to the flank: a follower that comes down on it is where it was, and the corner is not.
 #[test]
 fn an_impact_is_past_the_corner_where_that_is_now() {

@@ -5,7 +5,7 @@ use approx::assert_relative_eq;
 use corner_impact::border_collision::danger::{Danger, DangerKind, Returns};
 use corner_impact::border_collision::directions::Homogeneous;
 use corner_impact::border_collision::feigin::{Scenario, Speeds};
-use corner_impact::border_collision::{LocalMap, classify};
+use corner_impact::border_collision::{LocalMap, LocalOutcome, classify};
 use corner_impact::corner::map::CornerMap;
 use corner_impact::corner::{self, CornerImpact, SideMap, variational};
 use corner_impact::interval::Interval;
@@ -322,4 +322,32 @@ fn every_command_tells_of_the_danger() {
     assert_relative_eq!(event.at.rpm, 60.0, max_relative = 1e-9);
     assert_eq!((event.danger.kind, event.attractors.len()), (DangerKind::Dangerous, 1));
     assert!(page(&surveyed).contains("dangerous"));
+}
+
+/// Motions diverge at the corner impact, and no orbit is stable on one of its sides: what is lost there is no basin.
+#[test]
+fn nothing_is_in_danger_where_one_side_has_no_attractor() {
+    for numbers in [[0.5, 3.0, 0.5, 0.5], [3.0, 0.5, 0.5, 0.5]] {
+        let map = normal_form(numbers);
+        let stable = |outcome: &LocalOutcome| outcome.orbits.iter().filter(|orbit| orbit.stable()).count();
+        let mut sides: Vec<usize> = map.outcomes().iter().filter(|it| it.mu != 0.0).map(stable).collect();
+        sides.sort_unstable();
+        assert!(sides == [0, 1] && map.divergence().is_some(), "{numbers:?}: {sides:?}");
+        assert!(danger(&map).is_none(), "{numbers:?}");
+    }
+}
+
+/// In units a million times smaller the disturbances that return are a million times larger numbers.
+#[test]
+fn disturbances_that_return_are_in_the_units_of_the_map() {
+    let map = normal_form([-0.3, -1.7, 0.9025, 0.9025]);
+    let returns = |map: &LocalMap| danger(map).unwrap().at(Speeds::Slower).next().unwrap().returns.unwrap().position;
+    let scaled = |size: f64| {
+        let side = |side: SideMap| SideMap { a: side.a, b: side.b * size };
+        LocalMap { minus: side(map.minus), plus: side(map.plus), border: (map.border.0, map.border.1 * size) }
+    };
+    let own = returns(&map).unwrap();
+    for size in [1e-6, 1e6] {
+        assert_relative_eq!(returns(&scaled(size)).unwrap(), own * size, max_relative = 1e-3);
+    }
 }

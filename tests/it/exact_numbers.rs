@@ -1,6 +1,6 @@
 //! Do proofs get the decimals that are written, with all their digits and in the units that they are in?
 
-use corner_impact::model::{Model, Numeral};
+use corner_impact::model::{Model, Numeral, finite};
 use serde_json::{Value, json};
 
 const FOLLOWER: &str =
@@ -179,4 +179,14 @@ fn a_changed_number_is_its_double() {
     model.follower.mass = 0.1;
     let told = model.exact();
     assert_eq!((&told["follower"]["mass"], &told["follower"]["stiffness"]), (&json!("0.1"), &json!("100.0")));
+}
+
+/// What a pure number is followed by is no unit that it might be in.
+#[test]
+fn a_pure_number_stands_alone() {
+    assert_eq!(finite(" 0.5 ", ""), Ok(0.5));
+    assert_eq!(finite("0.5 kg", "kg"), Ok(0.5));
+    let [pure, of_mass] = [("0.5 x", ""), ("0.5 x", "kg")].map(|(text, unit)| finite(text, unit).unwrap_err());
+    assert_eq!(pure, "\"0.5 x\" is not a number alone: it is taken in the unit of the model");
+    assert_eq!(of_mass, "\"0.5 x\" is not in kg: write 0.5, or 0.5 kg, if that is meant");
 }

@@ -720,6 +720,40 @@ fn a_follower_may_meet_the_cam_behind_its_top() {
     }
 }
 
+/// `cos t cos 75 deg * 4 - cos 2t` has two tops as high, 150 degrees apart around 0. It is one segment, in which either impact moves.
+#[test]
+fn a_follower_may_meet_a_smooth_cam_behind_its_top() {
+    let (top, bend) = (75.0_f64.to_radians(), 4.0 * 75.0_f64.to_radians().cos());
+    let highest = bend * top.cos() - (2.0 * top).cos();
+    let model = on_cam(1e-3, 1.0, &cosines(-0.01 - highest, &[bend, -1.0]));
+    let branch = follow(&model, 20.0, &free(&model, 20.0), "offset", [-0.02 - highest, 0.02 - highest]);
+    let near = |point: &&BranchPoint| (1e-9..1e-3).contains(&(point.value + highest));
+    let struck: Vec<Vec<f64>> = branch
+        .points
+        .iter()
+        .filter(near)
+        .map(|point| point.orbit.impacts().map(|impact| impact.cam_angle.to_degrees()).collect())
+        .collect();
+    assert!(struck.len() > 1, "{:?}", branch.ends);
+    for angles in struck {
+        assert!(angles.len() == 2 && angles[0] < 75.0 && angles[1] > 285.0, "{angles:?}");
+    }
+}
+
+/// A follower at rest is followed to where the cam ends, on either side of the range.
+#[test]
+fn orbits_at_rest_end_where_there_is_no_such_cam() {
+    let own = crate::common::osorio().with_number("follower.rest_position", 10.0).unwrap();
+    let model = own.with_number("follower.damping", 1.0).unwrap();
+    let allowed = |name: &str| format!("cam.{name}_deg must be a finite number from 0 to 180");
+    let ends =
+        |name: &str, range: [f64; 2]| follow(&model, 300.0, &free(&model, 300.0), &format!("{name}_deg"), range).ends;
+    let [_, high] = ends("nose_end", [112.0, 208.0]);
+    assert_eq!(high, End::Edge { largest: true, why: allowed("nose_end") });
+    let [low, _] = ends("flank_start", [-30.0, 70.0]);
+    assert_eq!(low, End::Edge { largest: false, why: allowed("flank_start") });
+}
+
 /// Without a spring a follower without weight rests wherever it is: no value of the cam's offset is one at which it comes to be touched.
 #[test]
 fn a_follower_without_a_spring_has_no_curve_of_touches() {

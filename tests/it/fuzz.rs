@@ -210,7 +210,7 @@ fn is_what_sixty_digits_say((case, aim, units): &Planted) -> TestCaseResult {
 #[test]
 #[ignore = "slow"]
 fn flights_are_what_sixty_digits_say() {
-    check_all(planted(cases_of_few_laws()), 300, is_what_sixty_digits_say);
+    check_all(planted(cases_of_few_laws()), 150, is_what_sixty_digits_say);
     let flights = FLIGHTS.load(Ordering::Relaxed);
     let undecided = UNDECIDED.load(Ordering::Relaxed);
     println!("{flights} flights are right, {undecided} undecided");
@@ -394,5 +394,5 @@ fn a_command_line_ends_with_a_word() {
     for line in include_str!("corpus/commands.txt").lines() {
         ends_with_a_word(&line.split(' ').map(String::from).collect::<Vec<_>>()).unwrap();
     }
-    check_all(command_lines(), 300, |line| ends_with_a_word(line));
+    check_all(command_lines(), 200, |line| ends_with_a_word(line));
 }

@@ -12,7 +12,8 @@ use corner_impact::border_collision::feigin::Scenario;
 use corner_impact::cam::Cam;
 use corner_impact::flight::{Flight, State};
 use corner_impact::inner::{
-    GapAt, Link, OneImpact, Outcome, Powers, Unfinished, determinant, extrapolate, first_contact, held, joined, solve,
+    GapAt, Link, OneImpact, Outcome, Powers, Unfinished, determinant, extrapolate, first_contact, held, joined, onward,
+    solve,
 };
 use corner_impact::interval::Interval;
 use corner_impact::model::{Model, OSORIO_2008};
@@ -325,4 +326,15 @@ fn formulas_are_set_and_words_are_left() {
 #[test]
 fn a_terminal_shows_no_dollars() {
     assert_eq!(formula::typed("at $q$ = 1 with $B_tilde$ for $5"), "at q = 1 with B_tilde for $5");
+}
+
+/// A curve goes on the wider way around a kink, and nowhere that might be where it came from.
+#[test]
+fn a_curve_goes_on_where_it_did_not_come_from() {
+    assert_eq!(onward(vec![2.0, -0.1]), Some(2.0));
+    assert_eq!(onward(vec![0.3, -1.6]), Some(-1.6));
+    assert_eq!(onward(vec![0.02, 0.11]), Some(0.11));
+    for unclear in [vec![], vec![1.0], vec![0.3, 1.4], vec![-2.0, 2.0], vec![0.022, 0.1], vec![0.1, 0.2, 3.0]] {
+        assert_eq!(onward(unclear.clone()), None, "{unclear:?}");
+    }
 }

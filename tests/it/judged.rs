@@ -11,6 +11,7 @@ use corner_impact::orbit::runs::{AfterRelease, LongRuns, RunOutcome};
 use corner_impact::progress::Unwatched;
 use corner_impact::simulate::{ImpactTally, Machine, Motion, SimulateError};
 use corner_impact::study::attractors::{AttractorsAtValue, Cause, Resolution, has_reached};
+use corner_impact::study::basins::{SectionStarts, States};
 use corner_impact::study::design::contact::Separation;
 use corner_impact::study::speeds::{Off, SpeedSurvey, passed_once};
 use corner_impact::study::survey::{
@@ -430,6 +431,30 @@ fn what_is_undecided_is_not_come_to() {
     let [undecided] = &here.attractors[..] else { panic!("{here:?}") };
     assert_eq!(undecided.ending.kind(), Kind::Undecided);
     assert_eq!(here.come_to(&machine, &undecided.motion).unwrap(), None);
+}
+
+/// Shares are of the starts of the sample that could be run. A run from elsewhere that failed takes nothing from them.
+#[test]
+fn a_start_that_could_not_be_run_is_none_of_the_sample() {
+    let machine = machine(&common::osorio(), 700.0);
+    let mut here = AttractorsAtValue::new(&machine, &Sample::Spread(4), Budget::SURVEY).unwrap();
+    assert_eq!((here.run(), here.sampled), (4, 4));
+    let failure = machine.start(0.0, State { position: -1.0, velocity: 0.0 }).unwrap_err();
+    here.failed = [0, 3, 4, 5].map(|start| (start, failure)).to_vec();
+    assert_eq!(here.run(), 2);
+    here.failed = (0..4).map(|start| (start, failure)).collect();
+    assert_eq!(here.run(), 1, "a share of none is one of one");
+}
+
+/// A given start below the cam is one that could not be run. Starts below the cam are counted where a grid has them.
+#[test]
+fn a_start_that_is_given_below_the_cam_is_one_that_failed() {
+    let machine = machine(&common::osorio(), 700.0);
+    let states = [0.6, -1.0, 0.7].map(|position| State { position, velocity: 0.0 }).to_vec();
+    let starts = SectionStarts::Given(States { cam_angle: 0.0, states });
+    let budget = Budget { transient: 100, record: 16, longest: 4, patience: 0 };
+    let found = starts.basins(&machine, budget, Some(1), &Unwatched).unwrap();
+    assert_eq!((found.starts, found.failed, found.below_cam), (2, 1, 0));
 }
 
 /// A motion that a run has reached is not asked of a neighbour once more. What only a run that began on it has is.

@@ -362,7 +362,7 @@ fn parts_of_ranges_have_their_parts_of_the_corner_impacts() {
         ("osorio-2008", [690.0, 760.0], 4, 8),
         ("persistence", [450.0, 600.0], 2, 2),
         ("laws/program", [2100.0, 2500.0], 1, 3),
-        ("laws/polynomial", [300.0, 800.0], 1, 20),
+        ("laws/polynomial", [340.0, 420.0], 1, 10),
         ("laws/rectified-sine", [13.0, 20.0], 1, 2),
         ("laws/table-quintic", [690.0, 694.0], 1, 3),
     ];

@@ -84,7 +84,7 @@ fn broken_tables_and_toml_are_shown() {
     );
     let comma = common::osorio_text(&[]).replacen("mass = ", "mass = 0,1", 1);
     assert!(complaint("comma.toml", &comma).contains("help: did you mean a decimal point?"));
-    for other in ["mass = 12kg #", "mass = \"1\", #"] {
+    for other in ["mass = 12kg #", "mass = \"1\", #", "mass = 12] #"] {
         let other = common::osorio_text(&[]).replacen("mass = ", other, 1);
         let message = complaint("other.toml", &other);
         assert!(message.contains("not valid TOML") && !message.contains("decimal point"), "{message}");

@@ -45,6 +45,31 @@ fn on_top(ratio: f64) -> PeriodicOrbit {
     all.into_iter().find(|orbit| matches!(orbit.course, Course::Impacts(_)) && is_on_top(orbit)).expect("an orbit")
 }
 
+/// In another unit of time multipliers are the same numbers, known as well: the speeds at impacts are known by lifts over that unit.
+#[test]
+fn multipliers_are_known_as_well_in_any_unit_of_time() {
+    let own = crate::common::osorio().with_number("follower.damping", 5.0).unwrap();
+    let told = |power: i32| {
+        let unit = 2.0_f64.powi(power);
+        let numbers = [("stiffness", unit * unit), ("damping", unit), ("gravity", unit * unit)];
+        let scaled = numbers.into_iter().fold(own.clone(), |model, (name, by)| {
+            let path = format!("follower.{name}");
+            let now = model.numbers().find(|(known, _)| *known == path).unwrap().1;
+            model.with_number(&path, now * by).unwrap()
+        });
+        let all = found(&scaled, 700.0 * unit, None).orbits;
+        let errors = all.iter().filter(|orbit| matches!(orbit.course, Course::Impacts(_)));
+        errors.map(|orbit| orbit.judgement.error).collect::<Vec<f64>>()
+    };
+    let once = told(0);
+    assert!(!once.is_empty() && once.iter().all(|error| (1e-16..1e-10).contains(error)), "{once:?}");
+    for power in [-12, 12] {
+        for (one, other) in once.iter().zip(told(power)) {
+            assert!((one / other - 1.0).abs() < 0.01, "{power}: {one:e} {other:e}");
+        }
+    }
+}
+
 /// It leaves at g T/2 and comes back at as much, so that `tr M = 2 + 4 c''/g` with `c'' = -a w^2`, and det M = 1: a pair on the unit
 /// circle up to the ratio 1, and beyond it two real ones. Next to 1 a part in 1e12 is told, one of 1e-16 is not.
 #[test]

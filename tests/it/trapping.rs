@@ -141,7 +141,7 @@ fn ends_of_the_hat_have_names() {
 #[test]
 #[ignore = "slow"]
 fn slow_spirals_are_not_called_chaos() {
-    for less in [1e-5, 1e-6, 1e-7, 1e-9, 1e-12, 0.0] {
+    for less in [1e-5, 1e-9, 0.0] {
         for traces in [[0.9, 0.8], [0.9, -0.7], [-0.4, 1.2], [1.7, -1.1], [0.3, 0.31]] {
             let map = common::normal_form(traces, [1.0 - less; 2]);
             for (index, start) in [[0.0, 0.0], [0.4, 0.1], [3.0, -2.0]].into_iter().enumerate() {

@@ -300,14 +300,31 @@ fn units_that_make_no_sense_are_told() {
         ("[units]\nmass = \"t\"\n", "preload = -1", "follower.preload = -1: must be a finite number, 0 or more"),
         ("", "preload = 1\nrest_position = 0", "is there beside follower.rest_position"),
         ("", "", "follower.rest_position is missing"),
+        ("", "", "; or give follower.preload, the force of the spring where the lift is lowest"),
     ] {
         let told = wrong(units, spring);
         assert!(told.contains(says), "{told}");
     }
+    // A rest position that is there is only wrong.
+    let stiff = wrong("", "rest_position = \"stiff\"");
+    assert!(stiff.contains("rest_position = \"stiff\"") && !stiff.contains("or give"), "{stiff}");
     let loose = valve("", ["0.11", "0", preload, "0.01"]);
     assert!(Model::parse("v.toml", &loose).unwrap_err().to_string().contains("follower.stiffness is 0"));
     let heavy = valve("[units]\nmass = \"t\"\n", ["1e308", "1", preload, "0.01"]);
     assert!(Model::parse("v.toml", &heavy).unwrap_err().to_string().contains("too large"));
     let output = corner_impact(["cam", "models/osorio-2008.toml", "--set", "preload=3"]);
     assert_eq!(output.status.code(), Some(2));
+}
+
+/// A length of the model that is typed in another unit of length is converted to the file's.
+#[test]
+fn lengths_are_converted_to_the_unit_of_the_file() {
+    let of =
+        |units: &str| Model::parse("valve.toml", &valve(units, ["0.11", "30000", "preload = 220", "0.01"])).unwrap();
+    let [metres, inches] = ["", "[units]\nlength = \"in\"\n"].map(|units| of(units).units);
+    for path in ["follower.rest_position", "cam.base_radius"] {
+        assert_eq!(metres.in_own(path, 400.0, "mm"), Some(0.4), "{path}");
+        assert_eq!(inches.in_own(path, 508.0, "mm"), Some(20.0), "{path}");
+        assert_eq!(metres.in_own(path, 1.0, "kg"), None, "{path}");
+    }
 }

@@ -47,6 +47,8 @@ pub(crate) use free::touches;
 pub(crate) use perturbed::Event;
 pub use special::Special;
 pub use special::{Bifurcation, SpecialKind};
+#[doc(hidden)]
+pub use sticking_curve::onward;
 
 /// The followed parameter, its range, and the limits of a walk.
 #[derive(Clone, Debug, PartialEq)]

@@ -169,7 +169,6 @@ impl Walk<'_> {
         /// together.
         const LEAST: f64 = 0.002;
         const RATIO: f64 = 1.5;
-        const CLOSER: f64 = 0.2;
         let kink = &self.from.unknowns;
         let away = |point: &BranchPoint| {
             DVector::from_vec(vec![point.rpm / self.rest.spans[0], point.value / self.rest.spans[1]]) - kink
@@ -195,13 +194,7 @@ impl Walk<'_> {
                 passed.push(halve([from, to], Width::Halvings(BINARY_DIGITS), is_beyond).ok()?[0]);
             }
         }
-        passed.sort_by(|one, two| one.abs().total_cmp(&two.abs()));
-        // Which of the two is which is certain only where one is much nearer to where it came from.
-        let [came, onward] = passed[..] else { return None };
-        if came.abs() > CLOSER * onward.abs() {
-            return None;
-        }
-        let along = direction(onward);
+        let along = direction(onward(passed)?);
         curve::closed(&self.rest, kink, &along, radius, kink + &along * radius).ok()
     }
 
@@ -257,6 +250,16 @@ impl Walk<'_> {
 /// The corners at which the acceleration of an impact jumps, and with it the slope of a curve.
 fn kinks(machine: &Machine) -> impl Iterator<Item = Corner> {
     machine.cam().corners().iter().copied().filter(|corner| corner.jump_order <= 2)
+}
+
+/// The one of two ways, as angles from where a curve came from, that leads on: the wider. None where the other is not much nearer to where it
+/// came from, so that either may be the one that it came by.
+pub fn onward(mut ways: Vec<f64>) -> Option<f64> {
+    /// Most of the wider angle that the other is.
+    const CLOSER: f64 = 0.2;
+    ways.sort_by(|one, two| one.abs().total_cmp(&two.abs()));
+    let [came, onward] = ways[..] else { return None };
+    (came.abs() <= CLOSER * onward.abs()).then_some(onward)
 }
 
 /// The impacts that are tracked one by one; those after them are at no corner but the last.

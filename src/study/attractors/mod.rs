@@ -161,7 +161,7 @@ pub fn attractors(
     let mut grid: Vec<GridValue> = values.par_iter().map(at).collect();
     // Beyond the range there may be no machine.
     grid.retain(|at| (range[0] <= at.value && at.value <= range[1]) || !matches!(at.found, Err(RunError::Family(_))));
-    let inside = grid.iter().find(|at| range[0] <= at.value && at.value <= range[1]).or(grid.first());
+    let inside = grid.iter().find(|at| range[0] <= at.value).or(grid.first());
     if let Some(GridValue { value, found: Err(error) }) = inside
         && grid.iter().all(|at| at.found.is_err())
     {

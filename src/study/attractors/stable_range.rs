@@ -93,8 +93,8 @@ impl StableRange {
         let points = self.ends.iter().flatten().filter_map(|change| change.point.as_deref());
         let at = |point: &BranchPoint| {
             let alone = Branch { points: vec![point.clone()], ends: [End::Range, End::Range] };
-            // For one step only the width counts; at a value of 0, the width of the grid's steps.
-            let far = BEYOND.0 * point.value.abs().max(step);
+            // One step, in units of the value; at a value of 0, of the grid's step.
+            let far = point.value.abs().max(step);
             branch::doubled(&over.family, &following(over, [-far, far]), &[alone])
         };
         points.flat_map(at).filter(|(_, orbit)| !is_unstable(orbit)).collect()

@@ -311,7 +311,7 @@ impl<'a> Contact<'a> {
             let here = self.least(rpm(omega));
             let next = self.root(here.segment, &here.lift, from);
             // Not on a dwell, where N may be 0 as well.
-            if here.value <= 0.0 && next.is_finite() {
+            if next.is_finite() {
                 at = here;
             }
             if !(next < omega) {

@@ -73,7 +73,7 @@ impl FromStr for Need {
         // "4500rpm" is two words.
         let apart = |word| {
             let (number, unit) = parted(word);
-            if number.is_empty() || unit.starts_with(',') { [word, ""] } else { [number, unit] }
+            if unit.starts_with(',') { [word, ""] } else { [number, unit] }
         };
         let words = text.split_whitespace().flat_map(apart).filter(|word| !word.is_empty());
         let words: Vec<&str> = words.collect();
@@ -370,11 +370,9 @@ pub(super) fn find(of: &Changed<'_>, need: &Need, lever: Lever) -> Result<Found,
         let tried = if need.what == What::NoSeparation { "" } else { ", of those tried," };
         return Ok(told_stuck(none(format!("no {lever} {side} {last:.1e} {unit}{tried} does it, the others kept"))));
     };
-    // A preload moves the spring's rest position away from the lowest lift; changes below the rounding of that position are hidden.
-    let hidden = if lever == Lever::Preload { stiffness * of.lowest.abs() } else { 0.0 };
     let before = match first.checked_sub(1) {
         // If a tiny value already meets the need, there is no least value to find.
-        Some(before) if values[before] == 0.0 && does(width * values[first].max(hidden))? => None,
+        Some(before) if values[before] == 0.0 && does(width * values[first])? => None,
         Some(before) => Some(edge(values[before], values[first])?),
         None => None,
     };
@@ -399,8 +397,6 @@ pub(super) fn find(of: &Changed<'_>, need: &Need, lever: Lever) -> Result<Found,
             let (value, unit) = told(values[first]);
             let (value, note) = if is_upper_bound {
                 (values[first], format!("as far as {value:.3e} {unit} is looked at, any will do"))
-            } else if first > 0 && values[first - 1] == 0.0 {
-                (0.0, "any above 0 will do".into())
             } else {
                 (values[first], "as little as there can be will do".into())
             };
