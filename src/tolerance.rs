@@ -53,6 +53,9 @@ table! {
     /// Closure of the rows of a table after one turn.
     TURN_CLOSED = 1e-2, "of the mean gap between two rows: 2 pi to five digits is a thousandth of a degree off, and two rows that \
         were meant to be apart are nowhere as near";
+    /// Lift above the base circle at which the open part of a lobe may begin or end.
+    ON_BASE = 1e-3, "of the rise: lifts of 10 mm are rounded to 0.01 mm at most; where an opening is taken at a checking height, a twentieth of \
+        a millimetre, the ends are further off";
     /// Distance below which a row and a knot are the same.
     SAME_KNOT = 1e-6, "of the mean gap: a piece as short would make coefficients of 1e30 out of roundings";
     /// Curvature that the noise of rows in a dwell may hide.

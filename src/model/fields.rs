@@ -91,7 +91,11 @@ impl Fields {
 
     /// Path and value of every number in `tables`.
     pub(super) fn numbers_in<'a>(&'a self, tables: &[&str]) -> impl Iterator<Item = (&'a str, f64)> {
-        let inside = |path: &str| path.split_once('.').is_some_and(|(table, _)| tables.contains(&table));
+        /// Numbers that say how a table is read, and are none of the machine's.
+        const OF_READING: [&str; 3] = ["cam.angle_column", "cam.lift_column", "cam.turn_deg"];
+        let inside = |path: &str| {
+            path.split_once('.').is_some_and(|(table, _)| tables.contains(&table)) && !OF_READING.contains(&path)
+        };
         self.fields.iter().filter_map(move |(path, field)| match field.value {
             Value::Number(number) if inside(path) => Some((&**path, number)),
             _ => None,
@@ -189,6 +193,16 @@ impl Fields {
             Value::Text(text) if text.chars().count() <= LONGEST => Ok(text),
             Value::Text(_) => Err(self.reject(path, format!("must have {LONGEST} characters or fewer"))),
             _ => Err(self.reject(path, "must be text in quotes")),
+        }
+    }
+
+    /// Reads `true` or `false`.
+    pub(super) fn flag(&mut self, path: &str) -> Result<bool, ModelError> {
+        self.take(path)?;
+        match self.fields.get(path).map(|field| &*field.written) {
+            Some("true") => Ok(true),
+            Some("false") => Ok(false),
+            _ => Err(self.reject(path, "must be true or false")),
         }
     }
 

@@ -1,5 +1,6 @@
 //! Measured lifts: rows of angle and lift, in a file of their own or in the model file, read whole and checked row by row.
 
+use std::borrow::Cow;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -7,7 +8,7 @@ use serde::Serialize;
 
 use super::ModelError;
 use super::fields::{Fields, Pair, Value};
-use super::rows::{MOST_ROWS, Table, TableLayout, TableRow};
+use super::rows::{AngleUnit, Chosen, MOST_ROWS, Table, TableLayout, TableRow};
 use super::toml;
 use super::units::{LENGTHS, Unit, Units};
 use crate::file;
@@ -131,6 +132,9 @@ pub struct Reading {
     pub(crate) written: Vec<[String; 2]>,
     /// The unit of angles in the table.
     pub angle_unit: &'static str,
+    /// Degrees of the table in one turn of the cam, where these are not 360.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub turn_deg: Option<f64>,
     /// The layout of its text; none where the model has the rows itself.
     #[serde(flatten)]
     pub layout: Option<TableLayout>,
@@ -138,6 +142,15 @@ pub struct Reading {
     pub rows: usize,
     /// Angle of the first row as written, degrees.
     pub first_deg: f64,
+    /// Whether the rows came with falling angles.
+    pub falls: bool,
+    /// Number of rows that repeated the one before and were dropped.
+    pub merged: usize,
+    /// Whether the rows are half a lobe and its mirror image.
+    #[serde(rename = "mirrored")]
+    pub is_mirrored: bool,
+    /// Number of rows that were added on the base circle.
+    pub filled: usize,
     /// Whether the last row repeated the first and was dropped.
     pub repeats_first: bool,
     /// Step of the decimal grid that all lifts lie on, in the table's unit; `None` if no such step is above the rounding of a
@@ -182,7 +195,7 @@ pub(super) fn read(fields: &mut Fields) -> Result<TableProfile, ModelError> {
         }
         let has_lines = pairs.iter().all(|(_, line)| line.is_some());
         let text = fields.source().to_owned();
-        let table = Table { file: fields.file().into(), text: &text, has_lines, in_radians: false };
+        let table = Table { file: fields.file().into(), text: &text, has_lines, angles: AngleUnit::DEGREES };
         let row = |(index, ([angle_deg, lift], line)): (usize, Pair)| {
             let line = line.unwrap_or(index + 1);
             if angle_deg.is_finite() && lift.is_finite() {
@@ -200,10 +213,16 @@ pub(super) fn read(fields: &mut Fields) -> Result<TableProfile, ModelError> {
     let shown = path.display().to_string();
     let text = file::text_of_any_age(&path)
         .map_err(|error| fields.reject("cam.file", format!("cannot be read at {shown}: {error}")))?;
-    // Spreadsheets begin UTF-8 with a byte order mark.
+    // Spreadsheets begin UTF-8 with a byte order mark; old ones end lines with a carriage return alone.
     let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
-    let table = Table { file: shown, text, has_lines: true, in_radians: false };
-    let (rows, layout) = table.rows()?;
+    let text = if text.contains('\r') {
+        Cow::Owned(text.replace("\r\n", "\n").replace('\r', "\n"))
+    } else {
+        Cow::Borrowed(text)
+    };
+    let table = Table { file: shown, text: &text, has_lines: true, angles: AngleUnit::DEGREES };
+    let chosen = [Chosen::read(fields, "cam.angle_column")?, Chosen::read(fields, "cam.lift_column")?];
+    let (rows, layout) = table.rows(&chosen)?;
     table.profile(fields, (Some(file), spline), rows, Some(layout))
 }
 
@@ -219,6 +238,24 @@ fn unit(fields: &mut Fields, path: &str, names: &[&str], header: Option<usize>) 
         Some(other) => Err(fields.reject(path, format!("is not what the header of the table says: {}", names[other]))),
         None => Ok(chosen),
     }
+}
+
+/// Degrees of the table in one turn of the cam.
+fn turn_deg(fields: &mut Fields) -> Result<f64, ModelError> {
+    let path = "cam.turn_deg";
+    fields.may_hold(path);
+    match fields.fields.get(path).map(|field| &field.value) {
+        None => Ok(360.0),
+        Some(Value::Number(turn)) if *turn > 0.0 && turn.is_finite() => Ok(*turn),
+        Some(_) => Err(fields.reject(path, "must be a finite number above 0")),
+    }
+}
+
+/// Whether the rows are half a lobe.
+fn mirrored(fields: &mut Fields) -> Result<bool, ModelError> {
+    let path = "cam.mirrored";
+    fields.may_hold(path);
+    if fields.has(path) { fields.flag(path) } else { Ok(false) }
 }
 
 /// Reads the fields of `spline = "smoothing"`. `step` is the step of the lifts in the table's unit; `in_model` is that unit as a multiple
@@ -330,32 +367,49 @@ impl Table<'_> {
         layout: Option<TableLayout>,
     ) -> Result<TableProfile, ModelError> {
         let named = layout.as_ref();
-        let angle =
-            unit(fields, "cam.angle_unit", &["deg", "rad"], named.and_then(|named| named.radians).map(usize::from))?;
+        let index = unit(fields, "cam.angle_unit", &AngleUnit::NAMES, named.and_then(|named| named.angle))?;
+        self.angles = AngleUnit { index, turn_deg: turn_deg(fields)? };
         let of_model = Units::read(fields)?.length;
         let named_length = named.and_then(|named| named.length);
+        if let Some((line, word)) = named.and_then(|named| named.unread.as_ref()).filter(|_| !fields.has("cam.unit")) {
+            let words =
+                "is a unit of length that no column is said to be in: say which the lifts are in, by unit in [cam]";
+            return Err(self.reject(*line, "title", word, words.into()));
+        }
         let named_length = named_length
             .or_else(|| LENGTHS.iter().position(|unit| *unit == of_model).filter(|_| !fields.has("cam.unit")));
         let unit = &LENGTHS[unit(fields, "cam.unit", &LENGTHS.each_ref().map(Unit::name), named_length)?];
         let in_model = unit.in_parts_of(&of_model);
         let step = grid(&rows);
-        let first_deg =
-            rows.first().map_or(0.0, |row| if angle == 1 { row.angle_deg.to_degrees() } else { row.angle_deg });
         for row in &mut rows {
             row.lift = in_model.inside(row.lift);
-            if angle == 1 {
-                row.angle_deg = row.angle_deg.to_degrees();
-            }
+            row.angle_deg = self.angles.degrees(row.angle_deg);
         }
-        self.in_radians = angle == 1;
+        let first_deg = rows.first().map_or(0.0, |row| row.angle_deg);
+        let falls = rows.windows(2).filter(|pair| pair[1].angle_deg < pair[0].angle_deg).count();
+        let falls = 2 * falls > rows.len();
+        if falls {
+            rows.reverse();
+        }
+        let read = rows.len();
+        // Segments that are given one after the other repeat the row between them.
+        rows.dedup_by(|row, before| row.angle_deg == before.angle_deg && row.lift == before.lift);
+        let merged = read - rows.len();
+        let is_mirrored = mirrored(fields)?;
+        fields.may_hold("cam.outside");
+        let fills = fields.has("cam.outside") && fields.choice("cam.outside", &[("base", true)])?;
         let mut written = Vec::new();
-        if angle == 0 && rows.len() <= MOST_WRITTEN {
+        let is_whole = self.angles.is_of_cam() && !(is_mirrored || fills || falls || merged > 0);
+        if is_whole && rows.len() <= MOST_WRITTEN {
             written = match (named, fields.fields.get("cam.rows")) {
                 (Some(layout), _) => rows.iter().filter_map(|row| self.cells(layout, row.line)).collect(),
                 (None, field) => field.map_or_else(Vec::new, |field| toml::pairs(&field.written)),
             };
         }
-        let repeats_first = self.turned(&mut rows)?;
+        if is_mirrored {
+            self.mirror(fields, &mut rows)?;
+        }
+        let (repeats_first, filled) = self.turned(fields, &mut rows, fills)?;
         let fewest = if spline == Kind::Smoothing { FEWEST_SMOOTHED } else { FEWEST_ROWS };
         if rows.len() < fewest {
             let words = format!("{} different angles; {fewest} to {MOST_ROWS} are needed", rows.len());
@@ -371,18 +425,107 @@ impl Table<'_> {
             unit: unit.name().to_owned(),
             in_model,
             written,
-            angle_unit: ["deg", "rad"][angle],
+            angle_unit: self.angles.name(),
+            turn_deg: Some(self.angles.turn_deg).filter(|turn| *turn != 360.0),
             layout,
             rows: rows.len(),
             first_deg,
+            falls,
+            merged,
+            is_mirrored,
+            filled,
             repeats_first,
             step,
         };
         Ok(TableProfile { file, spline, rows: rows.into(), reading: Arc::new(reading) })
     }
 
-    /// Orders the rows of one turn from 0 to below 360, from any first angle. Returns whether the last row repeated the first.
-    fn turned(&self, rows: &mut Vec<TableRow>) -> Result<bool, ModelError> {
+    /// Adds the mirror image of half a lobe about its nose, the row of the greatest lift at one of the ends.
+    fn mirror(&self, fields: &Fields, rows: &mut Vec<TableRow>) -> Result<(), ModelError> {
+        let highest = rows.iter().copied().reduce(|highest, row| if row.lift > highest.lift { row } else { highest });
+        let (Some(first), Some(last), Some(highest)) = (rows.first().copied(), rows.last().copied(), highest) else {
+            return Ok(());
+        };
+        let image = |nose: f64| move |row: &TableRow| TableRow { angle_deg: 2.0 * nose - row.angle_deg, ..*row };
+        let slack = tolerance::TURN_CLOSED.value * 360.0 / rows.len() as f64;
+        if last.angle_deg - first.angle_deg > 180.0 + slack {
+            let words = format!(
+                "is asked of rows over {} degrees: half a lobe has 180 at most",
+                last.angle_deg - first.angle_deg
+            );
+            return Err(fields.reject("cam.mirrored", words));
+        }
+        // What is half a turn from the nose is its own image.
+        let is_other = |row: &TableRow| {
+            let from = (row.angle_deg - highest.angle_deg).abs();
+            from > 0.0 && from < 180.0 - slack
+        };
+        if highest.lift == first.lift {
+            let images: Vec<TableRow> = rows.iter().filter(|row| is_other(row)).map(image(first.angle_deg)).collect();
+            rows.splice(0..0, images.into_iter().rev());
+        } else if highest.lift == last.lift {
+            let images: Vec<TableRow> =
+                rows.iter().rev().filter(|row| is_other(row)).map(image(last.angle_deg)).collect();
+            rows.extend(images);
+        } else {
+            let words =
+                format!("needs the nose, the greatest lift, at one end of the rows: it is on {}", self.place(&highest));
+            return Err(fields.reject("cam.mirrored", words));
+        }
+        Ok(())
+    }
+
+    /// Adds rows on the base circle over the widest gap, as far apart as the others are. Returns their number.
+    fn fill(&self, fields: &Fields, rows: &mut Vec<TableRow>) -> Result<usize, ModelError> {
+        let Some(first) = rows.first().copied() else { return Ok(0) };
+        let next = |index: usize| {
+            rows.get(index + 1).map_or(TableRow { angle_deg: first.angle_deg + 360.0, ..first }, |row| *row)
+        };
+        let mut gaps: Vec<f64> = (0..rows.len()).map(|index| next(index).angle_deg - rows[index].angle_deg).collect();
+        let widest = (0..rows.len()).max_by(|one, two| gaps[*one].total_cmp(&gaps[*two])).unwrap_or_default();
+        let (before, after, gap) = (rows[widest], next(widest), gaps[widest]);
+        let middle = gaps.len() / 2;
+        let (_, median, _) = gaps.select_nth_unstable_by(middle, f64::total_cmp);
+        let count = ((gap / *median).round() as usize).saturating_sub(1).min(MOST_ROWS - rows.len().min(MOST_ROWS));
+        let lifts = rows.iter().map(|row| row.lift);
+        let (base, top) =
+            lifts.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), lift| (low.min(lift), high.max(lift)));
+        let little = tolerance::ON_BASE.value * (top - base);
+        // From the gap inwards on either side; a rise from the circle begins with little and goes on with more.
+        let inwards = |from: usize, back: bool| {
+            [0, 1, 2].map(|step| rows[(from + if back { rows.len() - step } else { step }) % rows.len()].lift)
+        };
+        let is_off = |[one, two, three]: [f64; 3]| {
+            one - base > little || (two - one).abs() > little && (two - one).abs() > 0.5 * (three - two).abs()
+        };
+        let sides = [(widest, before, true), ((widest + 1) % rows.len(), after, false)];
+        if count > 0
+            && rows.len() >= FEWEST_ROWS
+            && let Some((_, row, _)) = sides.into_iter().find(|(from, _, back)| is_off(inwards(*from, *back)))
+        {
+            let words = format!(
+                "is asked of rows that do not begin and end on the base circle: the lift on {} is {} above the lowest, or does not rise from it \
+                 smoothly",
+                self.place(&row),
+                row.lift - base
+            );
+            return Err(fields.reject("cam.outside", words));
+        }
+        let added = (1..=count).map(|index| TableRow {
+            angle_deg: before.angle_deg + gap * index as f64 / (count + 1) as f64,
+            lift: base,
+            line: before.line,
+        });
+        let added: Vec<TableRow> = added.collect();
+        rows.splice(widest + 1..widest + 1, added);
+        rows.iter_mut().for_each(|row| row.angle_deg = row.angle_deg.rem_euclid(360.0) % 360.0);
+        rows.sort_by(|one, two| one.angle_deg.total_cmp(&two.angle_deg));
+        Ok(count)
+    }
+
+    /// Orders the rows of one turn from 0 to below 360, from any first angle, and fills the base circle if that is asked for. Returns whether the
+    /// last row repeated the first, and how many were added.
+    fn turned(&self, fields: &Fields, rows: &mut Vec<TableRow>, fills: bool) -> Result<(bool, usize), ModelError> {
         /// Smallest fall of the angle that begins a new turn, degrees.
         const BACK: f64 = 180.0;
         let mut turns = 0.0;
@@ -404,7 +547,9 @@ impl Table<'_> {
             if row.angle_deg - first > 360.0 + slack {
                 let [from, to] = [first - turns, first + 360.0 - turns].map(|angle| self.shown(angle));
                 let words = format!("must be within a turn of the first row, from {from} to {to}");
-                return Err(self.reject_angle(row.line, written, words));
+                let twice = rows.last().is_some_and(|last| last.angle_deg - first <= 2.0 * (360.0 + slack));
+                let meant = twice.then(|| "are these degrees of a crank? then say turn_deg = 720 in [cam]".to_owned());
+                return Err(self.reject_angle(row.line, written, words).meaning(meant));
             }
         }
         let last = rows.last().copied().filter(|last| last.angle_deg - first >= 360.0 - slack);
@@ -420,25 +565,25 @@ impl Table<'_> {
             let [before, row] = [&pair[0], &pair[1]].map(|row| (row, row.angle_deg));
             self.in_order([before, row], false)
         })?;
+        let filled = if fills { self.fill(fields, rows)? } else { 0 };
         if rows.len() >= FEWEST_ROWS {
             self.even(rows)?;
         }
-        Ok(last.is_some())
+        Ok((last.is_some(), filled))
     }
 
     fn place(&self, row: &TableRow) -> String {
         format!("{} {}", if self.has_lines { "line" } else { "row" }, row.line)
     }
 
-    /// Converts an angle, degrees, to the table's unit, to the digits that survive a conversion there and back.
+    /// An angle, degrees of the cam, as the table has it.
     fn shown(&self, angle_deg: f64) -> f64 {
-        let shown = if self.in_radians { format!("{:.14e}", angle_deg.to_radians()).parse().ok() } else { None };
-        shown.unwrap_or(angle_deg)
+        self.angles.told(angle_deg)
     }
 
     fn reject_angle(&self, line: usize, angle_deg: f64, words: String) -> ModelError {
-        let field = if self.in_radians { "angle_rad" } else { "angle_deg" };
-        self.reject(line, field, &self.shown(angle_deg).to_string(), words)
+        let field = format!("angle_{}", self.angles.name());
+        self.reject(line, &field, &self.shown(angle_deg).to_string(), words)
     }
 
     /// Refuses a row that is not above the one before it; each comes with its angle as written, degrees.
@@ -449,7 +594,7 @@ impl Table<'_> {
             return Ok(());
         }
         let repeats = row.angle_deg >= before.angle_deg;
-        let what = if repeats { "repeats the angle of the row before" } else { "angles must rise" };
+        let what = if repeats { "repeats the angle of the row before with another lift" } else { "angles must rise" };
         let of_turn = if begins_turn { " less a turn" } else { "" };
         let words = format!("{what}: must be above {}{of_turn}, {}", self.shown(above), self.place(before));
         Err(self.reject_angle(row.line, written, words))
@@ -507,8 +652,15 @@ impl Table<'_> {
                 1.0 / tolerance::TABLE_GAP.value
             )
         };
-        let is_radians = !self.in_radians && covered <= std::f64::consts::TAU;
-        let meant = is_radians.then(|| "did you mean angle_unit = \"rad\" in [cam]?".to_owned());
+        let meant = match covered {
+            _ if !self.angles.is_of_cam() || gaps[index] <= PART => None,
+            turn if (0.5..=1.0).contains(&turn) => Some("did you mean angle_unit = \"turn\" in [cam]?"),
+            turn if turn <= std::f64::consts::TAU => Some("did you mean angle_unit = \"rad\" in [cam]?"),
+            _ => Some(
+                "of the open part alone say outside = \"base\" in [cam], which fills the base circle; of a half about the nose, mirrored = true",
+            ),
+        };
+        let meant = meant.map(str::to_owned);
         Err(self.reject_angle(rows[index].line, rows[index].angle_deg, words).meaning(meant))
     }
 }

@@ -26,8 +26,9 @@ impl Model {
 impl Fields {
     /// Replaces a table's rows and file by rows at the same angles with other lifts, in the units of the model.
     pub(super) fn put_lifts(&mut self, table: &TableProfile, lifts: impl Iterator<Item = f64>) {
-        for path in ["cam.file", "cam.unit", "cam.angle_unit"] {
-            self.fields.remove(path);
+        // What says how the rows are read is done.
+        for name in ["file", "unit", "angle_unit", "angle_column", "lift_column", "turn_deg", "mirrored", "outside"] {
+            self.fields.remove(&*format!("cam.{name}"));
         }
         if let Some(SmoothingTolerance::Within(within)) = table.spline.smoothing().map(|smoothing| smoothing.tolerance)
         {

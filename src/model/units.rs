@@ -55,13 +55,14 @@ impl Unit {
 }
 
 /// Units by name, as multiples of the SI unit; the first is the SI unit itself.
-pub(super) static LENGTHS: [Unit; 6] = [
+pub(super) static LENGTHS: [Unit; 7] = [
     Unit::new("m", 1, 1),
     Unit::new("cm", 1, 100),
     Unit::new("mm", 1, 1000),
     Unit::new("um", 1, 1_000_000),
     Unit::new("in", 127, 5000),
     Unit::new("ft", 381, 1250),
+    Unit::new("thou", 127, 5_000_000),
 ];
 const MASSES: [Unit; 5] = [
     Unit::new("kg", 1, 1),

@@ -294,11 +294,15 @@ fn tables_that_are_refused() {
         ("header", "place,height\n0,1\n".into(), &[".csv:1: header = place,height", "as angle_deg,lift does"]),
         (
             "inches",
-            "angle [deg],lift [inch]\n0,1\n".into(),
-            &[".csv:1: header = lift [inch]", "the unit of the lift must be one of: m, cm, mm"],
+            "angle [deg],lift [mille]\n0,1\n".into(),
+            &[".csv:1: header = lift [mille]", "the unit of the lift must be one of: m, cm, mm"],
         ),
         ("gradians", "angle (gon),lift\n0,1\n".into(), &["the unit of the angle must be one of: deg, rad"]),
-        ("swapped", "lift,angle\n1,0\n".into(), &[".csv:1: header = lift,angle", "must name the angle, then the lift"]),
+        (
+            "lifts-alone",
+            "lift,lift\n1,0\n".into(),
+            &[".csv:1: header = lift,lift", "must name the angle, then the lift"],
+        ),
         ("text", "angle_deg,lift\n0,1\n120,high\n".into(), &[".csv:3: lift = high: must be a finite number"]),
         ("nan", "angle_deg,lift\n0,1\n120,nan\n".into(), &[".csv:3: lift = nan"]),
         ("inf", "angle_deg,lift\n0,1\n\n120,-inf\n".into(), &[".csv:4: lift = -inf"]),
@@ -307,7 +311,11 @@ fn tables_that_are_refused() {
         ("past", "angle_deg,lift\n0,1\n400,1\n".into(), &[".csv:3: angle_deg = 400", "from 0 to 360"]),
         ("back", "angle_deg,lift\n-1,1\n100,1\n380,1\n".into(), &[".csv:4: angle_deg = 380", "from -1 to 359"]),
         ("one-column", "angle_deg,lift\n0\n".into(), &[".csv:2: row = 0: must be two numbers"]),
-        ("three-columns", "angle_deg,lift\n0,1,2\n".into(), &[".csv:2: lift = 1,2"]),
+        (
+            "three-columns",
+            "angle_deg,lift\n0,1,2\n".into(),
+            &[".csv:2: row = 0,1,2: has 3 columns, and the header has 2"],
+        ),
         ("repeat", "angle_deg,lift\n0,1\n120,1\n120,2\n".into(), &[".csv:4: angle_deg = 120: repeats", "line 3"]),
         (
             "unsorted",

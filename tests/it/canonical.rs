@@ -46,7 +46,7 @@ fn a_document_is_a_file() {
     };
     let rows = |rows: serde_json::Value| refused(&|cam| cam["rows"] = rows.clone());
     assert!(rows(json!([[0, 0.1], [120, 0.2]])).contains("cam.rows has 2 rows; 3 to 1000000 are allowed"));
-    assert!(rows(json!([[0, 0], [1, 0], [1, 0]])).contains("must be above 1, row 2"));
+    assert!(rows(json!([[0, 0], [1, 0], [1, 1]])).contains("must be above 1, row 2"));
     assert!(
         rows(json!([[0, 0], [1, 0], [370, 0]]))
             .contains("angle_deg = 370: must be within a turn of the first row, from 0 to 360")

@@ -93,6 +93,7 @@ mod python;
 mod quantities;
 mod random;
 mod random_orbits;
+mod reading;
 mod regimes;
 mod resting;
 mod roots;

@@ -614,7 +614,8 @@ fn real_files() {
     let rad = |angle: f64, lift: f64| [format!("{:.6}", angle.to_radians()), format!("{lift}")];
     let (cam, told) = read(&table(0, "angle_deg,lift\n", ",", &plain), "", "mm").unwrap();
     let expected = json!({ "unit": "mm", "angle_unit": "deg", "separator": "comma", "decimal_comma": false, "comments": 0,
-        "header": "angle_deg,lift", "rows": 72, "first_deg": 0.0, "repeats_first": false, "step": 0.001 });
+        "titles": 0, "header": "angle_deg,lift", "columns": [1, 2], "left_out": [], "rows": 72, "first_deg": 0.0, "falls": false,
+        "merged": 0, "mirrored": false, "filled": 0, "repeats_first": false, "step": 0.001 });
     assert_eq!(told, expected);
     let cases: [(&str, String, &str, &str, Value); 11] = [
         ("headless", table(0, "", ",", &plain), "", "mm", json!({ "header": null })),
@@ -687,7 +688,7 @@ fn real_files() {
         (table(0, "", ";", &comma) + "\n355.5;1.5", "", "must have one kind of decimals"),
         (table(0, "", ",", &plain).replace("\n10,", "\n5,"), "", "repeats the angle of the row before"),
         (table(0, "", ",", &plain).replace("\n10,", "\n1,"), "", "angles must rise"),
-        (table(0, "", ",", &plain).replace("\n10,", "\n10,nan,"), "", ":3: lift = nan"),
+        (table(0, "", ",", &plain).replace("\n10,", "\n10,nan,"), "", "row = 10,nan,1.234: has 3 columns"),
         (table(0, "", ",", &plain) + "360,1.5\n", "", "must be 1, the lift at 0 on line 1"),
     ] {
         let refused = read(&text, more, "mm").unwrap_err();
@@ -985,7 +986,9 @@ fn a_new_measured_machine() {
     run(&["new", "valve.toml", "--law", "table"]);
     let page = run(&["cam", "valve.toml"]);
     for says in [
-        "table: 180 rows, angles in deg and lifts in mm, columns parted by commas; the header is \"angle [deg],lift [mm]\"; 1 comment",
+        "table: 180 rows; columns parted by commas; the header is \"angle [deg],lift [mm]\"; 1 comment",
+        "angles: column 1, in deg",
+        "lifts: column 2, in mm",
         "accuracy: lift rounded to 0.001 mm; about a smooth motion the rows spread by 0.000",
         "corners found: none; dwells found: 19",
         "Corners (2)",
@@ -1026,7 +1029,7 @@ fn a_new_measured_machine() {
     let report = std::fs::read_to_string(folder.path().join("report.html")).unwrap();
     for says in [
         "id=\"loads\"",
-        "table: 180 rows, angles in deg and lifts in mm",
+        "table: 180 rows; columns parted by commas",
         ">impact speed (mm/s)<",
         "± is what the cam leaves open, lift rounded to 0.001 mm",
         "of the cam as it is drawn (lift rounded to 0.001 mm); the loads below have their ±.",
@@ -1477,4 +1480,37 @@ fn loads_are_as_uncertain_as_rows_are_known_to_leave_them() {
         assert_eq!(found.loads.len(), 1);
         assert_eq!((found.loads[0].errors.is_some(), !found.round.is_empty()), (is_uncertain, is_round));
     }
+}
+
+/// A lobe whose acceleration is least at two places alike, 13 degrees before and behind its nose, is left first at either, as the rounding of its
+/// rows has it.
+#[test]
+fn two_places_that_may_be_left_first_are_both_named() {
+    let row = |angle: u32| {
+        let from_nose = (f64::from(angle) - 180.0).to_radians();
+        let lift = if from_nose.abs() < PI / 3.0 {
+            4.0 * (1.0 + (3.0 * from_nose).cos()) - 0.15 * (1.0 + (9.0 * from_nose).cos())
+        } else {
+            0.0
+        };
+        format!("{angle},{lift:.3}\n")
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let rows: String = (0..360).map(row).collect();
+    std::fs::write(folder.path().join("lift.csv"), format!("angle [deg],lift [mm]\n{rows}")).unwrap();
+    let text = "name = \"twofold\"\n[units]\nlength = \"mm\"\nstiffness = \"N/mm\"\n[follower]\nmass = 0.1\ndamping = 0\nstiffness = 30\n\
+                preload = 220\ngravity = 0\nrestitution = 0.5\n[cam]\nlaw = \"table\"\nfile = \"lift.csv\"\nspline = \"smoothing\"\n\
+                corners_deg = []\n";
+    std::fs::write(folder.path().join("twofold.toml"), text).unwrap();
+    let model = Model::read(&folder.path().join("twofold.toml")).unwrap();
+    let asked = Asked { rpm: Some([1000.0, 1000.0]), speeds: 1, ..Asked::default() };
+    let found = design(&model, &asked, &Unwatched).unwrap();
+    let [one, two] = &found.places[..] else { panic!("{:?} {:?}", found.separation, found.places) };
+    assert!(one.share >= two.share && two.share > 0.0 && (one.share + two.share - 1.0).abs() < 1e-12);
+    let mut middles = [one, two].map(|place| 0.5 * (place.cam_angles[0] + place.cam_angles[1]).to_degrees());
+    middles.sort_by(f64::total_cmp);
+    assert!((middles[0] - 167.0).abs() < 4.0 && (middles[1] - 193.0).abs() < 4.0, "{middles:?}");
+    let page = crate::common::in_one_line(&found.text().unwrap());
+    assert!(page.contains("Where is open: ") && page.matches("% of the likely cams").count() == 2, "{page}");
+    assert!(!page.split("Where is open").next().unwrap().contains(" deg"), "{page}");
 }

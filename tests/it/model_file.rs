@@ -194,7 +194,9 @@ fn every_field_allows_what_the_page_says() {
                     let quoted: Vec<String> = words[8..].split(", ").map(|word| format!("\"{word}\"")).collect();
                     format!("must be one of: {}", quoted.join(", "))
                 }
-                words if words.starts_with("a ") => format!("must be {words}"),
+                words if words.starts_with("a ") || words.starts_with("the name") || words == "true or false" => {
+                    format!("must be {words}")
+                }
                 words if words.ends_with(" rows") => {
                     format!("has 0 rows; {} are allowed", words.trim_end_matches(" rows"))
                 }

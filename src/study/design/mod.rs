@@ -5,6 +5,8 @@ pub mod contact;
 pub mod loads;
 pub mod needs;
 
+use std::f64::consts::{PI, TAU};
+
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -12,7 +14,7 @@ use super::{ModelLabel, StudyError};
 use crate::bracket::{Width, halve};
 use crate::cam::{Cam, Least, nearest_turn};
 use crate::known::Evidence;
-use crate::measured::{Measured, PlausibleCams};
+use crate::measured::{LikelyCam, Measured, PlausibleCams};
 use crate::model::{CORNER_ROUNDING, Model, Units};
 use crate::orbit::long_run::Budget;
 use crate::progress::{Pieces, Watch};
@@ -32,6 +34,8 @@ pub struct Design {
     pub units: Units,
     /// Where the follower first leaves the cam; the error includes the uncertainty of a measured cam.
     pub separation: Separation,
+    /// Places where the follower may leave the cam first, if a measured cam leaves open which it is by more than 10 degrees.
+    pub places: Vec<SeparationPlace>,
     /// Quality of the measured cam; none for an exact cam.
     pub measured: Option<Measured>,
     /// The number that varies in the table.
@@ -236,24 +240,37 @@ pub struct Asked {
     pub budget: Option<Budget>,
 }
 
+/// A place where the follower may leave a measured cam first.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct SeparationPlace {
+    /// Cam angles between which likely cams let go here, rad; the second may be of the next turn.
+    #[serde(rename = "cam_angles_rad")]
+    pub cam_angles: [f64; 2],
+    /// Share of the likely cams that let go here first.
+    pub share: f64,
+}
+
 #[derive(Serialize)]
-struct Separated {
+struct Separated<'a> {
     speed_rpm: f64,
     error_rpm: f64,
     cam_angle_rad: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
     cam_angle_error_rad: Option<f64>,
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    places: &'a [SeparationPlace],
     located: bool,
 }
 
 impl Design {
-    fn separated(&self) -> Option<Separated> {
+    fn separated(&self) -> Option<Separated<'_>> {
         match self.separation {
             Separation::At { rpm, error, cam_angle, angle_error } => Some(Separated {
                 speed_rpm: rpm,
                 error_rpm: error,
                 cam_angle_rad: cam_angle,
                 cam_angle_error_rad: angle_error,
+                places: &self.places,
                 located: true,
             }),
             _ => None,
@@ -289,6 +306,34 @@ pub fn known(separation: Separation, likely: Option<&PlausibleCams>) -> Separati
     Separation::At { rpm, error: error + open, cam_angle, angle_error: Some(angle_error) }
 }
 
+/// The places where likely cams let go first, the likeliest first; none where they agree to 10 degrees.
+fn places(separation: Separation, likely: Option<&PlausibleCams>) -> Vec<SeparationPlace> {
+    /// Error up to which an angle is one place, and distance from which on two angles are two, rad.
+    const ONE: f64 = PI / 18.0;
+    let (Some(likely), Separation::At { cam_angle, angle_error: Some(error), .. }) = (likely, separation) else {
+        return Vec::new();
+    };
+    if !(error > ONE) {
+        return Vec::new();
+    }
+    let of = |(model, cam): &LikelyCam| match Contact::new(cam, model.follower).separation() {
+        Separation::At { cam_angle: of_other, .. } => Some(nearest_turn(of_other, cam_angle)),
+        _ => None,
+    };
+    let mut angles: Vec<f64> = likely.others.par_iter().filter_map(of).collect();
+    angles.sort_by(f64::total_cmp);
+    let place = |alike: &[f64]| {
+        let from = alike[0].rem_euclid(TAU);
+        SeparationPlace {
+            cam_angles: [from, from + alike[alike.len() - 1] - alike[0]],
+            share: alike.len() as f64 / angles.len() as f64,
+        }
+    };
+    let mut places: Vec<SeparationPlace> = angles.chunk_by(|one, two| two - one <= ONE).map(place).collect();
+    places.sort_by(|one, two| two.share.total_cmp(&one.share));
+    places
+}
+
 /// Answers the questions about a model; `watch` receives the progress of the runs.
 pub fn design(model: &Model, asked: &Asked, watch: &dyn Watch) -> Result<Design, StudyError> {
     /// Moments of the force round the cam, besides the ends of segments.
@@ -299,6 +344,7 @@ pub fn design(model: &Model, asked: &Asked, watch: &dyn Watch) -> Result<Design,
     let contact = Contact::new(&cam, model.follower);
     let likely = PlausibleCams::of(model)?;
     let separation = known(contact.separation(), likely.as_ref());
+    let places = places(separation, likely.as_ref());
     // To meet a need for certain, its speed is raised by the relative uncertainty of the separation.
     let uncertain = match separation {
         Separation::At { rpm, error, .. } if likely.as_ref().is_some_and(|likely| likely.best.is_some()) => error / rpm,
@@ -441,6 +487,7 @@ pub fn design(model: &Model, asked: &Asked, watch: &dyn Watch) -> Result<Design,
         model: label,
         units,
         separation,
+        places,
         measured: likely.map(|likely| likely.measured),
         over: over.varied(asked.over.as_ref().map_or(Spacing::Linear, |axis| axis.spacing)),
         forces,
@@ -460,7 +507,7 @@ fn round(contact: &Contact<'_>, rpm: f64, moments: usize) -> Vec<[f64; 2]> {
     let omega = angular_velocity(rpm);
     let mut points = Vec::new();
     for segment in contact.cam.segments() {
-        let part = (segment.end - segment.start) / std::f64::consts::TAU;
+        let part = (segment.end - segment.start) / TAU;
         let count = (part * moments as f64).ceil().max(1.0) as usize;
         let angle = |index: usize| segment.start + (segment.end - segment.start) * index as f64 / count as f64;
         points.extend((0..=count).map(|index| [angle(index), contact.force(&segment.law.lift(angle(index)), omega)]));

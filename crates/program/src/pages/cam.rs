@@ -53,7 +53,7 @@ pub(crate) fn lift(sheet: &CamSheet) -> Words {
 pub(crate) fn measured(measured: &Measured) -> Vec<Block> {
     let told =
         |length: f64| words![(measured.reading.in_model.told(length), Digits::Aligned(2)), " ", &measured.reading.unit];
-    let mut blocks = vec![Block::paragraph(format!("table: {}", words::reading(&measured.reading)))];
+    let mut blocks: Vec<Block> = words::reading(&measured.reading).into_iter().map(Block::paragraph).collect();
     if let Some(why) = &measured.noise_unknown {
         blocks.push(Block::paragraph(words::noise_unknown(why)));
         return blocks;

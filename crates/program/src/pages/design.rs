@@ -11,7 +11,7 @@ use corner_impact::known::Evidence;
 use corner_impact::measured::Measured;
 use corner_impact::study::design::contact::Separation;
 use corner_impact::study::design::needs::Answer;
-use corner_impact::study::design::{Design, RequiredPair, Trade};
+use corner_impact::study::design::{Design, RequiredPair, SeparationPlace, Trade};
 
 /// A column of numbers with a gap before it.
 fn number(head: impl Into<Words>) -> Column {
@@ -58,6 +58,13 @@ pub(crate) fn separation(found: &Design) -> Words {
                 degrees(cam_angle),
                 " deg (computed from the contact force)."
             ],
+            Some(cam) if !found.places.is_empty() => words![
+                "The follower leaves the cam first at ",
+                measured_speed(rpm, Digits::Fixed(6), error.is_finite().then_some(error), Some(cam)),
+                ". Where is open: ",
+                Words::joined(found.places.iter().map(place).collect::<Vec<_>>(), ", "),
+                " (computed from the contact force)."
+            ],
             Some(cam) => words![
                 "The follower leaves the cam at ",
                 with_open(
@@ -85,6 +92,24 @@ pub(crate) fn separation(found: &Design) -> Words {
         Separation::Never => {
             "The follower leaves the cam at no speed: the cam nowhere accelerates away from it.".into()
         }
+    }
+}
+
+/// One of the places that the follower may leave first.
+fn place(place: &SeparationPlace) -> Words {
+    let [from, to] = place.cam_angles.map(f64::to_degrees);
+    let share = (100.0 * place.share, Digits::Fixed(0));
+    let turn = if to >= 360.0 { to - 360.0 } else { to };
+    match to - from {
+        width if width < 1.0 => words!["about ", (from, Digits::Fixed(0)), " deg for ", share, " % of the likely cams"],
+        _ => words![
+            (from, Digits::Fixed(0)),
+            " to ",
+            (turn, Digits::Fixed(0)),
+            " deg for ",
+            share,
+            " % of the likely cams"
+        ],
     }
 }
 

@@ -465,36 +465,65 @@ pub(crate) fn known_to(reading: &Reading, noise: f64) -> String {
     format!("lift known to {} {}", Digits::Aligned(2).text(reading.in_model.told(noise)), reading.unit)
 }
 
-/// Summary of how the rows of a table were interpreted.
-pub(crate) fn reading(reading: &Reading) -> String {
-    let mut words = format!("{} rows, angles in {} and lifts in {}", reading.rows, reading.angle_unit, reading.unit);
-    if let Some(layout) = &reading.layout {
-        words.push_str(match layout.separator {
-            Separator::Comma => ", columns parted by commas",
-            Separator::Semicolon => ", columns parted by semicolons",
-            Separator::Tab => ", columns parted by tabs",
-            Separator::Blanks => ", columns parted by blanks",
+/// How the rows of a table were read, in three lines to be checked: its text, its angles and its lifts.
+pub(crate) fn reading(reading: &Reading) -> [String; 3] {
+    let layout = reading.layout.as_ref();
+    let column = |index: usize| layout.map_or_else(String::new, |layout| format!("column {}, ", layout.columns[index]));
+    let mut table = vec![format!("{} rows", reading.rows)];
+    if let Some(layout) = layout {
+        let parted = match layout.separator {
+            Separator::Comma => "commas",
+            Separator::Semicolon => "semicolons",
+            Separator::Tab => "tabs",
+            Separator::Bar => "bars",
+            Separator::Blanks => "blanks",
+        };
+        let decimals = if layout.decimal_comma { ", with decimal commas" } else { "" };
+        table.push(format!("columns parted by {parted}{decimals}"));
+        table.push(match &layout.header {
+            Some(header) => format!("the header is \"{header}\""),
+            None => "there is no header".into(),
         });
-        if layout.decimal_comma {
-            words.push_str(", with decimal commas");
+        for (count, what) in [(layout.comments, "comment"), (layout.titles, "title")] {
+            match count {
+                0 => {}
+                1 => table.push(format!("1 {what} is left out")),
+                count => table.push(format!("{count} {what}s are left out")),
+            }
         }
-        match &layout.header {
-            Some(header) => words.push_str(&format!("; the header is \"{header}\"")),
-            None => words.push_str("; there is no header"),
-        }
-        match layout.comments {
-            0 => {}
-            1 => words.push_str("; 1 comment is left out"),
-            count => words.push_str(&format!("; {count} comments are left out")),
-        }
+    }
+    let mut angles = vec![format!("{}in {}", column(0), reading.angle_unit)];
+    if let Some(turn) = reading.turn_deg {
+        angles.push(format!("{turn} deg are one turn of the cam"));
+    }
+    if reading.falls {
+        angles.push("they fall, and are read backwards".into());
     }
     if reading.first_deg != 0.0 {
-        words.push_str(&format!("; they begin at {} deg, of whatever turn", Digits::UpTo(6).text(reading.first_deg)));
+        angles.push(format!("they begin at {} deg, of whatever turn", Digits::UpTo(6).text(reading.first_deg)));
+    }
+    if reading.merged > 0 {
+        angles.push(format!("{} of them repeat the row before", reading.merged));
     }
     if reading.repeats_first {
-        words.push_str("; the last row repeats the first");
+        angles.push("the last row repeats the first".into());
     }
-    words
+    if reading.is_mirrored {
+        angles.push("half a lobe, and its mirror image".into());
+    }
+    if reading.filled > 0 {
+        angles.push(format!("{} rows are added on the base circle", reading.filled));
+    }
+    let mut lifts = vec![format!("{}in {}", column(1), reading.unit)];
+    if let Some(layout) = layout.filter(|layout| !layout.left_out.is_empty()) {
+        lifts.push(format!("columns left out: {}", layout.left_out.join(", ")));
+    }
+    if let Some(number) = layout.and_then(|layout| layout.thousands.as_ref()) {
+        let [decimal, whole] = [".", ""].map(|comma| number.replace(',', comma));
+        lifts.push(format!("{number} is read as {decimal}; if commas part thousands, it is {whole}, and they must go"));
+    }
+    [("table", table), ("angles", angles), ("lifts", lifts)]
+        .map(|(name, parts)| format!("{name}: {}", parts.join("; ")))
 }
 
 /// Hypotheses of the proofs on a page, in one sentence; `None` if there are none.

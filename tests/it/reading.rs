@@ -1,0 +1,253 @@
+//! Are the tables that gauges and other programs write read as they are meant, or refused with the line of the model that makes them read?
+
+use std::fs;
+
+use corner_impact::model::{CamProfile, Model, TableProfile};
+use tempfile::TempDir;
+
+use crate::common::{corner_impact, in_one_line, text};
+
+/// Lift of an open duration from 120 to 240 degrees with its nose at 180, mm to four decimals.
+fn lift(angle: f64) -> f64 {
+    let from_nose = (angle.rem_euclid(360.0) - 180.0).abs();
+    let lift = if from_nose < 60.0 { 4.0 * (1.0 + (3.0 * from_nose).to_radians().cos()) } else { 0.0 };
+    (lift * 1e4).round() / 1e4
+}
+
+/// A row for each of these angles.
+fn rows(angles: impl IntoIterator<Item = i32>, row: impl Fn(f64, f64) -> String) -> String {
+    angles.into_iter().map(f64::from).map(|angle| row(angle, lift(angle)) + "\n").collect()
+}
+
+fn plain(angle: f64, lift: f64) -> String {
+    format!("{angle},{lift:.4}")
+}
+
+/// A follower in millimetres on the cam of a table, with these fields beside it.
+fn model(folder: &TempDir, table: &str, fields: &str) -> Result<Model, String> {
+    fs::write(folder.path().join("lift.csv"), table).unwrap();
+    let text = format!(
+        "name = \"read\"\n[units]\nlength = \"mm\"\nstiffness = \"N/mm\"\n[follower]\nmass = 0.1\ndamping = 0\nstiffness = 30\npreload = 220\n\
+         gravity = 0\nrestitution = 0.5\n[cam]\nlaw = \"table\"\nfile = \"lift.csv\"\nspline = \"smoothing\"\n{fields}\n"
+    );
+    let file = folder.path().join("read.toml");
+    fs::write(&file, text).unwrap();
+    Model::read(&file).map_err(|error| error.to_string())
+}
+
+fn table(model: &Model) -> &TableProfile {
+    let CamProfile::Table(table) = &model.cam else { panic!("{:?}", model.cam) };
+    table
+}
+
+/// Demands that a table with these fields is read as the lobe, `size` times as high in millimetres.
+#[track_caller]
+fn is_the_lobe(csv: &str, fields: &str, size: f64) -> Model {
+    let folder = TempDir::new().unwrap();
+    let model = model(&folder, csv, fields).unwrap();
+    let rows = &table(&model).rows;
+    assert!((170..=360).contains(&rows.len()), "{} rows", rows.len());
+    for row in rows.iter() {
+        let expected = size * lift(row.angle_deg);
+        assert!((row.lift - expected).abs() <= 1e-4 * size.max(1.0), "{row:?}, not {expected}");
+    }
+    // What is written in its place is read alike.
+    let again = Model::parse("again.toml", &model.text()).unwrap();
+    assert_eq!(table(&again).rows.len(), rows.len());
+    assert!(
+        table(&again)
+            .rows
+            .iter()
+            .zip(rows.iter())
+            .all(|(one, two)| (one.angle_deg, one.lift) == (two.angle_deg, two.lift))
+    );
+    model
+}
+
+fn reading(csv: &str, fields: &str) -> serde_json::Value {
+    let folder = TempDir::new().unwrap();
+    serde_json::to_value(&*table(&model(&folder, csv, fields).unwrap()).reading).unwrap()
+}
+
+#[test]
+fn text_is_read_however_it_is_written() {
+    let all = || 0..360;
+    let head = "angle [deg],lift [mm]\n";
+    for csv in [
+        head.to_owned() + &rows(all(), plain),
+        "\"angle [deg]\",\"lift [mm]\"\n".to_owned() + &rows(all(), |angle, lift| format!("\"{angle}\",\"{lift:.4}\"")),
+        "angle [deg];lift [mm]\n".to_owned()
+            + &rows(all(), |angle, lift| format!("{angle};{lift:.4}").replace('.', ",")),
+        "\"angle [deg]\",\"lift [mm]\"\n".to_owned()
+            + &rows(all(), |angle, lift| format!("\"{angle}\",\"{}\"", format!("{lift:.4}").replace('.', ","))),
+        "sep=;\nangle [deg];lift [mm]\n".to_owned() + &rows(all(), |angle, lift| format!("{angle};{lift:.4}")),
+        "angle [deg],lift [mm],,\n".to_owned() + &rows(all(), |angle, lift| format!("{angle},{lift:.4},,")),
+        "| angle [deg] | lift [mm] |\n|---|---:|\n".to_owned()
+            + &rows(all(), |angle, lift| format!("| {angle} | {lift:.4} |")),
+        (head.to_owned() + &rows(all(), plain)).replace('\n', "\r"),
+        (head.to_owned() + &rows(all(), plain)).replace('\n', "\r\n"),
+        rows(all(), |angle, lift| format!("  {angle:.1}   {lift:.4}")),
+        rows(all(), |angle, lift| format!("{angle:.1}D0 {:.7}D+01", lift / 10.0)),
+        format!(
+            "* a gauge\n% of 2013\n// cam 3\n# lifts\n{head}{}",
+            rows(all(), |angle, lift| plain(angle, lift) + "   % read twice")
+        ),
+        format!("Camshaft intake, cyl 1\nmeasured 2013-08-06\n\n{head}{}", rows(all(), plain)),
+        "angle\tlift\ndeg\tmm\n".to_owned() + &rows(all(), |angle, lift| format!("{angle}\t{lift:.4}")),
+    ] {
+        is_the_lobe(&csv, "", 1.0);
+    }
+}
+
+#[test]
+fn columns_are_chosen_by_name_or_number_and_the_others_are_told() {
+    let all = || 0..360;
+    let wide = |head: &str| {
+        format!("{head}\n{}", rows(all(), |angle, lift| format!("{},{angle},{lift:.4},0.5,7e-3", angle + 1.0)))
+    };
+    let named = wide("no,angle [deg],lift [mm],velocity [mm/deg],acceleration [mm/deg^2]");
+    is_the_lobe(&named, "", 1.0);
+    let told = reading(&named, "");
+    assert_eq!(
+        (&told["columns"], &told["left_out"]),
+        (&[2, 3].into(), &["no", "velocity [mm/deg]", "acceleration [mm/deg^2]"].into())
+    );
+    is_the_lobe(&wide("n,cam,s1,s2,s3"), "angle_column = \"cam\"\nlift_column = \"S1\"", 1.0);
+    is_the_lobe(&wide("n,cam,lift intake [mm],lift exhaust [mm],s3"), "lift_column = \"lift intake\"", 1.0);
+    is_the_lobe(wide("").trim_start(), "angle_column = 2\nlift_column = 3", 1.0);
+    // The lift comes before the angle.
+    let turned = format!(
+        "lift_mm,crank angle,cam angle\n{}",
+        rows(all(), |angle, lift| format!("{lift:.4},{},{angle}", 2.0 * angle))
+    );
+    is_the_lobe(&turned, "", 1.0);
+    let folder = TempDir::new().unwrap();
+    model(&folder, &named, "").unwrap();
+    let file = folder.path().join("read.toml").display().to_string();
+    let page = in_one_line(&text(corner_impact(["cam", &file]).stdout));
+    for says in [
+        "table: 360 rows; columns parted by commas",
+        "angles: column 2, in deg",
+        "lifts: column 3, in mm; columns left out: no, velocity [mm/deg], acceleration [mm/deg^2]",
+    ] {
+        assert!(page.contains(says), "no \"{says}\" in {page}");
+    }
+}
+
+#[test]
+fn angles_go_round_however_they_are_counted() {
+    let head = "angle [deg],lift [mm]\n";
+    for (angles, fields) in [
+        ((0..360).rev().collect::<Vec<i32>>(), ""),
+        ((-180..=180).collect(), ""),
+        ((0..=109).chain(109..=250).chain(250..360).collect(), ""),
+        ((116..=244).collect(), "outside = \"base\""),
+        ((0..=180).collect(), "mirrored = true"),
+        ((180..=360).collect(), "mirrored = true"),
+        ((180..=245).collect(), "mirrored = true\noutside = \"base\""),
+        ((110..=180).rev().collect(), "mirrored = true\noutside = \"base\""),
+    ] {
+        is_the_lobe(&(head.to_owned() + &rows(angles, plain)), fields, 1.0);
+    }
+    // A duration with the nose at 0: it is the lobe half a turn on.
+    let folder = TempDir::new().unwrap();
+    let about_0 = head.to_owned() + &rows(-64..=64, |angle, _| plain(angle, lift(angle + 180.0)));
+    let about_0 = model(&folder, &about_0, "outside = \"base\"").unwrap();
+    assert!(table(&about_0).rows.iter().all(|row| row.lift == lift(row.angle_deg + 180.0)));
+    assert_eq!((table(&about_0).rows.len(), table(&about_0).reading.filled), (360, 231));
+    let crank = format!("crank angle [deg],lift [mm]\n{}", rows(0..360, |angle, lift| plain(2.0 * angle, lift)));
+    is_the_lobe(&crank, "turn_deg = 720", 1.0);
+    for (name, of) in [("rad", std::f64::consts::TAU), ("turn", 1.0)] {
+        let other = |head: &str| format!("{head}\n{}", rows(0..360, |angle, lift| plain(angle / 360.0 * of, lift)));
+        is_the_lobe(&other(&format!("angle [{name}],lift [mm]")), "", 1.0);
+        is_the_lobe(&other("angle,lift"), &format!("angle_unit = \"{name}\""), 1.0);
+    }
+}
+
+#[test]
+fn units_are_known_in_words() {
+    let table = |head: &str| format!("{head}\n{}", rows(0..360, plain));
+    for (lift, size) in [
+        ("lift mm", 1.0),
+        ("lift [cm]", 10.0),
+        ("lift in mm", 1.0),
+        ("lift / mm", 1.0),
+        ("Lift inches", 25.4),
+        ("lift (in)", 25.4),
+        ("lift_inch", 25.4),
+        ("Hub in Zoll", 25.4),
+        ("lift_thou", 0.0254),
+        ("lift mils", 0.0254),
+        ("lift_micron", 1e-3),
+        ("lift [µm]", 1e-3),
+        ("lift [μm]", 1e-3),
+        ("lift metres", 1000.0),
+    ] {
+        is_the_lobe(&table(&format!("Cam Degrees,{lift}")), "", size);
+    }
+    is_the_lobe(&table("angle,lift"), "unit = \"thou\"", 0.0254);
+}
+
+/// A number with three digits behind every comma has two readings, and both are told.
+#[test]
+fn commas_that_may_part_thousands_are_told() {
+    let of = |digits: usize| {
+        let row = |angle: f64, lift: f64| format!("{angle};{}", format!("{:.digits$}", 40.0 + lift).replace('.', ","));
+        reading(&format!("angle [deg];lift [mm]\n{}", rows(0..360, row)), "")["thousands"].clone()
+    };
+    assert_eq!((of(3), of(4)), ("40,000".into(), serde_json::Value::Null));
+}
+
+#[test]
+fn what_is_not_read_is_refused_with_what_makes_it_read() {
+    let all = |head: &str| format!("{head}\n{}", rows(0..360, plain));
+    let of = |angles: std::ops::RangeInclusive<i32>| format!("angle [deg],lift [mm]\n{}", rows(angles, plain));
+    let slip = |at: &str, by: &str| all("angle [deg],lift [mm]").replacen(at, by, 1);
+    let wide = |head: &str| format!("{head}\n{}", rows(0..360, |angle, lift| format!("{angle},{lift:.4},{lift:.4}")));
+    for (csv, fields, says) in [
+        (all("angle [deg],radius [mm]"), "", "names a radius, the cam's own, which is no follower's lift"),
+        (all("angle [deg],lift [furlong]"), "", "the unit of the lift must be one of: m, cm, mm, um, in, ft, thou;"),
+        (all("angle [deg],lift in furlongs"), "", "say it in [cam], by unit"),
+        (all("angle [deg],lift yards"), "", "the unit of the lift must be one of"),
+        (all("angle [gon],lift [mm]"), "", "the unit of the angle must be one of: deg, rad, turn;"),
+        (all("lifts in mm of cam 3\nangle,lift"), "", "say which the lifts are in, by unit in [cam]"),
+        (wide("angle,lift intake,lift exhaust"), "", "say which in [cam], by lift_column"),
+        (wide("angle,left,right"), "", "say which in [cam], by lift_column"),
+        (
+            wide(""),
+            "",
+            "has 3 columns without names: say which are the angle and the lift in [cam], as angle_column = 1 and lift_column = 2 do",
+        ),
+        (wide("angle,lift,s"), "lift_column = \"height\"", "its columns are angle, lift, s"),
+        (wide("angle,lift,s"), "lift_column = 4", "its columns are angle, lift, s"),
+        (wide(""), "angle_column = 1\nlift_column = 4", "must be two numbers"),
+        (wide("angle,lift,s"), "lift_column = 1.5", "must be the name of a column in quotes, or its number from 1"),
+        (all("one,two"), "", "must name the angle, then the lift"),
+        (slip("7,0.0000", "7,x"), "", "lift = x: must be a finite number"),
+        (slip("0,0.0000", "0,x"), "", "lift = x: must be a finite number"),
+        (slip("7,0.0000", "7"), "", "row = 7: must be two numbers"),
+        (slip("7,0.0000", "6,0.5"), "", "repeats the angle of the row before with another lift"),
+        (slip("7,0.0000", "\"7,0.0000"), "", "must be two numbers"),
+        (of(116..=244), "", "outside = \"base\""),
+        (of(0..=180), "", "mirrored = true"),
+        (of(0..=170), "mirrored = true", "no row from 340 to 360"),
+        (
+            of(100..=200),
+            "mirrored = true",
+            "needs the nose, the greatest lift, at one end of the rows: it is on line 82",
+        ),
+        (of(0..=300), "mirrored = true", "half a lobe has 180 at most"),
+        (of(150..=210), "outside = \"base\"", "do not begin and end on the base circle: the lift on line"),
+        (of(116..=244), "outside = \"air\"", "must be one of: \"base\""),
+        (of(0..=359), "mirrored = 1", "must be true or false"),
+        (format!("angle,lift\n{}", rows((0..720).step_by(2), plain)), "", "turn_deg = 720"),
+        (all("angle [deg],lift [mm]"), "turn_deg = -720", "must be a finite number above 0"),
+        (all("angle [deg],lift [mm]"), "turn_deg = nan", "must be a finite number"),
+        ("root:x:0\nnobody:x:1\n".into(), "", "is no table of lifts"),
+    ] {
+        let folder = TempDir::new().unwrap();
+        let said = model(&folder, &csv, fields).expect_err(says);
+        assert!(said.contains(says), "no \"{says}\" in: {said}");
+        assert!(!said.contains("nobody"), "{said}");
+    }
+}
