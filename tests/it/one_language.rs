@@ -141,6 +141,16 @@ fn loads_of_a_run_are_those_of_its_events() {
     assert!((of("off_cam_share") - off / (3.0 * 60.0 / 183.0)).abs() < 1e-9, "{off}: {found}");
     // The trace has a row a degree.
     assert!((0.0..1e-3 * gap).contains(&(of("largest_gap_m") - gap)), "{gap}: {found}");
+    // Of a motion that does not repeat, in the last hundred revolutions.
+    for revolutions in [2_u32, 250] {
+        let line = format!("simulate --rpm 670 --revolutions {revolutions}");
+        let found: serde_json::Value = serde_json::from_str(&printed(&format!("{line} --json"))).unwrap();
+        let recorded = rows(&printed(&format!("{line} --events -")));
+        let last = recorded.iter().filter(|row| number(&row[0]) >= f64::from(revolutions.saturating_sub(100)));
+        let speeds = last.map(|row| (number(&row[5]) - number(&row[7])).abs());
+        let (hardest, told) = (speeds.fold(0.0, f64::max), found["hardest_impact_m_s"].as_f64().unwrap());
+        assert!(hardest > 1.0 && (told - hardest).abs() < 1e-9 * hardest, "{revolutions}: {hardest} {found}");
+    }
     // An orbit of more impacts than its page lists has the hardest of all.
     let page = printed("orbit --rpm 183");
     assert!(page.contains(&format!("deg: {hardest:.6} m/s relative to the cam")), "{hardest}: {page}");
