@@ -352,7 +352,7 @@ fn named_unit(cell: &str, table: &[&[&str]]) -> Result<Option<usize>, String> {
     }
 }
 
-/// What a column of the header is of.
+/// Quantity in a column, by the words of its header.
 #[derive(Clone, Copy, PartialEq)]
 enum Kind {
     Angle,
@@ -388,7 +388,7 @@ impl Kind {
 /// The columns of a table, from 0, the angle's first.
 type Columns = [usize; 2];
 
-/// What the lines above the rows say.
+/// Titles, header and units above the rows.
 #[derive(Default)]
 struct Above<'a> {
     titles: usize,

@@ -48,8 +48,8 @@ fn examples(help: &str) -> Vec<String> {
 #[test]
 #[ignore = "slow"]
 fn examples_work_as_written() {
-    /// What `make verify` and `make report` run, which every landing calls, what other tests of this file run, and what takes longest of all:
-    /// the report's own study of speeds.
+    /// Examples that run elsewhere: `verify` and `report` by every landing, `claims` by another test here, and `speeds` within the report, where
+    /// it takes longest of all.
     const LONG: [&str; 4] =
         ["corner-impact verify", "corner-impact report", "corner-impact speeds", "corner-impact claims"];
     let folder = TempDir::new().unwrap();

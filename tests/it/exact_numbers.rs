@@ -181,7 +181,7 @@ fn a_changed_number_is_its_double() {
     assert_eq!((&told["follower"]["mass"], &told["follower"]["stiffness"]), (&json!("0.1"), &json!("100.0")));
 }
 
-/// What a pure number is followed by is no unit that it might be in.
+/// A pure number has no unit, so that no unit is proposed where a word follows it.
 #[test]
 fn a_pure_number_stands_alone() {
     assert_eq!(finite(" 0.5 ", ""), Ok(0.5));
