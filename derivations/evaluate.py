@@ -50,23 +50,39 @@ class Dwell:
 
 
 class Arc:
-    """A circle of a radius about a centre at polar (distance, direction): c^2 - 2 c distance cos(phi) + distance^2 = radius^2."""
+    """A circle of a radius about a centre at polar (distance, direction), met by a line that is this far to the left of the axis:
+    (c - distance cos(phi))^2 + (distance sin(phi) + offset)^2 = radius^2."""
 
-    def __init__(self, distance, direction, radius):
-        self.distance, self.direction, self.radius = distance, direction, radius
+    def __init__(self, distance, direction, radius, offset=0):
+        self.distance, self.direction, self.radius, self.offset = distance, direction, radius, offset
 
     def lift(self, angle, library=mp):
         """c, dc/dtheta, d^2c/dtheta^2, the last two from the circle's equation differentiated once and twice."""
         phi = angle - self.direction
         along, across = self.distance * library.cos(phi), self.distance * library.sin(phi)
-        c = along + library.sqrt((self.radius - across) * (self.radius + across))
-        outward = c - along
-        c1 = -c * across / outward
-        c2 = -(c1 * c1 + 2 * c1 * across + c * along) / outward
-        return c, c1, c2
+        beside = across + self.offset
+        outward = library.sqrt((self.radius - beside) * (self.radius + beside))
+        rate = -beside * along / outward
+        bend = (beside * across - along * along - rate * rate) / outward
+        return along + outward, rate - across, bend - along
 
     def rounded(self):
-        return Arc(float(self.distance), float(self.direction), float(self.radius))
+        return Arc(float(self.distance), float(self.direction), float(self.radius), float(self.offset))
+
+
+class Face:
+    """A circle that a face square to the follower's motion touches: the distance of its tangent from the axis."""
+
+    def __init__(self, distance, direction, radius):
+        self.distance, self.direction, self.radius = distance, direction, radius
+
+    def lift(self, angle, library=mp):
+        phi = angle - self.direction
+        along = self.distance * library.cos(phi)
+        return along + self.radius, -self.distance * library.sin(phi), -along
+
+    def rounded(self):
+        return Face(float(self.distance), float(self.direction), float(self.radius))
 
 
 def section(document, name):
@@ -109,16 +125,47 @@ def arcs(cam):
         raise Refused("cam: the nose circle's centre is not on the ray nose_end")
     # The flank and the nose touch on the line through their centres.
     centre_1, centre_2 = -behind * mp.expj(start), ahead * mp.expj(end)
-    meeting = mp.arg(centre_1 + (centre_2 - centre_1) * flank / (flank - nose)) % (2 * mp.pi)
+    contact = cam.get("contact", "point")
+    roller, offset = mpf(0), mpf(0)
+    if isinstance(contact, dict):
+        roller, offset = number(contact, "cam.contact", "roller_radius"), exact(contact.get("offset", 0))
+        if not roller > 0 or abs(offset) >= base + roller:
+            raise Refused("cam.contact: a roller needs a radius above 0 and an offset within the base circle of its centre")
+    elif contact not in ("point", "flat"):
+        raise Refused(f"cam.contact: no follower {contact!r}")
+    # Where the centre of the roller, or the point, passes from one circle to the next.
+    passes = centre_1 + (centre_2 - centre_1) * (flank + roller) / (flank - nose)
+    if contact == "flat":
+        meeting = mp.arg(centre_2 - centre_1) % (2 * mp.pi)
+        early = [mpf(0)] * 3
+    else:
+        meeting = mp.arg(passes) % (2 * mp.pi)
+        early = [mp.asin(offset / radius) for radius in (base + roller, abs(passes), ahead + nose + roller)]
     if not start < meeting < end:
         raise Refused("cam: flank and nose do not touch between flank_start and nose_end")
+
+    def circle(distance, direction, radius):
+        if contact == "flat":
+            return Face(distance, direction, radius)
+        return Arc(distance, direction, radius + roller, offset)
+
+    def dwell(radius):
+        return Dwell(mp.sqrt((radius + roller) ** 2 - offset**2))
+
     turn = 2 * mp.pi
-    rising = Arc(behind, start + mp.pi, flank), Arc(ahead, end, nose)
-    falling = Arc(ahead, turn - end, nose), Arc(behind, mp.pi - start, flank)
-    laws = [(mpf(0), Dwell(base)), (start, rising[0]), (meeting, rising[1])]
-    if end < mp.pi:
-        laws.append((end, Dwell(ahead + nose)))
-    return laws + [(turn - end, falling[0]), (turn - meeting, falling[1]), (turn - start, Dwell(base))]
+    laws = [
+        (start - early[0], circle(behind, start + mp.pi, flank)),
+        (meeting - early[1], circle(ahead, end, nose)),
+        (end - early[2], dwell(ahead + nose)),
+        (turn - end - early[2], circle(ahead, turn - end, nose)),
+        (turn - meeting - early[1], circle(behind, mp.pi - start, flank)),
+        (turn - start - early[0], dwell(base)),
+    ]
+    if not end < mp.pi:
+        del laws[2]
+    # The one that is there at angle 0 comes first.
+    laws = sorted(((angle % turn, law) for angle, law in laws), key=lambda piece: piece[0])
+    return [(mpf(0), laws[-1][1]), *laws]
 
 
 def program(cam):

@@ -32,35 +32,51 @@ def number(table, key, least=None):
 
 
 class Circle:
-    """A stretch of the cam's outline: seen from the axis, its distance along the ray at angle theta is the lift."""
+    """A stretch of the cam's outline: the lift is where a line parallel to the ray at angle theta, and this far to its left, leaves it."""
 
-    def __init__(self, centre, radius):
+    def __init__(self, centre, radius, offset=0.0):
         self.x, self.y = centre
-        self.radius = radius
+        self.radius, self.offset = radius, offset
 
     def law(self, theta):
         """Lift, and its first and second derivative by the angle."""
         cos, sin = math.cos(theta), math.sin(theta)
-        # The circle's centre along the ray and across it, and half of the chord that it cuts from the ray.
+        # The circle's centre along the ray and across it, and half of the chord that it cuts from the line.
         along, across = self.x * cos + self.y * sin, self.x * sin - self.y * cos
-        square = (self.radius - across) * (self.radius + across)
+        beside = across + self.offset
+        square = (self.radius - beside) * (self.radius + beside)
         if square <= 0.0:
-            raise CannotCheck(f"the ray at {theta} rad misses the circle of radius {self.radius}")
+            raise CannotCheck(f"the line of motion at {theta} rad misses the circle of radius {self.radius}")
         chord = math.sqrt(square)
-        lift = along + chord
-        slope = -across * lift / chord
-        return lift, slope, -(along * lift + across * slope) / chord - across**2 * along * lift / chord**3
+        shrinks = beside * along / chord
+        return along + chord, -across - shrinks, -along - (along**2 - beside * across + shrinks**2) / chord
 
     def mirrored(self):
-        return Circle((self.x, -self.y), self.radius)
+        return Circle((self.x, -self.y), self.radius, self.offset)
 
     def last_ray(self, theta):
-        """Angle from theta to the nearest ray that only touches the circle; the lift is not analytic there."""
+        """Angle from theta to the nearest line that only touches the circle; the lift is not analytic there."""
         distance = math.hypot(self.x, self.y)
-        if distance <= self.radius:
-            return math.inf
         from_centre = math.remainder(theta - math.atan2(self.y, self.x), math.tau)
-        return math.asin(self.radius / distance) - abs(from_centre)
+        ways = [(self.radius - self.offset, -from_centre), (self.radius + self.offset, from_centre)]
+        return min([math.asin(reach / distance) + turned for reach, turned in ways if reach < distance], default=math.inf)
+
+
+class Tangent(Circle):
+    """A stretch of the outline under a flat face: the lift is the distance of its tangent from the axis."""
+
+    def law(self, theta):
+        """Lift, and its first and second derivative by the angle."""
+        cos, sin = math.cos(theta), math.sin(theta)
+        along, across = self.x * cos + self.y * sin, self.x * sin - self.y * cos
+        return along + self.radius, -across, -along
+
+    def mirrored(self):
+        return Tangent((self.x, -self.y), self.radius)
+
+    def last_ray(self, theta):
+        """No angle: it is analytic everywhere."""
+        return math.inf
 
 
 class Stretch:
@@ -296,17 +312,41 @@ class Cam:
             raise CannotCheck("the circles of the cam cannot touch each other")
         nose_distance = b + math.sqrt(b * b - c)
         nose_centre, top = nose_distance * toward_end, nose_distance + nose
-        meeting_point = flank_centre + flank * (nose_centre - flank_centre) / (flank - nose)
+        contact = numbers.get("contact", "point")
+        is_roller = isinstance(contact, dict)
+        if not is_roller and contact not in ("point", "flat"):
+            raise CannotCheck(f"no follower {contact!r} can be checked")
+        roller, offset = (number(contact, key) for key in ("roller_radius", "offset")) if is_roller else (0.0, 0.0)
+        normal = (nose_centre - flank_centre) / (flank - nose)
+        # A flat face is on two circles where its normal is theirs, a roller where its centre is on the line of motion.
+        meeting_point = normal if contact == "flat" else flank_centre + (flank + roller) * normal
         meeting = math.atan2(meeting_point[1], meeting_point[0])
         if not start < meeting < end:
             raise CannotCheck("flank and nose of the cam do not meet between flank_start_deg and nose_end_deg")
+        reaches = [base + roller, math.hypot(*meeting_point), top + roller]
+        if abs(offset) >= reaches[0]:
+            raise CannotCheck("the roller's line of motion misses the base circle")
+        early = [0.0] * 3 if contact == "flat" else [math.asin(offset / reach) for reach in reaches]
 
-        axis, bounds = np.zeros(2), [0.0, start, meeting, end, math.pi]
-        circles = Circle(axis, base), Circle(flank_centre, flank), Circle(nose_centre, nose), Circle(axis, top)
-        half = [stretch for stretch in zip(bounds, bounds[1:], circles) if stretch[1] > stretch[0]]
-        other = [(math.tau - stop, circle.mirrored()) for _, stop, circle in reversed(half)]
-        starts = [first for first, _, _ in half] + [first for first, _ in other]
-        return starts, [circle for _, _, circle in half] + [circle for _, circle in other]
+        def circle(centre, radius):
+            return Tangent(centre, radius) if contact == "flat" else Circle(centre, radius + roller, offset)
+
+        axis = np.zeros(2)
+        rising = [circle(flank_centre, flank), circle(nose_centre, nose)]
+        stretches = [
+            (start - early[0], rising[0]),
+            (meeting - early[1], rising[1]),
+            (end - early[2], circle(axis, top)),
+            (math.tau - end - early[2], rising[1].mirrored()),
+            (math.tau - meeting - early[1], rising[0].mirrored()),
+            (math.tau - start - early[0], circle(axis, base)),
+        ]
+        if end == math.pi:
+            del stretches[2]
+        stretches = sorted(((first % math.tau, law) for first, law in stretches), key=lambda stretch: stretch[0])
+        # Before the first the last goes on.
+        stretches.insert(0, (0.0, stretches[-1][1]))
+        return [first for first, _ in stretches], [law for _, law in stretches]
 
     def law(self, theta):
         return self.circles[bisect_right(self.starts, theta % math.tau) - 1].law(theta)

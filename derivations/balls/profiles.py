@@ -4,6 +4,8 @@ The decimals of the table are exact. The lift counts as a derivative, so that 2 
 of what follows from how the law is made. None: nothing meets there.
 """
 
+from math import floor
+
 from flint import arb, arb_mat, arb_poly, fmpq
 
 from .laws import Circle, Waves
@@ -47,16 +49,44 @@ def arcs(table):
     if not ahead > 0:
         raise Refused("cam: the flank and the nose circle do not touch")
     # Seen from axes with the flank's first ray as the first: O1 = (-behind, 0), O2 = ahead (cos, sin).
-    stretch = arb(flank) / apart
-    meeting = start + arb.atan2(stretch * ahead * sin, stretch * (ahead * cos + behind) - behind)
+    between = ahead * cos + behind, ahead * sin
+    contact, tip, offset = table.get("contact", "point"), arb(0), arb(0)
+    if isinstance(contact, dict):
+        tip, offset = (arb(_number(contact, name, "cam.contact")) for name in ("roller_radius", "offset"))
+        if not (tip > 0 and abs(offset) < base + tip):
+            raise Refused("cam.contact: a roller needs a radius above 0, and an offset that its base circle reaches")
+    elif contact not in ("point", "flat"):
+        raise Refused(f"cam.contact: {contact!r} is no follower")
+    if contact == "flat":
+        # A face is on two circles along their common normal.
+        (x, y), early = between, [arb(0)] * 3
+    else:
+        # The point, or the roller's centre, passes from one circle to the other there, its radius further out.
+        stretch = (flank + tip) / apart
+        x, y = stretch * between[0] - behind, stretch * between[1]
+        early = [(offset / radius).asin() for radius in (base + tip, (x * x + y * y).sqrt(), ahead + nose + tip)]
+    meeting = start + arb.atan2(y, x)
     if not (meeting > start and meeting < end):
         raise Refused("cam: flank and nose do not touch between flank_start and nose_end")
-    rising, falling = (Circle(behind, angle, arb(flank)) for angle in (start + arb.pi(), arb.pi() - start))
-    near, far = (Circle(ahead, angle, arb(nose)) for angle in (end, turn - end))
-    pieces = [(start, rising, 2), (meeting, near, 2)]
-    if end_deg < 180:
-        pieces.append((end, Waves(end, [ahead + nose]), 2))
-    return pieces + [(turn - end, far, 2), (turn - meeting, falling, 2), (turn - start, Waves(turn - start, [base]), 2)]
+
+    def circle(distance, direction, radius):
+        if contact == "flat":
+            return Waves(arb(0), [radius], [(distance, 1, -direction)])
+        return Circle(distance, direction, radius + tip, offset)
+
+    def dwell(radius):
+        return Waves(arb(0), [((radius + tip - offset) * (radius + tip + offset)).sqrt() if offset != 0 else radius + tip])
+
+    rising, falling = (circle(behind, angle, arb(flank)) for angle in (start + arb.pi(), arb.pi() - start))
+    near, far = (circle(ahead, angle, arb(nose)) for angle in (end, turn - end))
+    up = [angle - sooner for angle, sooner in zip((start, meeting, end), early)]
+    down = [turn - angle - sooner for angle, sooner in zip((start, meeting, end), early)]
+    pieces = [(up[0], rising), (up[1], near), (up[2], dwell(ahead + nose)), (down[2], far), (down[1], falling), (down[0], dwell(arb(base)))]
+    if end_deg == 180:
+        del pieces[2]
+    # With an offset the flank may begin before angle 0, or the last dwell behind a turn.
+    pieces = [(angle - turn * floor(float(angle / turn)), law, 2) for angle, law in pieces]
+    return sorted(pieces, key=lambda piece: float(piece[0]))
 
 
 def harmonic(table):

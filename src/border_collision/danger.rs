@@ -229,19 +229,21 @@ impl LocalMap {
         const GROWTH: f64 = 1.25;
         /// The largest that is tried, in the map's natural units.
         const MOST: f64 = 1e3;
+        // Along it one of the map's natural units is this long.
         let unit = 1.0 / along.component_div(&self.units()).norm();
+        let along = along * unit;
         let word = orbit.word.least_rotation().0;
         let is_lost = |size: f64| match self.end(point + along * size, mu) {
             LocalLongRun::Periodic(reached) => reached.word.least_rotation().0 != word,
             _ => true,
         };
-        let (mut returned, mut size) = (0.0, tolerance::LEAST_DISTURBANCE.value * unit);
-        while size < MOST * unit {
+        let (mut returned, mut size) = (0.0, tolerance::LEAST_DISTURBANCE.value);
+        while size < MOST {
             if is_lost(size) {
                 let Ok([inside, _]) = halve([returned, size], Width::Relative(tolerance::BASIN_EDGE.value), |size| {
                     Ok::<_, Infallible>(is_lost(size))
                 });
-                return Some(inside);
+                return Some(inside * unit);
             }
             returned = size;
             size *= GROWTH;

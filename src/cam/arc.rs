@@ -1,6 +1,6 @@
 //! A circle seen from the cam's axis: the law of the base, flank and nose of Appendix A.
 
-use std::f64::consts::{FRAC_PI_2, TAU};
+use std::f64::consts::FRAC_PI_2;
 
 use super::jet::{Jet, square_root};
 use super::lift::Lift;
@@ -130,11 +130,6 @@ impl Arc {
         let mut squared = Jet::of_sinusoid(-half_square * double_sin, half_square * double_cos, 2.0).series();
         squared[0] = self.root_squared(sin);
         Jet::of_sinusoid(-kappa * sin, kappa * cos, 1.0).plus(&Jet::from_series(square_root(squared)))
-    }
-
-    /// This arc in the mirror theta -> 2 pi - theta.
-    pub(super) fn mirrored(self) -> Self {
-        Self { direction: TAU - self.direction, ..self }
     }
 }
 

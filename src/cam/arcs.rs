@@ -1,4 +1,4 @@
-//! Appendix A of the paper: a cam of three circles that touch, seen from its axis.
+//! Appendix A of the paper: a cam of three circles that touch, met by a point, a roller or a flat face.
 //!
 //! The base circle (radius rho0) carries into the flank circle (rho1) at R, the flank into the nose circle (rho2) at P,
 //! the nose into the top dwell (rho3) at Q; the second half mirrors the first. The paper gives kappa1, kappa2, P and rho3
@@ -9,13 +9,15 @@ use std::f64::consts::{PI, TAU};
 
 use super::arc::Arc;
 use super::law::Law;
-use super::{Cam, Joint};
+use super::offset_arc::OffsetArc;
+use super::sinusoid::Sinusoid;
+use super::{Cam, Joint, Segment};
 use crate::elementary;
-use crate::model::{ArcsProfile, Model, ModelError};
+use crate::model::{ArcsProfile, FollowerContact, Model, ModelError};
 
 /// The cam of an `arcs` profile, or which field keeps its circles from touching.
 pub(super) fn build(model: &Model, profile: &ArcsProfile) -> Result<Cam, ModelError> {
-    let ArcsProfile { base_radius, flank_radius, nose_radius, flank_start_deg, nose_end_deg } = *profile;
+    let ArcsProfile { base_radius, flank_radius, nose_radius, flank_start_deg, nose_end_deg, .. } = *profile;
     if nose_end_deg <= flank_start_deg {
         return Err(model.reject("cam.nose_end_deg", format!("must be above cam.flank_start_deg = {flank_start_deg}")));
     }
@@ -46,23 +48,134 @@ pub(super) fn build(model: &Model, profile: &ArcsProfile) -> Result<Cam, ModelEr
         );
         return Err(model.reject("cam.nose_radius", words));
     }
-    // P = O1 + rho1 (O2 - O1)/|O2 - O1|, in axes turned so that R is at angle 0.
-    let (nose_x, nose_y) = (nose_distance * span_cos, nose_distance * span_sin);
-    let stretch = flank_radius / centres;
-    let (x, y) = (stretch * (nose_x + flank_distance) - flank_distance, stretch * nose_y);
-    let meeting = flank_start + elementary::atan2(y, x);
-    let flank = Arc { distance: flank_distance, direction: flank_start + PI, radius: flank_radius };
-    let nose = Arc { distance: nose_distance, direction: nose_end, radius: nose_radius };
-    let base = Law::Dwell(base_radius);
-    // P's outward normal leans towards R from Q's, so P lies between them and every ray leaves both circles outwards.
-    let laws = vec![
-        (0.0, base.clone()),
-        (flank_start, Law::Arc(flank)),
-        (meeting, Law::Arc(nose)),
-        (nose_end, Law::Dwell(nose_distance + nose_radius)),
-        (TAU - nose_end, Law::Arc(nose.mirrored())),
-        (TAU - meeting, Law::Arc(flank.mirrored())),
-        (TAU - flank_start, base),
+    let circles = Circles { flank_distance, flank_radius, nose_distance, nose_radius };
+    let ends = [flank_start, nose_end];
+    match profile.contact {
+        FollowerContact::Point => Ok(circles.met_by_point(ends, base_radius, 0.0)),
+        FollowerContact::Flat => Ok(circles.met_by_face(ends, base_radius)),
+        FollowerContact::Roller { roller_radius, offset } => {
+            // The roller's centre moves on the pitch curve: circles about the same centres, a roller's radius larger.
+            let pitch = Circles {
+                flank_radius: flank_radius + roller_radius,
+                nose_radius: nose_radius + roller_radius,
+                ..circles
+            };
+            let base = base_radius + roller_radius;
+            if offset.abs() >= base {
+                let words = format!("must be between -{base} and {base}, the radius of the pitch curve's base circle");
+                return Err(model.reject("cam.contact.offset", words));
+            }
+            let cam = pitch.met_by_point(ends, base, offset);
+            let is_met = |segment: &Segment| match &segment.law {
+                Law::OffsetArc(arc) => arc.reaches(segment.start, segment.end),
+                _ => true,
+            };
+            if !cam.segments().iter().all(is_met) {
+                let words =
+                    "must be nearer to 0: the pressure angle reaches 90 degrees, and the cam cannot lift the roller";
+                return Err(model.reject("cam.contact.offset", words));
+            }
+            Ok(cam)
+        }
+    }
+}
+
+/// Flank and nose circle, their centres at these distances from the axis.
+struct Circles {
+    flank_distance: f64,
+    flank_radius: f64,
+    nose_distance: f64,
+    nose_radius: f64,
+}
+
+impl Circles {
+    /// Directions, rad, of the centres of the flank and the nose on the way up; they are mirrored on the way down.
+    fn directions([flank_start, nose_end]: [f64; 2]) -> [f64; 2] {
+        [flank_start + PI, nose_end]
+    }
+
+    /// O2 - O1, in axes turned so that R is at angle 0.
+    fn between(&self, [flank_start, nose_end]: [f64; 2]) -> [f64; 2] {
+        let (sin, cos) = elementary::sin_cos(nose_end - flank_start);
+        [self.nose_distance * cos + self.flank_distance, self.nose_distance * sin]
+    }
+
+    /// The cam of a point that moves on a line at a distance `offset` to the left of the axis, and follows these circles.
+    fn met_by_point(&self, ends: [f64; 2], base: f64, offset: f64) -> Cam {
+        let Self { flank_distance, flank_radius, nose_distance, nose_radius } = *self;
+        let [flank_start, nose_end] = ends;
+        // P = O1 + rho1 (O2 - O1)/|O2 - O1|
+        let [x, y] = self.between(ends);
+        let stretch = flank_radius / (flank_radius - nose_radius);
+        let (x, y) = (stretch * x - flank_distance, stretch * y);
+        let meeting = flank_start + elementary::atan2(y, x);
+        let top = nose_distance + nose_radius;
+        // A point at a radius from the axis is on the line before the ray through it is parallel to the line.
+        let earlier = |radius: f64| elementary::asin(offset / radius);
+        let early = [earlier(base), earlier(elementary::hypot(x, y)), earlier(top)];
+        let law = |distance: f64, direction: f64, radius: f64| match offset == 0.0 {
+            true => Law::Arc(Arc { distance, direction, radius }),
+            false => Law::OffsetArc(OffsetArc { distance, direction, radius, offset }),
+        };
+        let dwell = |radius: f64| match offset == 0.0 {
+            true => Law::Dwell(radius),
+            false => Law::Dwell(((radius - offset) * (radius + offset)).sqrt()),
+        };
+        let circles = [(flank_distance, flank_radius), (nose_distance, nose_radius)];
+        mirrored(
+            [flank_start, meeting, nose_end],
+            early,
+            [dwell(base), dwell(top)],
+            |circle, direction| law(circles[circle].0, direction, circles[circle].1),
+            Self::directions(ends),
+        )
+    }
+
+    /// The cam of a face square to the line of motion: it touches a circle where its normal is the line, at `kappa cos(phi) + rho` from the axis.
+    fn met_by_face(&self, ends: [f64; 2], base: f64) -> Cam {
+        let Self { flank_distance, flank_radius, nose_distance, nose_radius } = *self;
+        let [flank_start, nose_end] = ends;
+        // Flank and nose have a common normal, along the line of centres.
+        let [x, y] = self.between(ends);
+        let meeting = flank_start + elementary::atan2(y, x);
+        let circles = [(flank_distance, flank_radius), (nose_distance, nose_radius)];
+        let law = |circle: usize, direction: f64| {
+            let (distance, radius) = circles[circle];
+            // kappa cos(phi) + rho = kappa + rho - kappa (1 - cos(phi))
+            let value = distance + radius;
+            Law::Sinusoid(Sinusoid { start: direction, value, tilt: 0.0, sine: 0.0, cosine: -distance, frequency: 1.0 })
+        };
+        let dwells = [Law::Dwell(base), Law::Dwell(nose_distance + nose_radius)];
+        mirrored([flank_start, meeting, nose_end], [0.0; 3], dwells, law, Self::directions(ends))
+    }
+}
+
+/// The cam of flank, nose, top, nose, flank and base. The contour is its own mirror image: its circles meet at `meetings` on the way up, and the
+/// follower is there `early` by these angles, rad, on the way up and down.
+fn mirrored(
+    meetings: [f64; 3],
+    early: [f64; 3],
+    [base, top]: [Law; 2],
+    law: impl Fn(usize, f64) -> Law,
+    directions: [f64; 2],
+) -> Cam {
+    let up = [0, 1, 2].map(|at| meetings[at] - early[at]);
+    let down = [2, 1, 0].map(|at| TAU - meetings[at] - early[at]);
+    let [flank, nose] = directions;
+    let laws = [
+        (up[0], law(0, flank)),
+        (up[1], law(1, nose)),
+        (up[2], top),
+        (down[0], law(1, TAU - nose)),
+        (down[1], law(0, TAU - flank)),
+        (down[2], base),
     ];
-    Ok(Cam::from_laws(laws, Joint::Free))
+    // With an offset the first may start before angle 0, or the last behind a turn.
+    let within = |(start, law): (f64, Law)| {
+        let turns = (start / TAU).floor() * TAU;
+        if turns == 0.0 || start == TAU { (start, law) } else { (start - turns, law.turned(-turns)) }
+    };
+    let mut laws: Vec<(f64, Law)> = laws.into_iter().map(within).collect();
+    laws.sort_by(|one, two| one.0.total_cmp(&two.0));
+    Cam::from_laws(laws, Joint::Free)
 }

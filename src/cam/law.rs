@@ -4,6 +4,7 @@ use super::arc::Arc;
 use super::harmonics::Harmonics;
 use super::jet::Jet;
 use super::lift::Lift;
+use super::offset_arc::OffsetArc;
 use super::polynomial::Polynomial;
 use super::sinusoid::Sinusoid;
 use crate::interval::{Interval, Number};
@@ -16,6 +17,8 @@ pub enum Law {
     Dwell(f64),
     /// A circle seen from the cam's axis.
     Arc(Arc),
+    /// A circle seen along a line beside the cam's axis.
+    OffsetArc(OffsetArc),
     /// A polynomial in the angle.
     Polynomial(Polynomial),
     /// A sine on a straight line.
@@ -30,6 +33,7 @@ macro_rules! of_law {
         match $law {
             Law::Dwell($lift) => $dwell,
             Law::Arc($other) => $given,
+            Law::OffsetArc($other) => $given,
             Law::Polynomial($other) => $given,
             Law::Sinusoid($other) => $given,
             Law::Harmonics($other) => $given,
@@ -43,6 +47,7 @@ impl Law {
         match self {
             Self::Dwell(_) => "dwell",
             Self::Arc(_) => "arc",
+            Self::OffsetArc(_) => "offset-arc",
             Self::Polynomial(_) => "polynomial",
             Self::Sinusoid(_) => "sinusoid",
             Self::Harmonics(_) => "harmonics",
@@ -113,6 +118,7 @@ impl Law {
         match self {
             Self::Dwell(value) => Self::Dwell(*value),
             Self::Arc(arc) => Self::Arc(Arc { direction: arc.direction + turn, ..*arc }),
+            Self::OffsetArc(arc) => Self::OffsetArc(OffsetArc { direction: arc.direction + turn, ..*arc }),
             Self::Polynomial(polynomial) => Self::Polynomial(polynomial.turned(turn)),
             Self::Sinusoid(sinusoid) => Self::Sinusoid(Sinusoid { start: sinusoid.start + turn, ..*sinusoid }),
             Self::Harmonics(harmonics) => Self::Harmonics(harmonics.clone()),

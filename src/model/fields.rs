@@ -169,6 +169,11 @@ impl Fields {
         }
     }
 
+    /// Whether there is a table at a path.
+    pub(super) fn is_table(&self, path: &str) -> bool {
+        matches!(self.fields.get(path), Some(Field { value: Value::Table, .. }))
+    }
+
     /// Whether a list is empty.
     pub(super) fn is_empty_list(&self, path: &str) -> bool {
         matches!(self.fields.get(path), Some(Field { value: Value::Array(0), .. }))
@@ -177,9 +182,8 @@ impl Fields {
     /// Number of tables `[[path]]`, at least one and at most `most`.
     pub(super) fn tables(&mut self, path: &str, most: usize) -> Result<usize, ModelError> {
         let length = self.length(path, "tables", most)?;
-        let is_table = |field: Option<&Field>| matches!(field, Some(Field { value: Value::Table, .. }));
         for item in (0..length).map(|index| format!("{path}[{index}]")) {
-            if !is_table(self.fields.get(&*item)) {
+            if !self.is_table(&item) {
                 return Err(self.reject(&item, format!("must be a table under [[{path}]]")));
             }
         }
@@ -209,6 +213,16 @@ impl Fields {
     pub(super) fn text_or(&mut self, path: &str, default: &str) -> Result<String, ModelError> {
         self.may_hold(path);
         if self.has(path) { self.text(path) } else { Ok(default.into()) }
+    }
+
+    /// The text at a path, or the default where there is nothing. `None` for anything else than text.
+    pub(super) fn word<'a>(&'a mut self, path: &str, default: &'a str) -> Option<&'a str> {
+        self.may_hold(path);
+        match self.fields.get(path).map(|field| &field.value) {
+            None => Some(default),
+            Some(Value::Text(text)) => Some(text),
+            Some(_) => None,
+        }
     }
 
     fn take(&mut self, path: &str) -> Result<&Value, ModelError> {

@@ -32,7 +32,7 @@ pub use profile::CORNER_ROUNDING;
 pub(crate) use profile::{
     ArcsProfile, MOST_COEFFICIENTS, MotionSegment, PolynomialSegment, ProgramProfile, RectifiedSineProfile,
 };
-pub use profile::{CamProfile, HarmonicProfile, StandardMotion};
+pub use profile::{CamProfile, FollowerContact, HarmonicProfile, StandardMotion};
 #[doc(hidden)]
 pub use quantity::{Dimension, MODEL_NUMBERS, ModelNumber};
 pub(crate) use rows::TableRow;

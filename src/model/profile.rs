@@ -99,6 +99,49 @@ pub struct ArcsProfile {
     pub flank_start_deg: f64,
     /// Q = 90 - theta3, degrees from the middle of the base circle.
     pub nose_end_deg: f64,
+    /// The end of the follower that touches the cam.
+    #[serde(skip_serializing_if = "FollowerContact::is_point")]
+    pub contact: FollowerContact,
+}
+
+/// The end of the follower that touches the cam; a lift belongs to one of them.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum FollowerContact {
+    /// A point on a line through the cam's axis, as in the paper.
+    #[default]
+    Point,
+    /// A face square to the line of motion.
+    Flat,
+    /// A roller.
+    Roller {
+        /// Its radius, m.
+        roller_radius: f64,
+        /// Distance of its line of motion from the cam's axis, m; positive where each point of the cam arrives earlier.
+        offset: f64,
+    },
+}
+
+impl FollowerContact {
+    /// Whether it is a point.
+    pub fn is_point(&self) -> bool {
+        *self == Self::Point
+    }
+}
+
+/// Serializes as the field `contact` of a model file.
+impl Serialize for FollowerContact {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        #[derive(Serialize)]
+        struct Roller {
+            roller_radius: f64,
+            offset: f64,
+        }
+        match *self {
+            Self::Point => to.serialize_str("point"),
+            Self::Flat => to.serialize_str("flat"),
+            Self::Roller { roller_radius, offset } => Roller { roller_radius, offset }.serialize(to),
+        }
+    }
 }
 
 /// `c = offset + sum a_k cos(k theta + p_k)`, k from 1.
@@ -234,7 +277,21 @@ fn arcs(fields: &mut Fields) -> Result<CamProfile, ModelError> {
         nose_radius: fields.number("cam.nose_radius")?,
         flank_start_deg: fields.number("cam.flank_start_deg")?,
         nose_end_deg: fields.number("cam.nose_end_deg")?,
+        contact: contact(fields)?,
     }))
+}
+
+fn contact(fields: &mut Fields) -> Result<FollowerContact, ModelError> {
+    const PATH: &str = "cam.contact";
+    if fields.is_table(PATH) {
+        let roller_radius = fields.number("cam.contact.roller_radius")?;
+        return Ok(FollowerContact::Roller { roller_radius, offset: fields.number("cam.contact.offset")? });
+    }
+    match fields.word(PATH, "point") {
+        Some("point") => Ok(FollowerContact::Point),
+        Some("flat") => Ok(FollowerContact::Flat),
+        _ => Err(fields.reject(PATH, "must be a name or a roller: \"point\", \"flat\", { roller_radius = 0.01 }")),
+    }
 }
 
 fn harmonic(fields: &mut Fields) -> Result<CamProfile, ModelError> {

@@ -118,7 +118,7 @@ const fn number(
 /// Every number of the format, in the order in which reports have them.
 #[doc(hidden)]
 #[rustfmt::skip]
-pub static MODEL_NUMBERS: [ModelNumber; 26] = {
+pub static MODEL_NUMBERS: [ModelNumber; 28] = {
     use Dimension::*;
     const POSITIVE: Allowed = Allowed::POSITIVE;
     const NOT_NEGATIVE: Allowed = Allowed::NOT_NEGATIVE;
@@ -138,6 +138,8 @@ pub static MODEL_NUMBERS: [ModelNumber; 26] = {
         number("cam.nose_radius", "ρ₂", "radius of the nose", Length, POSITIVE, &["arcs"]),
         number("cam.flank_start_deg", "", "cam angle where the flank starts", Degrees, HALF_A_TURN, &["arcs"]),
         number("cam.nose_end_deg", "", "cam angle where the nose ends", Degrees, HALF_A_TURN, &["arcs"]),
+        number("cam.contact.roller_radius", "", "radius of the roller", Length, POSITIVE, &["arcs"]),
+        number("cam.contact.offset", "", "distance of the line of motion from the axis", Length, FINITE, &["arcs"]).or(0.0),
         number("cam.offset", "", "middle of the lift", Length, FINITE, &["harmonic", "rectified-sine"]),
         number("cam.amplitude", "", "amplitude of the lift", Length, FINITE, &["rectified-sine"]),
         number("cam.base", "", "lift at angle 0", Length, FINITE, &["program"]),

@@ -189,9 +189,8 @@ impl Judgement {
         let speed = lift_size(machine) * machine.angular_velocity();
         let around = |middle: f64, radius: f64| Interval::new(middle - radius, middle + radius);
         let places = cycle.impacts.iter().map(|impact| {
-            let rounding = tolerance::ULP.value * impact.velocity_before.abs();
             let angle = around(impact.cam_angle, part);
-            [angle, around(impact.velocity_before, part * speed + rounding)]
+            [angle, around(impact.velocity_before, part * speed.max(impact.velocity_before.abs()))]
         });
         let factors = factors(machine, cycle, &places.collect::<Vec<_>>());
         Self::of(&factors, determinant, loses(machine), matrix)

@@ -91,7 +91,7 @@ fn with_places(numbers: &[f64], places: usize) -> String {
 
 /// The lengths of Appendix A of the model's cam, and theta1, theta2, theta3, rad and signed: tangency gives what the file leaves out.
 fn computed_with(context: &Context<'_>) -> Result<([f64; 6], [f64; 3]), &'static str> {
-    let CamProfile::Arcs(ArcsProfile { base_radius, flank_radius, nose_radius, flank_start_deg, nose_end_deg }) =
+    let CamProfile::Arcs(ArcsProfile { base_radius, flank_radius, nose_radius, flank_start_deg, nose_end_deg, .. }) =
         context.model.cam
     else {
         return Err("the cam is not one of arcs");

@@ -2,9 +2,9 @@
 
 use serde::Serialize;
 
-use crate::cam::{Cam, Corner, Jet, Segment};
+use crate::cam::{Cam, ContourPoint, Corner, Jet, Law, Segment};
 use crate::measured::{Measured, PlausibleCams};
-use crate::model::{CamProfile, Model, ModelError, StandardMotion};
+use crate::model::{ArcsProfile, CamProfile, FollowerContact, Model, ModelError, StandardMotion};
 
 /// Segments and corners of a model's cam; serializes to the document `corner-impact/cam/1`.
 #[derive(Clone, Debug, Serialize)]
@@ -18,6 +18,9 @@ pub struct CamSheet {
     pub law: &'static str,
     /// Lowest and highest lift.
     pub lift_m: [f64; 2],
+    /// Contour of a cam whose lift follows from it, and what it asks of the follower.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub geometry: Option<CamGeometry>,
     /// Accuracy of the cam, if it is measured.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub measured: Option<Measured>,
@@ -34,6 +37,51 @@ pub struct CamSheet {
     /// Corners of the cam itself, without the knots of a smoothing spline.
     #[serde(skip)]
     pub own_corners: Vec<Corner>,
+}
+
+/// Contour of a cam and the follower that touches it, computed at 361 angles of each segment.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct CamGeometry {
+    /// End of the follower that touches the cam.
+    pub contact: FollowerContact,
+    /// Least radius of curvature of the contour, m.
+    pub least_radius_m: f64,
+    /// Cam angle of that radius, rad.
+    pub least_radius_angle_rad: f64,
+    /// Largest angle between the contour's normal and the follower's motion, rad, without its sign.
+    pub pressure_angle_rad: f64,
+    /// Cam angle of that angle, rad.
+    pub pressure_angle_at_rad: f64,
+    /// Width along which the cam touches a flat face, m; none for other followers.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub face_width_m: Option<f64>,
+}
+
+impl CamGeometry {
+    /// Computes the geometry of a model's cam. `None` where the model gives a lift and no contour.
+    pub fn of(model: &Model, cam: &Cam) -> Option<Self> {
+        let CamProfile::Arcs(ArcsProfile { contact, .. }) = *sharp(&model.cam) else { return None };
+        let steepness = |point: &ContourPoint| point.pressure_angle.abs();
+        let sharpest = cam.contour(contact).min_by(|one, two| one.radius.total_cmp(&two.radius))?;
+        let steepest = cam.contour(contact).max_by(|one, two| steepness(one).total_cmp(&steepness(two)))?;
+        let slope = |sign: f64| cam.least([0.0, sign, 0.0, 0.0]).value;
+        Some(Self {
+            contact,
+            least_radius_m: sharpest.radius,
+            least_radius_angle_rad: sharpest.cam_angle,
+            pressure_angle_rad: steepness(&steepest),
+            pressure_angle_at_rad: steepest.cam_angle,
+            face_width_m: (contact == FollowerContact::Flat).then(|| -slope(1.0) - slope(-1.0)),
+        })
+    }
+}
+
+/// The profile without its rounding.
+fn sharp(profile: &CamProfile) -> &CamProfile {
+    match profile {
+        CamProfile::Rounded { sharp: inner, .. } => sharp(inner),
+        profile => profile,
+    }
 }
 
 /// The largest size of a derivative of the lift between corners.
@@ -65,17 +113,14 @@ impl Largest {
 fn motions(model: &Model, cam: &Cam) -> Vec<&'static str> {
     /// Arcs from the middle of the base circle on, as in Appendix A.
     const ARCS: [&str; 7] = ["base circle", "flank", "nose", "top dwell", "nose", "flank", "base circle"];
-    let mut profile = &model.cam;
-    while let CamProfile::Rounded { sharp, .. } = profile {
-        profile = sharp;
-    }
     let names = |at: &dyn Fn(usize, f64) -> Option<&'static str>| {
         let name = |(index, segment): (usize, &Segment)| {
             at(index, 0.5 * (segment.start + segment.end).to_degrees()).unwrap_or(segment.law.name())
         };
         cam.segments().iter().enumerate().map(name).collect()
     };
-    match profile {
+    let is_dwell = |segment: Option<&Segment>| segment.is_some_and(|it| matches!(it.law, Law::Dwell(_)));
+    match sharp(&model.cam) {
         CamProfile::Program(program) => names(&|_, middle| {
             let mut end = 0.0;
             let motion = program.segments.iter().find(|motion| {
@@ -84,7 +129,10 @@ fn motions(model: &Model, cam: &Cam) -> Vec<&'static str> {
             })?;
             StandardMotion::NAMES.iter().find(|(_, of)| *of == motion.motion).map(|(name, _)| *name)
         }),
-        CamProfile::Arcs(_) if cam.segments().len() == ARCS.len() => names(&|index, _| ARCS.get(index).copied()),
+        // An offset may turn the base circle past angle 0.
+        CamProfile::Arcs(_) if cam.segments().len() == ARCS.len() && is_dwell(cam.segments().first()) => {
+            names(&|index, _| ARCS.get(index).copied())
+        }
         _ => names(&|_, _| None),
     }
 }
@@ -109,6 +157,7 @@ impl CamSheet {
             law: model.cam.law(),
             lift_m: [cam.lowest().value, -cam.least([-1.0, 0.0, 0.0, 0.0]).value],
             motions: motions(model, cam),
+            geometry: CamGeometry::of(model, cam),
             largest: [1, 2, 3].map(|order| Largest::of(cam, order)),
             measured: PlausibleCams::of(model)?.map(|likely| likely.measured),
             segments,

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use crate::common;
 use approx::{assert_abs_diff_eq, assert_relative_eq};
-use corner_impact::cam::{Arc, Cam, Harmonics, Law, Lift, Polynomial, Sinusoid};
+use corner_impact::cam::{Arc, Cam, Harmonics, Law, Lift, OffsetArc, Polynomial, Sinusoid};
 use corner_impact::model::{HarmonicProfile, Model, StandardMotion};
 
 /// One model file for every law but `arcs`, which all others have.
@@ -61,6 +61,18 @@ fn references() -> Vec<Reference> {
                 7.4453170566971969e-5,
                 0.0085983275163966362,
                 -0.010398277769553475,
+            ],
+        ),
+        (
+            Law::OffsetArc(OffsetArc { distance: 0.45, direction: 4.7, radius: 0.85, offset: 0.12 }),
+            1.9,
+            [0.42544374437850329, 0.13539846017647512, 0.2175391231402102, 0.079144355949524703, -0.37787995933449674],
+            [
+                1.353984601765839e-13,
+                1.3539856894604989e-7,
+                0.00013550724293722296,
+                0.014641544954619643,
+                -0.022819974040244959,
             ],
         ),
         (
@@ -384,6 +396,9 @@ fn the_least_is_that_of_a_scan() {
 /// the other by more than rounding; in whatever unit, and below 0 as well.
 #[test]
 fn tops_are_the_highest_places_each_once() {
+    // Also of a cam that has no lift at all.
+    let flat = cam_of("law = \"harmonic\"\noffset = 0.0\namplitudes = [0.0]\nphases_deg = [0.0]\n");
+    assert!(!flat.tops().is_empty());
     let angles = |cam: &Cam| cam.tops().iter().map(|top| top.angle.to_degrees()).collect::<Vec<f64>>();
     for power in [0, -40, 20] {
         let unit = 2.0_f64.powi(power);

@@ -1,5 +1,7 @@
 //! Are runs followed for as long, and told by as much, as the budget and the rules of the long run say?
 
+use std::cell::Cell;
+
 use approx::assert_relative_eq;
 use corner_impact::cam::Corner;
 use corner_impact::corner::CornerImpact;
@@ -369,7 +371,9 @@ fn what_follows_a_known_release_is_not_asked_again() {
     let short = LongRuns::unaided(&machine, budget(0));
     assert!(long.budget.rest() == long.budget.later_rest() && short.budget.rest() < short.budget.later_rest());
     let start = machine.start(1.0, State { position: 60.0, velocity: 0.0 }).unwrap();
+    let asked = Cell::new(0);
     let wanders = |angle: f64| {
+        asked.set(asked.get() + 1);
         let released = long.released(angle).unwrap();
         Some(AfterRelease::Wanders { released, end: released })
     };
@@ -380,6 +384,8 @@ fn what_follows_a_known_release_is_not_asked_again() {
         assert_eq!(kind(runs, &|_| None), Kind::Resting);
     }
     assert_ne!(kind(&long, &wanders), Kind::Resting);
+    // It goes on from where the first such release has led, and ends at the second.
+    assert_eq!(asked.get(), 2);
     assert_eq!(kind(&short, &wanders), Kind::Resting);
     let recurs = |angle: f64| {
         let orbit =

@@ -53,6 +53,7 @@ mod explain;
 mod falling;
 mod figures;
 mod first_touch;
+mod followers;
 mod fuzz;
 mod global;
 mod growth_numbers;

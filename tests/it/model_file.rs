@@ -82,6 +82,9 @@ fn place(samples: &[(String, String)], heading: &str) -> (String, String) {
         "`[units]`" => (of("arcs"), "[units]".into()),
         "`[study]`" => (of("arcs"), "[study]".into()),
         "`[cam]`" => (of("arcs"), "[cam]".into()),
+        "`[cam.contact]` of a roller" => {
+            (of("arcs") + "\n[cam.contact]\nroller_radius = 0.1\n", "[cam.contact]".into())
+        }
         "`[[cam.segment]]` of a program" => (of("program"), "[[cam.segment]]".into()),
         "`[[cam.segment]]` of polynomials" => (of("polynomial"), "[[cam.segment]]".into()),
         other => (of(other.split('"').nth(1).unwrap_or_else(|| panic!("{other}?"))), "[cam]".into()),

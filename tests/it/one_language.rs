@@ -142,9 +142,12 @@ fn loads_of_a_run_are_those_of_its_events() {
     // The trace has a row a degree.
     assert!((0.0..1e-3 * gap).contains(&(of("largest_gap_m") - gap)), "{gap}: {found}");
     // Of a motion that does not repeat, in the last hundred revolutions.
-    for revolutions in [2_u32, 250] {
+    // Whether the run is one piece, or a piece a revolution.
+    let folder = TempDir::new().unwrap();
+    let strobed = format!(" --strobe 1.5 --strobe-out {}", folder.path().join("states.csv").display());
+    for (revolutions, pieces) in [(2_u32, ""), (250, ""), (250, &*strobed)] {
         let line = format!("simulate --rpm 670 --revolutions {revolutions}");
-        let found: serde_json::Value = serde_json::from_str(&printed(&format!("{line} --json"))).unwrap();
+        let found: serde_json::Value = serde_json::from_str(&printed(&format!("{line}{pieces} --json"))).unwrap();
         let recorded = rows(&printed(&format!("{line} --events -")));
         let last = recorded.iter().filter(|row| number(&row[0]) >= f64::from(revolutions.saturating_sub(100)));
         let speeds = last.map(|row| (number(&row[5]) - number(&row[7])).abs());

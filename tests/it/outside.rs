@@ -28,6 +28,15 @@ for one, other in zip(plain['cams'], exact['cams']):
 print(json.dumps(found))
 ";
 
+/// The paper's machine with another follower on its cam.
+fn followed_by(contact: &Value) -> Model {
+    let paper = common::osorio();
+    let study = json!({ "rpm_min": 350, "rpm_max": 1500 });
+    let mut document = json!({ "follower": paper.follower, "cam": paper.cam, "study": study });
+    document["cam"]["contact"] = contact.clone();
+    Model::of_document("followed", &document).unwrap()
+}
+
 /// Every law, with its corners rounded where it has some, and splines through and near the rows of a table: one with corners and
 /// dwells that are found, one with a row beside the corner that is no knot.
 fn cams() -> Vec<(String, Model)> {
@@ -44,6 +53,8 @@ fn cams() -> Vec<(String, Model)> {
         document["cam"]["corner_rounding_deg"] = json!(rounding);
         models.push((format!("{name}, rounded"), Model::of_document("rounded", &document).unwrap()));
     }
+    let contacts = [json!("flat"), json!({ "roller_radius": 0.2 }), json!({ "roller_radius": 0.1, "offset": 0.05 })];
+    models.extend(contacts.map(|contact| (format!("arcs, {contact}"), followed_by(&contact))));
     models.push(("smoothed".into(), measured(&json!({}))));
     models.push(("smoothed, a corner given".into(), measured(&json!({ "corners_deg": [150.3], "dwells_deg": [] }))));
     models
@@ -120,7 +131,10 @@ fn every_route_runs_on_every_cam_with_corners() {
         let file = text(common::corner_impact(["new", "--law", law]).stdout);
         Model::parse("new.toml", &file).unwrap()
     };
-    for model in [new("program"), new("polynomial"), measured(&json!({}))].into_iter().chain(typed()) {
+    let followers =
+        [json!("flat"), json!({ "roller_radius": 0.1, "offset": 0.05 })].map(|contact| followed_by(&contact));
+    let cams = [new("program"), new("polynomial"), measured(&json!({}))];
+    for model in cams.into_iter().chain(typed()).chain(followers) {
         let (law, found) = (model.cam.law(), verify(&model, External::Run).unwrap());
         assert!(found.agrees, "{law}: {:?}", found.skipped);
         let last = (law != "table").then_some(RouteName::Certificate);

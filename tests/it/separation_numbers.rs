@@ -60,15 +60,10 @@ impl Narrow {
     /// Of the last piece, rad: less than between any two angles that are looked at all round.
     const LAST: f64 = 0.2 * PI / 180.0;
 
-    fn new() -> Self {
+    /// The pull is deepest at this part of the last piece, where `x sqrt(g) = 0.14`.
+    fn deepest_at(part: f64) -> Self {
         let (mass, stiffness) = (0.5, 1000.0);
-        // The pull is deepest where x sqrt(g) = 0.14: two thirds of the last piece.
-        Self {
-            g: (0.14 / (2.0 / 3.0 * Self::LAST)).powi(2),
-            mass,
-            damping: f64::sqrt(2.4 * stiffness * mass),
-            stiffness,
-        }
+        Self { g: (0.14 / (part * Self::LAST)).powi(2), mass, damping: f64::sqrt(2.4 * stiffness * mass), stiffness }
     }
 
     /// Lift and derivatives by x.
@@ -127,10 +122,17 @@ impl Narrow {
 /// Below that speed the follower stays, and from it on the damper holds it back, although faster it is on the cam again.
 #[test]
 fn a_damper_that_pulls_over_a_narrow_range_is_found() {
-    let it = Narrow::new();
+    for place in [2.0 / 3.0, 0.45, 0.2] {
+        is_found(place);
+    }
+}
+
+fn is_found(place: f64) {
+    let it = Narrow::deepest_at(place);
     let cam = it.cam();
-    let deepest = it.pull(2.0 / 3.0 * Narrow::LAST);
-    for part in [0.97, 0.9, 0.5, 0.1, 1e-3] {
+    let deepest = it.pull(place * Narrow::LAST);
+    let between = rpm(0.13 * place * 1.5);
+    for part in [0.999, 0.97, 0.9, 0.5, 0.1, 1e-3] {
         let preload = part * deepest;
         let model =
             machine([it.mass, it.damping, it.stiffness], &format!("preload = {preload:?}\ngravity = 0.0"), &cam);
@@ -140,7 +142,7 @@ fn a_damper_that_pulls_over_a_narrow_range_is_found() {
         let least = |part: f64| Contact::new(&cam, model.follower).least(part * rpm(omega)).value;
         assert!(least(1.0 - 1e-4) > 0.0 && least(1.0 + 1e-4) < 0.0, "{part}");
         // Between the two ranges of speeds, whatever the damper does.
-        let faster = Contact::new(&cam, model.follower).least(rpm(0.13)).value;
+        let faster = Contact::new(&cam, model.follower).least(between).value;
         assert!(faster > 0.0, "{faster}");
     }
     // Without a preload it is held back however slow the cam turns, and faster it leaves where it does with next to none.
@@ -149,10 +151,10 @@ fn a_damper_that_pulls_over_a_narrow_range_is_found() {
         let model = machine([it.mass, it.damping, it.stiffness], &lines, &cam);
         let cam = Cam::new(&model).unwrap();
         let contact = Contact::new(&cam, model.follower);
-        (contact.separation(), contact.separation_above(rpm(0.13)).speed())
+        (contact.separation(), contact.separation_above(between).speed())
     });
     assert!(matches!(without.0, Separation::NotPressed { .. }), "{without:?}");
-    assert!(without.1 > rpm(0.13));
+    assert!(without.1 > between);
     assert_relative_eq!(without.1, with.1, max_relative = 1e-6);
 }
 
@@ -203,13 +205,37 @@ fn a_damper_holds_back_by_the_order_of_the_bottom() {
         }
     }
     // A cycloid comes down as x^3.
+    for (motion, critical) in [("parabolic", 2.0), ("cycloidal", 8.0 / 3.0)] {
+        let held = [0.99, 1.01].map(|part| is_held(&two_dwells(motion), part * critical));
+        assert_eq!(held, [false, true], "{motion}");
+    }
+}
+
+/// Rises and falls by 0.02 m over 90 degrees each, with dwells between.
+fn two_dwells(motion: &str) -> String {
     let segment =
         |motion: &str, rise: f64| format!("[[cam.segment]]\nmotion = \"{motion}\"\nspan_deg = 90.0\nrise = {rise:?}\n");
-    for (motion, critical) in [("parabolic", 2.0), ("cycloidal", 8.0 / 3.0)] {
-        let segments =
-            segment(motion, 0.02) + &segment("dwell", 0.0) + &segment(motion, -0.02) + &segment("dwell", 0.0);
-        let cam = format!("law = \"program\"\nbase = 0.0\n{segments}");
-        assert_eq!([0.99, 1.01].map(|part| is_held(&cam, part * critical)), [false, true], "{motion}");
+    let segments = segment(motion, 0.02) + &segment("dwell", 0.0) + &segment(motion, -0.02) + &segment("dwell", 0.0);
+    format!("law = \"program\"\nbase = 0.0\n{segments}")
+}
+
+/// Next to a bottom of order 3 the force first rises, and the damper pulls over less than the angle between two samples.
+#[test]
+fn a_damper_that_pulls_next_to_a_bottom_has_the_least_force_there() {
+    let [mass, stiffness] = [0.5_f64, 1000.0];
+    let damping = (4.0 * stiffness * mass).sqrt();
+    for preload in [1e-6, 1e-7, 1e-8] {
+        let lines = format!("preload = {preload:?}\ngravity = 0.0");
+        let model = machine([mass, damping, stiffness], &lines, &two_dwells("cycloidal"));
+        let cam = Cam::new(&model).unwrap();
+        let contact = Contact::new(&cam, model.follower);
+        let at = contact.separation().speed();
+        let least = |part: f64| contact.least(part * at).value;
+        assert!(
+            at > 0.0 && least(0.99) > 0.0 && least(1.01) < 0.0,
+            "{preload}: {at} rpm, {:?}",
+            [0.99, 1.01].map(least)
+        );
     }
 }
 

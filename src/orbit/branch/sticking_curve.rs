@@ -66,13 +66,13 @@ struct Walk<'a> {
 impl Walk<'_> {
     fn run(mut self) -> HalfBranch {
         let longest = self.following.longest_step;
-        let (mut step, mut turned) = (longest, false);
+        let mut step = longest;
         loop {
             if self.points.len() >= self.following.most_points {
                 return (self.points, End::MostPoints);
             }
             match self.advance(step) {
-                Ok(None) => (step, turned) = (longest.min(1.5 * step), false),
+                Ok(None) => step = longest.min(1.5 * step),
                 Ok(Some(end)) => return (self.points, end),
                 Err(error) => {
                     if let NoPoint::Outside(Nowhere::Refused(why)) = &error
@@ -84,12 +84,12 @@ impl Walk<'_> {
                     if step >= tolerance::SHORTEST_STEP.value * longest {
                         continue;
                     }
-                    // Not twice at one place.
-                    if turned || !self.turn() {
+                    // Each turn adds a point, of which there are so many at most.
+                    if !self.turn() {
                         let end = self.stopped(&error);
                         return (self.points, end);
                     }
-                    (step, turned) = (AROUND * longest, true);
+                    step = AROUND * longest;
                 }
             }
         }

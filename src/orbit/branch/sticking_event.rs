@@ -139,23 +139,22 @@ impl Place {
         Self { segment: event.segment, cam_angle: event.cam_angle, is_corner }
     }
 
-    /// The place on another machine, and the lift there. `None` where that cam does not release the follower nearby.
-    pub(super) fn on(self, machine: &Machine) -> Option<(Self, Lift)> {
+    /// The place on another machine. `None` where that cam does not release the follower nearby.
+    fn on(self, machine: &Machine) -> Option<Self> {
         /// Number of segments that the place may move to.
         const SEGMENTS: usize = 3;
         let cam = machine.cam();
         if self.is_corner {
             let cam_angle = cam.segments()[self.segment].start;
             let lift = cam.segments()[self.segment].law.lift(cam_angle);
-            return (machine.lifting(&lift) > 0.0).then_some((Self { cam_angle, ..self }, lift));
+            return (machine.lifting(&lift) > 0.0).then_some(Self { cam_angle, ..self });
         }
         let mut on = self;
         for _ in 0..SEGMENTS {
             let segment = &cam.segments()[on.segment];
-            let lift;
-            (on.cam_angle, lift) = lets_go(machine, segment, on.cam_angle)?;
+            (on.cam_angle, _) = lets_go(machine, segment, on.cam_angle)?;
             if (segment.start..=segment.end).contains(&on.cam_angle) {
-                return Some((on, lift));
+                return Some(on);
             }
             // It has gone over to another segment, or past angle 0.
             on.cam_angle = within_a_turn(on.cam_angle);
@@ -166,13 +165,12 @@ impl Place {
 
     /// Angle by which infinitely many impacts from `last` on, with `left` to go to here, rad, end beyond this place. `None` where they do
     /// not arrive here by the law before.
-    fn passed(self, machine: &Machine, lift: &Lift, last: &Event, left: f64) -> Option<f64> {
+    fn passed(self, machine: &Machine, last: &Event, left: f64) -> Option<f64> {
         if self.is_corner {
             return self.rest_beyond(machine, last, left).map(|turn| turn - left);
         }
         let relative = last.velocity_after - last.cam_velocity;
-        let (further, lift) =
-            if last.segment == self.segment { (0.0, *lift) } else { self.by_law_before(machine, last.segment, left)? };
+        let (further, lift) = self.by_law_of(machine, last.segment, left)?;
         let time = (relative / (alike(machine.restitution()) * machine.lifting_rate(&lift).0)).sqrt();
         let off = machine.angular_velocity() * time - (left + further);
         off.is_finite().then_some(off)
@@ -198,14 +196,13 @@ impl Place {
         rest
     }
 
-    /// Right behind a seam, as between rows of a table, all impacts but the last follow the law of an earlier segment. Returns how much
-    /// later the cam would release the follower by that law, rad, and the lift there. `None` where this is not small beside what an impact
+    /// How much later the cam would release the follower by the law of a segment, rad, and the lift there. Right behind a seam, as between
+    /// rows of a table, all impacts but the last follow the law of an earlier segment. `None` where this is not less than what an impact
     /// has `left`.
-    fn by_law_before(self, machine: &Machine, segment: usize, left: f64) -> Option<(f64, Lift)> {
-        const LITTLE: f64 = 0.1;
+    fn by_law_of(self, machine: &Machine, segment: usize, left: f64) -> Option<(f64, Lift)> {
         let here = self.cam_angle + if segment > self.segment { TAU } else { 0.0 };
         let (cam_angle, lift) = lets_go(machine, &machine.cam().segments()[segment], here)?;
-        ((cam_angle - here).abs() < LITTLE * left).then_some((cam_angle - here, lift))
+        ((cam_angle - here).abs() < left).then_some((cam_angle - here, lift))
     }
 
     /// Index of the segment before the place, on which a follower rests.
@@ -251,13 +248,13 @@ impl Contact {
                 Some(Reached { off, contact: Self::Detachment(place), impacts: Vec::new() })
             }
             Self::Resting { from, to, turned, impact } => {
-                let ((from, _), (to, lift)) = (from.on(machine)?, to.on(machine)?);
+                let [from, to] = [from.on(machine)?, to.on(machine)?];
                 let turns = ((turned + from.cam_angle - to.cam_angle) / TAU).round();
                 let turned = turns * TAU + to.cam_angle - from.cam_angle;
                 let impacts = flown(machine, from.cam_angle, turned)?;
                 let passed = |impact: usize| {
                     let event: &Event = impacts.get(impact)?;
-                    to.passed(machine, &lift, event, turned - event.turned_since(from.cam_angle))
+                    to.passed(machine, event, turned - event.turned_since(from.cam_angle))
                 };
                 let last = impacts.len().checked_sub(1)?;
                 // Where it has gone over to a law before, as at a row of a table, the first after it that has not.
@@ -283,17 +280,16 @@ impl Contact {
         /// Largest error of an impact, relative to what is left to the place, from which Newton's method goes on.
         const FOLLOWED: f64 = 0.1;
         let Self::Resting { from, to, turned, .. } = reached.contact else { return [reached.contact; 2] };
-        let Some((_, lift)) = to.on(machine) else { return [reached.contact; 2] };
         let left = |event: &Event| turned - event.turned_since(from.cam_angle);
         let is_on_its_way = |event: &Event| {
             if to.is_corner {
                 return event.segment == to.before(machine);
             }
-            let off = to.passed(machine, &lift, event, left(event));
+            let off = to.passed(machine, event, left(event));
             left(event) > tolerance::CHATTER_LEFT.value && off.is_some_and(|off| off.abs() < FOLLOWED * left(event))
         };
         let last = reached.impacts.iter().rposition(is_on_its_way);
-        let first = reached.impacts.iter().position(|event| left(event) < ALIKE && is_on_its_way(event)).or(last);
+        let first = reached.impacts.iter().position(|event| left(event) < ALIKE).or(last);
         let last = if to.is_corner { first } else { last };
         [first, last].map(|impact| impact.map_or(reached.contact, |impact| Self::Resting { from, to, turned, impact }))
     }

@@ -223,39 +223,43 @@ impl<'a> Contact<'a> {
         self.bottoms.iter().find(|bottom| holds(bottom.order)).map(|bottom| bottom.angle)
     }
 
-    /// Least angular velocity beyond which N is negative on the way down to a lowest lift, and its place. With a damper and a small load,
-    /// the place may be nearer to the lowest lift than any sampled angle.
-    fn first_before(&self, &Bottom { segment, angle: bottom, .. }: &Bottom, from: f64) -> (f64, Least) {
+    /// Places on the way down to a lowest lift where a damper may hold the follower back, each with its least angular velocity beyond which N
+    /// is negative: where this velocity is least, and where N is least at any velocity. With a damper and a small load, the first may be
+    /// nearer to the lowest lift than any sampled angle. With a load that the damper hardly overcomes, N is negative next to the second alone.
+    fn first_before(&self, &Bottom { segment, angle: bottom, .. }: &Bottom, from: f64) -> Vec<(f64, Least)> {
         /// Thirds that are dropped from the bracket of the best halving.
         const THIRDS: usize = 60;
         let way = bottom - self.cam.segments()[segment].start;
         let at = |before: f64| self.place(segment, bottom - before);
-        let mut best = (f64::INFINITY, at(way));
-        let mut reach = way;
-        for before in halved(way) {
-            let found = at(before);
-            let root = self.root(segment, &found.lift, from);
-            if root < best.0 {
-                (best, reach) = ((root, found), before);
+        let root = |lift: &Lift| self.root(segment, lift, from);
+        let deepest = |lift: &Lift| self.least_force(lift, from);
+        let mut places = Vec::new();
+        for sought in [&root as &dyn Fn(&Lift) -> f64, &deepest] {
+            let sought = |before: f64| sought(&at(before).lift);
+            let best = halved(way).min_by(|one, two| sought(*one).total_cmp(&sought(*two))).unwrap_or(way);
+            let (mut low, mut high) = (0.5 * best, (2.0 * best).min(way));
+            for _ in 0..THIRDS {
+                let third = (high - low) / 3.0;
+                if sought(low + third) < sought(high - third) {
+                    high -= third;
+                } else {
+                    low += third;
+                }
             }
+            places.extend([best, low].map(at));
         }
-        let (mut low, mut high) = (0.5 * reach, (2.0 * reach).min(way));
-        for _ in 0..THIRDS {
-            let third = (high - low) / 3.0;
-            let [one, two] = [low + third, high - third].map(|before| {
-                let found = at(before);
-                (self.root(segment, &found.lift, from), found)
-            });
-            let nearer = if one.0 < two.0 {
-                high -= third;
-                one
-            } else {
-                low += third;
-                two
-            };
-            best = if nearer.0 < best.0 { nearer } else { best };
-        }
-        best
+        places.into_iter().map(|place| (root(&place.lift), place)).collect()
+    }
+
+    /// Least N for this lift at any angular velocity above `from`, rad/s, where the cam is hollow; infinity where it is not.
+    ///
+    /// ```text
+    /// dN/dw = 2 m w c'' + b c'
+    /// ```
+    fn least_force(&self, lift: &Lift, from: f64) -> f64 {
+        let Follower { mass, damping, .. } = self.follower;
+        let omega = -damping * lift.slope / (2.0 * mass * lift.curvature);
+        if lift.curvature > 0.0 { self.force(lift, omega.max(from)) } else { f64::INFINITY }
     }
 
     fn place(&self, segment: usize, angle: f64) -> Least {
@@ -304,7 +308,7 @@ impl<'a> Contact<'a> {
             self.place(self.cam.segment_at(angle), angle)
         });
         let looked = ends.chain(between).map(|place| (self.root(place.segment, &place.lift, from), place));
-        let before = self.bottoms.iter().map(|bottom| self.first_before(bottom, from));
+        let before = self.bottoms.iter().flat_map(|bottom| self.first_before(bottom, from));
         let first = looked.chain(before).min_by(|one, other| one.0.total_cmp(&other.0));
         let Some((mut omega, mut at)) = first.filter(|(omega, _)| omega.is_finite()) else { return Separation::Never };
         for _ in 0..STEPS {

@@ -7,7 +7,8 @@ use crate::show::digits::{Digits, with_error};
 use crate::show::words;
 use corner_impact::cam::Corner;
 use corner_impact::measured::Measured;
-use corner_impact::study::cam::{CamSheet, Largest};
+use corner_impact::model::FollowerContact;
+use corner_impact::study::cam::{CamGeometry, CamSheet, Largest};
 
 /// Most items that a terminal prints line by line.
 const LONGEST: usize = 40;
@@ -17,12 +18,45 @@ impl Paged for CamSheet {
         let title = Block::Title(words!["Cam of ", &self.model]);
         let mut blocks = vec![title];
         blocks.extend(source(&self.source));
-        blocks.extend([Block::Gap, Block::paragraph(lift(self))]);
+        blocks.extend([Block::Gap, Block::paragraph(lift(self)), follower(self.geometry.as_ref())]);
         blocks.extend(largest(self));
         blocks.extend(self.measured.iter().flat_map(measured));
         blocks.extend(parts(self));
         blocks
     }
+}
+
+/// The end of the follower that the lift is of, and what the contour asks of it.
+pub(crate) fn follower(geometry: Option<&CamGeometry>) -> Block {
+    /// Pressure angle from which a guide takes large forces across, rad: a rule of thumb of textbooks.
+    const LARGE: f64 = std::f64::consts::FRAC_PI_6;
+    let Some(of) = geometry else {
+        return Block::paragraph("follower: the lift is the follower's own, whatever end of it touches the cam");
+    };
+    let length = |length: f64| words![(length, Digits::Significant(6)), " ", Span::Unit("m")];
+    let at = |angle: f64| words![" at ", (angle.to_degrees(), Digits::Fixed(3)), " deg"];
+    let end = match of.contact {
+        FollowerContact::Point => "a point on a line through the cam's axis".into(),
+        FollowerContact::Flat => "a flat face square to its motion".into(),
+        FollowerContact::Roller { roller_radius, offset } => words![
+            "a roller of radius ",
+            length(roller_radius),
+            ", whose centre moves on a line ",
+            length(offset),
+            " beside the cam's axis; the lift is the distance of its centre"
+        ],
+    };
+    let pressed = match of.face_width_m {
+        Some(width) => words!["; the cam touches ", length(width), " of the face"],
+        None => {
+            let angle = (of.pressure_angle_rad.to_degrees(), Digits::Fixed(1));
+            let large = if of.pressure_angle_rad > LARGE { ", large for a guide (above 30 deg)" } else { "" };
+            words!["; largest pressure angle ", angle, " deg", at(of.pressure_angle_at_rad), large]
+        }
+    };
+    let sharpest =
+        words!["; least radius of curvature of the cam ", length(of.least_radius_m), at(of.least_radius_angle_rad)];
+    Block::paragraph(words!["follower: ", end, pressed, sharpest])
 }
 
 /// The largest velocity, acceleration and jerk, a line each.

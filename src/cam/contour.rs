@@ -1,0 +1,69 @@
+//! The contour of a cam, from the lift of the follower that touches it.
+
+use super::{Cam, Lift};
+use crate::elementary;
+use crate::model::FollowerContact;
+
+/// Where the follower touches the cam at an angle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[doc(hidden)]
+pub struct ContourPoint {
+    /// Cam angle, rad.
+    pub cam_angle: f64,
+    /// Place on the contour, m: along the follower's motion from the cam's axis, and to the left of it.
+    pub place: [f64; 2],
+    /// Radius of curvature of the contour, m; negative where it is hollow, infinite where it is straight.
+    pub radius: f64,
+    /// Angle between the normal of the contour and the follower's motion, rad.
+    pub pressure_angle: f64,
+}
+
+impl FollowerContact {
+    /// Distance of the line of motion from the cam's axis, m, and radius of the roller, m.
+    fn line_and_radius(self) -> [f64; 2] {
+        match self {
+            Self::Point | Self::Flat => [0.0; 2],
+            Self::Roller { roller_radius, offset } => [offset, roller_radius],
+        }
+    }
+
+    /// Where the follower touches the cam at an angle, rad, with this lift.
+    ///
+    /// The roller's centre, or the point, is at `X = (c, e)` along the motion and to the left of it, and moves on the cam by `X'`:
+    ///
+    /// ```text
+    /// X' = (c' - e, c),   X'' = (c'' - c, 2 c' - e),   rho = |X'|^3/(X' x X'') - a,   tan(alpha) = (c' - e)/c
+    /// flat face:   (c, c'),   rho = c + c'',   alpha = 0
+    /// ```
+    pub fn touches(self, cam_angle: f64, lift: &Lift) -> ContourPoint {
+        let Lift { value: c, slope, curvature, .. } = *lift;
+        if self == Self::Flat {
+            return ContourPoint { cam_angle, place: [c, slope], radius: c + curvature, pressure_angle: 0.0 };
+        }
+        let [e, a] = self.line_and_radius();
+        let along = slope - e;
+        let moved = elementary::hypot(along, c);
+        let turned = along * (slope + along) - c * (curvature - c);
+        ContourPoint {
+            cam_angle,
+            // The outward normal is (c, e - c')/|X'|.
+            place: [c - a * c / moved, e + a * along / moved],
+            radius: moved * moved * moved / turned - a,
+            pressure_angle: elementary::atan2(along, c),
+        }
+    }
+}
+
+impl Cam {
+    /// The contour of a cam that this follower touches, by rising angle; a corner has a point on either side.
+    pub fn contour(&self, contact: FollowerContact) -> impl Iterator<Item = ContourPoint> {
+        /// Points of a segment.
+        const POINTS: u32 = 360;
+        self.segments().iter().flat_map(move |segment| {
+            (0..=POINTS).map(move |point| {
+                let angle = segment.start + (segment.end - segment.start) * f64::from(point) / f64::from(POINTS);
+                contact.touches(angle, &segment.law.lift(angle))
+            })
+        })
+    }
+}

@@ -1,0 +1,55 @@
+"""Lifts of a follower on a cam of three circles, from points of the contour alone: the highest position in which no point is inside the follower."""
+
+import json
+import sys
+
+import numpy as np
+
+PER_CIRCLE = 400_000
+
+
+def contour(cam):
+    """Points of the cam, and the angle of its flank and nose at which they touch."""
+    base, flank, nose = (cam[name] for name in ("base_radius", "flank_radius", "nose_radius"))
+    start, end = np.radians([cam["flank_start_deg"], cam["nose_end_deg"]])
+    ray = lambda angle: np.exp(1j * angle)
+    flank_centre = (base - flank) * ray(start)
+    # The nose's centre is on the ray at `end`, and flank - nose from that of the flank: by bisection.
+    low, high = 0.0, 4.0 * flank
+    for _ in range(200):
+        middle = 0.5 * (low + high)
+        if abs(middle * ray(end) - flank_centre) < flank - nose:
+            low = middle
+        else:
+            high = middle
+    nose_centre = low * ray(end)
+    normal = np.angle(nose_centre - flank_centre)
+    arc = lambda centre, radius, first, last: centre + radius * ray(np.linspace(first, last, PER_CIRCLE))
+    half = [arc(0.0, base, 0.0, start), arc(flank_centre, flank, start, normal), arc(nose_centre, nose, normal, end), arc(0.0, abs(nose_centre) + nose, end, np.pi)]
+    half = np.concatenate(half)
+    return np.concatenate([half, half.conj()])
+
+
+def lift(points, contact, angle):
+    """How far the points hold the follower from the axis, when the cam has turned by an angle."""
+    turned = points * np.exp(-1j * angle)
+    along, left = turned.real, turned.imag
+    if contact == "flat":
+        return along.max()
+    # A point is a very small roller.
+    radius, offset = (contact["roller_radius"], contact["offset"]) if isinstance(contact, dict) else (0.0, 0.0)
+    if radius == 0.0:
+        # Between the two neighbours on either side of the line, the farther way round.
+        order = np.argsort(np.where(along > 0, np.abs(left), np.inf))[:2]
+        one, two = turned[order]
+        return one.real + (two.real - one.real) * one.imag / (one.imag - two.imag)
+    near = np.abs(left - offset) < radius
+    return (along[near] + np.sqrt(radius**2 - (left[near] - offset) ** 2)).max()
+
+
+found = []
+asked = json.load(sys.stdin)
+for cam in asked["cams"]:
+    points = contour(cam)
+    found.append([lift(points, cam.get("contact", "point"), angle) for angle in asked["angles"]])
+print(json.dumps(found))

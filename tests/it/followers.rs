@@ -1,0 +1,253 @@
+//! Is the lift of a flat face, a roller and a point that of the contour, and does the page say which follower it is of?
+
+use std::f64::consts::{PI, TAU};
+
+use approx::{assert_abs_diff_eq, assert_relative_eq};
+use corner_impact::cam::Cam;
+use corner_impact::model::Model;
+use corner_impact::study::cam::{CamGeometry, CamSheet};
+use corner_impact::study::design::contact::{Contact, Separation};
+use serde_json::json;
+
+use crate::common::{self, corner_impact, text};
+
+/// Three circles of textbooks: base 30 mm, nose 5 mm, no dwell at the top.
+const TEXTBOOK: &str = "base_radius = 30.0\nflank_radius = 82.422115269221\nnose_radius = 5.0\nflank_start_deg = 105.0\nnose_end_deg = 180.0\n";
+/// The paper's circles.
+const PAPER: &str =
+    "base_radius = 0.4\nflank_radius = 0.85\nnose_radius = 0.15\nflank_start_deg = 90.0\nnose_end_deg = 160.0\n";
+
+fn read(units: &str, circles: &str, contact: &str) -> Result<Model, String> {
+    let text = format!(
+        "[units]\n{units}\n[follower]\nmass = 0.5\ndamping = 0.0\nstiffness = 10.0\npreload = 100.0\ngravity = 0.0\n\
+         restitution = 0.5\n[cam]\nlaw = \"arcs\"\n{circles}{contact}\n"
+    );
+    let model = Model::parse("follower.toml", &text).map_err(|error| error.to_string())?;
+    Cam::new(&model).map_err(|error| error.to_string()).map(|_| model)
+}
+
+fn textbook(contact: &str) -> Model {
+    read("length = \"mm\"\nstiffness = \"N/mm\"", TEXTBOOK, contact).unwrap()
+}
+
+fn paper(contact: &str) -> Model {
+    read("", PAPER, contact).unwrap()
+}
+
+const ROLLERS: [&str; 4] = [
+    "contact = { roller_radius = 0.2 }",
+    "contact = { roller_radius = 0.1, offset = 0.05 }",
+    "contact = { roller_radius = 0.3, offset = -0.1 }",
+    "contact = { roller_radius = 0.01, offset = 0.2 }",
+];
+
+#[test]
+fn lifts_are_those_of_points_of_the_contour() {
+    let contacts = ["", "contact = \"point\"", "contact = \"flat\""].into_iter().chain(ROLLERS);
+    let models: Vec<Model> = contacts.map(paper).collect();
+    let angles: Vec<f64> = (0..73).map(|index| (f64::from(index) + 0.31) * TAU / 73.0).collect();
+    let cams: Vec<_> = models.iter().map(|model| json!(model.cam)).collect();
+    let answer = common::python(&["tests/it/envelope.py"], &json!({ "cams": cams, "angles": angles }));
+    let found: Vec<Vec<f64>> =
+        serde_json::from_slice(&answer.stdout).unwrap_or_else(|_| panic!("{}", text(answer.stderr)));
+    for (model, found) in models.iter().zip(found) {
+        let cam = common::cam(model);
+        for (angle, found) in angles.iter().zip(found) {
+            // Points a hundred thousandth of a radian apart.
+            assert_abs_diff_eq!(cam.lift(*angle).value, found, epsilon = 1e-9);
+        }
+    }
+}
+
+/// Under a flat face the radius of curvature is `c + c''`: where circles meet c'' jumps by the difference of their radii, at the angle of their
+/// common normal. Of a roller the common normal is where its centre is; with an offset it comes earlier by `asin(e/R)`.
+#[test]
+fn corners_are_where_the_circles_have_their_common_normal() {
+    let corners = |contact: &str| common::cam(&paper(contact)).corners().to_vec();
+    let [base, flank, nose] = [0.4_f64, 0.85, 0.15];
+    let centres = |turn: f64| {
+        let span = 70.0_f64.to_radians();
+        // O2 on the ray at Q from O1 behind the axis, in axes with R at 0.
+        let ahead =
+            ((flank - nose).powi(2) - ((flank - base) * span.sin()).powi(2)).sqrt() - (flank - base) * span.cos();
+        let (x, y) = (ahead * span.cos() + flank - base, ahead * span.sin());
+        (y.atan2(x) + turn, ahead + nose)
+    };
+    let (normal, top) = centres(0.5 * PI);
+    let flat = corners("contact = \"flat\"");
+    let [start, end] = [90.0_f64, 160.0].map(f64::to_radians);
+    let expected = [
+        (start, flank - base),
+        (normal, nose - flank),
+        (end, top - nose),
+        (TAU - end, nose - top),
+        (TAU - normal, flank - nose),
+        (TAU - start, base - flank),
+    ];
+    assert_eq!(flat.len(), 6);
+    for (corner, (angle, jump)) in flat.iter().zip(expected) {
+        assert_eq!(corner.jump_order, 2);
+        assert_relative_eq!(corner.angle, angle, max_relative = 1e-12);
+        assert_relative_eq!(corner.jump, jump, max_relative = 1e-9);
+    }
+    for (radius, offset) in [(0.2, 0.0), (0.1, 0.05), (0.3, -0.1)] {
+        let found = corners(&format!("contact = {{ roller_radius = {radius:?}, offset = {offset:?} }}"));
+        // The centre of the roller over the point of contact, from the axis.
+        let at = |angle: f64, distance: f64| {
+            let centre = distance + radius;
+            angle - f64::asin(offset / centre)
+        };
+        let ray = |angle: f64| [angle.cos(), angle.sin()];
+        let [one, two] =
+            [(base - flank, start), (flank + radius, normal)].map(|(size, angle)| ray(angle).map(|it| it * size));
+        let pitch = [one[0] + two[0], one[1] + two[1]];
+        let meets = pitch[1].atan2(pitch[0]);
+        let early = f64::asin(offset / f64::hypot(pitch[0], pitch[1]));
+        let expected = [
+            at(start, base),
+            meets - early,
+            at(end, top),
+            at(TAU - end, top),
+            TAU - meets - early,
+            at(TAU - start, base),
+        ];
+        assert_eq!(found.len(), 6, "{radius} {offset}");
+        for (corner, angle) in found.iter().zip(expected) {
+            assert_relative_eq!(corner.angle, angle, max_relative = 1e-12);
+            assert_eq!(corner.jump_order, 2, "{radius} {offset}");
+        }
+    }
+}
+
+/// An offset may bring the flank before angle 0, or the last dwell there.
+#[test]
+fn an_offset_may_turn_a_circle_past_angle_0() {
+    let circles =
+        "base_radius = 0.4\nflank_radius = 0.5\nnose_radius = 0.3\nflank_start_deg = 2.0\nnose_end_deg = 170.0\n";
+    for offset in [0.1, -0.1] {
+        let with = |offset: f64| {
+            let contact = format!("contact = {{ roller_radius = 0.2, offset = {offset:?} }}");
+            common::cam(&read("", circles, &contact).unwrap())
+        };
+        let (cam, straight) = (with(offset), with(0.0));
+        assert_eq!(cam.corners().len(), straight.corners().len());
+        for corner in cam.corners() {
+            let [before, after] = [corner.minus.value, corner.plus.value];
+            assert_abs_diff_eq!(before, after, epsilon = 1e-15);
+        }
+        for index in 0..1000 {
+            let lift = cam.lift(TAU * f64::from(index) / 1000.0).value;
+            assert!((0.55..0.8).contains(&lift), "{offset} {index}: {lift}");
+        }
+    }
+}
+
+#[test]
+fn a_flat_face_separates_four_times_as_fast_as_a_point() {
+    // Of the flat face where the nose begins, at `c = rho + kappa cos(phi)`: `m w^2 (c - rho) = F + k (c - c_min)`.
+    for (contact, expected) in [("", 251.28), ("contact = \"flat\"", 1010.024_321)] {
+        let model = textbook(contact);
+        let Separation::At { rpm, .. } = Contact::new(&common::cam(&model), model.follower).separation() else {
+            panic!("{contact}")
+        };
+        assert_abs_diff_eq!(rpm, expected, epsilon = if contact.is_empty() { 0.005 } else { 1e-6 });
+    }
+}
+
+/// The contour is the same whatever touches it: its least radius of curvature is that of the nose, and a face is touched where the follower is fast.
+#[test]
+fn the_geometry_is_that_of_the_circles() {
+    let geometry = |model: &Model| CamGeometry::of(model, &common::cam(model)).unwrap();
+    for contact in ["", "contact = \"flat\""].into_iter().chain(ROLLERS) {
+        let model = paper(contact);
+        let found = geometry(&model);
+        assert_relative_eq!(found.least_radius_m, 0.15, max_relative = 1e-9);
+        // On the nose: between P and Q, or behind Q'.
+        let at = found.least_radius_angle_rad.to_degrees();
+        assert!((100.0..165.0).contains(&at) || (190.0..260.0).contains(&at), "{contact}: {at}");
+        let contour: Vec<_> = common::cam(&model).contour(found.contact).collect();
+        let farthest = contour.iter().map(|point| point.place[0].hypot(point.place[1])).fold(0.0, f64::max);
+        let nearest = contour.iter().map(|point| point.place[0].hypot(point.place[1])).fold(1.0, f64::min);
+        assert_relative_eq!(nearest, 0.4, max_relative = 1e-12);
+        assert_relative_eq!(farthest, 0.15 + 0.404_081, max_relative = 1e-3);
+        assert_eq!(found.face_width_m.is_some(), contact.contains("flat"), "{contact}");
+    }
+    // tan(alpha) = c'/c of a point; sin(alpha) = e/R on the base circle of an offset roller.
+    let point = geometry(&paper(""));
+    let lift = common::cam(&paper("")).lift(point.pressure_angle_at_rad);
+    assert_relative_eq!(point.pressure_angle_rad.tan(), (lift.slope / lift.value).abs(), max_relative = 1e-12);
+    let cam = common::cam(&paper(ROLLERS[1]));
+    let contact = geometry(&paper(ROLLERS[1])).contact;
+    assert_relative_eq!(contact.touches(0.0, &cam.lift(0.0)).pressure_angle.sin(), -0.05 / 0.5, max_relative = 1e-12);
+    // From the fastest way up to the fastest way down, which are as fast.
+    let flat = paper("contact = \"flat\"");
+    let fastest = (0..100_000).map(|index| common::cam(&flat).lift(TAU * f64::from(index) / 1e5).slope);
+    assert_relative_eq!(geometry(&flat).face_width_m.unwrap(), 2.0 * fastest.fold(0.0, f64::max), max_relative = 1e-4);
+    // A lift without a contour has none.
+    let harmonic = common::read(&std::path::Path::new(common::ROOT).join("models/laws/harmonic.toml"));
+    assert!(CamGeometry::of(&harmonic, &common::cam(&harmonic)).is_none());
+}
+
+#[test]
+fn what_no_follower_is_is_refused() {
+    for (contact, says) in [
+        ("contact = \"knife\"", "cam.contact = \"knife\": must be a name or a roller"),
+        ("contact = 3", "cam.contact = 3: must be a name or a roller"),
+        ("contact = { offset = 0.1 }", "cam.contact.roller_radius is missing"),
+        ("contact = { roller_radius = 0.0 }", "cam.contact.roller_radius = 0.0: must be a finite number above 0"),
+        ("contact = { roller_radius = -1.0 }", "cam.contact.roller_radius = -1.0: must be a finite number above 0"),
+        ("contact = { roller_radius = nan }", "cam.contact.roller_radius = nan: must be a finite number above 0"),
+        ("contact = { roller_radius = 0.1, ofset = 0.1 }", "did you mean offset?"),
+        ("contact = { roller_radius = 0.1, offset = 0.5 }", "cam.contact.offset = 0.5: must be between -0.5 and 0.5"),
+        ("contact = { roller_radius = 0.1, offset = -0.5 }", "cam.contact.offset = -0.5: must be between"),
+        ("contact = { roller_radius = 0.01, offset = -0.409 }", "cam.contact.offset = -0.409: must be nearer to 0"),
+    ] {
+        let refused = read("", PAPER, contact).unwrap_err();
+        assert!(refused.contains(says), "{contact}: {refused}");
+    }
+}
+
+#[test]
+fn the_page_and_the_document_say_which_follower() {
+    let folder = tempfile::TempDir::new().unwrap();
+    let page = |model: &Model, says: &[&str]| {
+        let sheet = CamSheet::new(model, &common::cam(model), 2).unwrap();
+        assert_eq!(
+            json!(sheet)["geometry"]["contact"],
+            json!(model.cam).get("contact").cloned().unwrap_or("point".into())
+        );
+        let file = folder.path().join("model.toml");
+        std::fs::write(&file, toml(model)).unwrap();
+        let page = text(corner_impact(["cam", file.to_str().unwrap()]).stdout).replace('\n', " ");
+        let page = page.split_whitespace().collect::<Vec<_>>().join(" ");
+        says.iter().for_each(|says| assert!(page.contains(says), "{says}: {page}"));
+    };
+    page(
+        &paper(""),
+        &[
+            "follower: a point on a line through the cam's axis; largest pressure angle 27.3 deg",
+            "radius of curvature of the cam 0.15 m",
+        ],
+    );
+    page(
+        &paper("contact = \"flat\""),
+        &["a flat face square to its motion; the cam touches 0.488022 m", "of the face"],
+    );
+    page(&paper(ROLLERS[1]), &["a roller of radius 0.1 m, whose centre moves on a line 0.05 m beside the cam's axis"]);
+    let harmonic = text(corner_impact(["cam", "models/laws/harmonic.toml"]).stdout);
+    assert!(harmonic.contains("follower: the lift is the follower's own"), "{harmonic}");
+}
+
+/// The model as a file.
+fn toml(model: &Model) -> String {
+    let follower =
+        "[follower]\nmass = 0.5\ndamping = 0.0\nstiffness = 10.0\npreload = 100.0\ngravity = 0.0\nrestitution = 0.5\n";
+    let contact = match json!(model.cam)["contact"].clone() {
+        serde_json::Value::Null => String::new(),
+        serde_json::Value::String(name) => format!("contact = {name:?}\n"),
+        roller => {
+            format!("contact = {{ roller_radius = {}, offset = {} }}\n", roller["roller_radius"], roller["offset"])
+        }
+    };
+    format!("{follower}[cam]\nlaw = \"arcs\"\n{PAPER}{contact}")
+}
