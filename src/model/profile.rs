@@ -44,6 +44,15 @@ impl CamProfile {
             Self::Rounded { sharp, .. } => sharp.law(),
         }
     }
+
+    /// The end of the follower, where the lift follows from the cam's contour; `None` where the lift itself is given.
+    pub fn contact(&self) -> Option<FollowerContact> {
+        match self {
+            Self::Arcs(profile) => Some(profile.contact),
+            Self::Rounded { sharp, .. } => sharp.contact(),
+            _ => None,
+        }
+    }
 }
 
 /// Serializes the profile as the table of a model file; a table of lifts has its rows in place of the file.

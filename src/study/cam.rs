@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use crate::cam::{Cam, ContourPoint, Corner, Jet, Law, Segment};
 use crate::measured::{Measured, PlausibleCams};
-use crate::model::{ArcsProfile, CamProfile, FollowerContact, Model, ModelError, StandardMotion};
+use crate::model::{CamProfile, FollowerContact, Model, ModelError, StandardMotion};
 
 /// Segments and corners of a model's cam; serializes to the document `corner-impact/cam/1`.
 #[derive(Clone, Debug, Serialize)]
@@ -60,7 +60,7 @@ pub struct CamGeometry {
 impl CamGeometry {
     /// Computes the geometry of a model's cam. `None` where the model gives a lift and no contour.
     pub fn of(model: &Model, cam: &Cam) -> Option<Self> {
-        let CamProfile::Arcs(ArcsProfile { contact, .. }) = *sharp(&model.cam) else { return None };
+        let contact = model.cam.contact()?;
         let steepness = |point: &ContourPoint| point.pressure_angle.abs();
         let sharpest = cam.contour(contact).min_by(|one, two| one.radius.total_cmp(&two.radius))?;
         let steepest = cam.contour(contact).max_by(|one, two| steepness(one).total_cmp(&steepness(two)))?;

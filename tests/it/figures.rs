@@ -199,7 +199,7 @@ fn other_models_are_shown_at_speeds_in_the_papers_proportions() {
 
 #[test]
 fn the_shape_is_the_papers_construction() {
-    let outline = Outline::new(&paper().cam);
+    let outline = Outline::new(&paper().cam, None);
     assert_eq!(outline.added, 0.0);
     let length = |[x, y]: [f64; 2]| x.hypot(y);
     let (angle, corner) = outline.corners[1];

@@ -1,14 +1,15 @@
 //! Shape of the cam seen along its axis at angle 0, with the follower straight above the axis.
 //!
-//! The paper's follower touches the cam on the ray from the axis along which it moves, so the outline is the lift as a
-//! radius. At cam angle `theta` the point `c(theta) (sin theta, cos theta)` is on top; the cam turns to the left.
+//! The outline is the contour that the follower touches; for the paper's follower, a point above the axis, it is the lift as a
+//! radius. At cam angle `theta` the ray `(sin theta, cos theta)` is on top; the cam turns to the left.
 
 use std::f64::consts::TAU;
 
 use crate::figures::cam::{corner_marks, corners_in_words, of_circles};
 use crate::figures::{Entry, drawn};
-use corner_impact::cam::{Arc, Cam, Corner, Law, Segment};
+use corner_impact::cam::{Arc, Cam, Law, Lift, Segment};
 use corner_impact::elementary;
+use corner_impact::model::FollowerContact;
 use corner_impact_plot::{BREAK, Beside, Colour, Figure, FigureAxis, Label, Marker, Panel, Series, Stroke, extent};
 
 /// The report's figure of the cam's shape.
@@ -18,17 +19,24 @@ pub(crate) const CAM_SHAPE: Entry = Entry {
     takes_rpm: false,
     title: |subject| format!("{}: the cam, its segments and corners", subject.model.name),
     draw: |subject, title| {
-        let outline = Outline::new(&subject.cam);
-        let how = if outline.added == 0.0 {
-            "Its outline is the lift as a distance from the axis O: the follower stands on the point straight above O"
-                .to_owned()
-        } else {
-            format!(
+        let outline = Outline::new(&subject.cam, subject.model.cam.contact());
+        let how = match subject.model.cam.contact() {
+            Some(FollowerContact::Flat) => {
+                "The flat face of the follower is square to the line straight above the axis O".to_owned()
+            }
+            Some(FollowerContact::Roller { .. }) => {
+                "The thin line is the path of the roller's centre, seen from the cam; the axis is O".to_owned()
+            }
+            _ if outline.added == 0.0 => {
+                "Its outline is the lift as a distance from the axis O: the follower stands on the point straight above O"
+                    .to_owned()
+            }
+            _ => format!(
                 "The model gives the lift alone; it is drawn around O with {:.4} {} added, so this is the path of the \
                  follower's foot seen from the cam and not the cut of the metal",
                 outline.added,
                 subject.model.units.length.name()
-            )
+            ),
         };
         drawn(
             figure(title, &subject.cam, &outline),
@@ -63,6 +71,10 @@ pub struct Outline {
     pub pieces: Vec<Piece>,
     /// Cam angle, rad, and place of each corner.
     pub corners: Vec<(f64, [f64; 2])>,
+    /// The end of the follower at cam angle 0, as a line.
+    pub follower: Vec<[f64; 2]>,
+    /// Path of the centre of a roller; empty for other followers.
+    pub pitch: Vec<[f64; 2]>,
 }
 
 /// A segment of the outline.
@@ -79,38 +91,63 @@ fn place(angle: f64, radius: f64) -> [f64; 2] {
     [radius * elementary::sin(angle), radius * elementary::cos(angle)]
 }
 
+/// The point at a distance along the ray of a cam angle, rad, and at one across it.
+fn beside(angle: f64, [along, across]: [f64; 2]) -> [f64; 2] {
+    let [[x, y], [right, down]] = [place(angle, along), place(angle, across)];
+    [x + down, y - right]
+}
+
 impl Outline {
-    /// Computes the outline of a cam.
-    pub fn new(cam: &Cam) -> Self {
+    /// Computes the outline of a cam and the follower that touches it; with a lift alone, that of a point.
+    pub fn new(cam: &Cam, contact: Option<FollowerContact>) -> Self {
         let [low, high] = extent(cam.segments().iter().flat_map(|segment| segment.bounds.lift));
         let stroke = high - low;
+        let contact = contact.unwrap_or_default();
         // If the lift would turn the outline inside out, or make it a needle, add a radius.
-        let added = if low >= stroke { 0.0 } else { 2.0 * stroke - low };
+        let added = if low >= stroke || !contact.is_point() { 0.0 } else { 2.0 * stroke - low };
+        let at = |angle: f64, lift: &Lift| match contact {
+            FollowerContact::Point => place(angle, added + lift.value),
+            _ => beside(angle, contact.touches(angle, lift).place),
+        };
+        let angles = |segment: &Segment| {
+            let (start, span) = (segment.start, segment.end - segment.start);
+            let steps = (span / TAU * SAMPLES).ceil().max(2.0);
+            (0..=steps as usize).map(move |step| start + span * step as f64 / steps)
+        };
         let piece = |segment: &Segment| {
-            let steps = ((segment.end - segment.start) / TAU * SAMPLES).ceil().max(2.0);
-            let angle = |step: f64| segment.start + (segment.end - segment.start) * step / steps;
-            let points = (0..=steps as usize).map(|step| angle(step as f64));
-            let radius = |angle: f64| added + segment.law.lift(angle).value;
             let centre = match &segment.law {
                 Law::Arc(Arc { distance, direction, .. }) if added == 0.0 => Some(place(*direction, *distance)),
                 _ => None,
             };
-            Piece { points: points.map(|angle| place(angle, radius(angle))).collect(), centre }
+            Piece { points: angles(segment).map(|angle| at(angle, &segment.law.lift(angle))).collect(), centre }
         };
-        let corner = |corner: &Corner| (corner.angle, place(corner.angle, added + corner.plus.value));
+        let first = cam.lift(0.0).value;
+        let (follower, pitch) = match contact {
+            FollowerContact::Point => (Vec::new(), Vec::new()),
+            FollowerContact::Flat => {
+                let [left, right] = extent(cam.segments().iter().flat_map(|segment| segment.bounds.slope));
+                (vec![[left, first], [right, first]], Vec::new())
+            }
+            FollowerContact::Roller { roller_radius, offset } => {
+                let circle = (0..=72).map(|part| place(TAU * f64::from(part) / 72.0, roller_radius));
+                let centre = |(angle, lift): (f64, Lift)| beside(angle, [lift.value, offset]);
+                let lifts = cam.segments().iter().flat_map(|it| angles(it).map(|angle| (angle, it.law.lift(angle))));
+                (circle.map(|[x, y]| [x + offset, y + first]).collect(), lifts.map(centre).collect())
+            }
+        };
         Self {
             added,
             pieces: cam.segments().iter().map(piece).collect(),
-            corners: cam.corners().iter().map(corner).collect(),
+            corners: cam.corners().iter().map(|corner| (corner.angle, at(corner.angle, &corner.plus))).collect(),
+            follower,
+            pitch,
         }
     }
 
     /// Largest distance of the outline from the axis.
     fn farthest(&self) -> f64 {
-        self.pieces
-            .iter()
-            .flat_map(|piece| &piece.points)
-            .fold(0.0_f64, |far, [x, y]| far.max(elementary::hypot(*x, *y)))
+        let outline = self.pieces.iter().flat_map(|piece| &piece.points);
+        outline.chain(&self.follower).chain(&self.pitch).fold(0.0_f64, |far, [x, y]| far.max(elementary::hypot(*x, *y)))
     }
 }
 
@@ -132,7 +169,13 @@ fn figure(title: &str, cam: &Cam, outline: &Outline) -> Figure {
     series.push(Series::words(apart));
     // The axis, the follower above it, and a stretch of a circle for the way that the cam turns.
     let first = outline.pieces.first().and_then(|piece| piece.points.first()).map_or(0.0, |[_, y]| *y);
-    let follower = [[0.0, first], [0.0, first + 0.45 * farthest]];
+    // Of a roller from its centre.
+    let from = outline.pitch.first().copied().unwrap_or([0.0, first]);
+    let follower = [from, [from[0], from[1] + 0.45 * farthest]];
+    series.extend([
+        Series::line("", Colour::Grey, Stroke::Thin, outline.pitch.iter().copied()),
+        Series::line("", Colour::Purple, Stroke::Thick, outline.follower.iter().copied()),
+    ]);
     let turn = (0..=24).map(|step| {
         let angle = -0.5 + f64::from(step) / 24.0;
         [-0.25 * farthest * elementary::sin(angle), 0.25 * farthest * elementary::cos(angle)]

@@ -188,7 +188,8 @@ impl ThroughCorner {
             let angle = rounded(angle.to_degrees(), ANGLE);
             [angle, rounded(lift.value, places.position), rounded(lift.curvature, places.acceleration)]
         };
-        let (cam, drawn_on_m): (Vec<[f64; 3]>, f64) = (profile.iter().map(told).collect(), Outline::new(cam).added);
+        let (cam, drawn_on_m): (Vec<[f64; 3]>, f64) =
+            (profile.iter().map(told).collect(), Outline::new(cam, None).added);
         // Not every corner has a label of its own.
         let unnamed = CornerMark { angle_rad: corner, name: String::new() };
         let hit = marks.iter().find(|mark| mark.angle_rad == corner).unwrap_or(&unnamed);
