@@ -56,6 +56,7 @@ mod first_touch;
 mod fuzz;
 mod global;
 mod growth_numbers;
+mod headings;
 mod hostile;
 mod impact_map;
 mod inner;
