@@ -154,22 +154,23 @@ impl<'a> Table<'a> {
             let is_like = above.is_units() || above.headings.iter().all(Heading::is_known);
             above.cells.len() == width && is_like && (above.is_units() || self.named(above, chosen) == Ok(columns))
         };
-        let is_used = |index: usize| columns.is_some() && (header == Some(index) || names_them(&lines[index]));
+        let is_used: Vec<bool> = (0..lines.len())
+            .map(|index| columns.is_some() && (header == Some(index) || names_them(&lines[index])))
+            .collect();
         let last = (header.map_or(0, |header| header + 1)..lines.len()).rev().find(|index| !lines[*index].is_comment);
-        if let Some(last) = last.filter(|last| !is_used(*last)).map(|last| &lines[last])
+        if let Some(last) = last.filter(|last| !is_used[*last]).map(|last| &lines[last])
             && last.cells.len() == width
             && !last.text.split_whitespace().any(|word| word.starts_with(|letter: char| letter.is_ascii_digit()))
         {
-            let names = if chosen.iter().any(Option::is_some) {
-                format!("; its columns are {}", last.cells.join(", "))
-            } else {
-                String::new()
+            let more = match chosen.iter().any(Option::is_some) {
+                true => format!("; its columns are {}", last.cells.join(", ")),
+                false => "; or say which they are in [cam], as angle_column = 1 and lift_column = 2 do".to_owned(),
             };
             let allowed =
-                format!("must name the angle, then the lift, as {HEADER} does, with their units or without{names}");
+                format!("must name the angle, then the lift, as {HEADER} does, with their units or without{more}");
             return Err(self.reject(last.line, "header", last.text.trim(), allowed));
         }
-        let used = || (0..lines.len()).filter(|index| is_used(*index)).map(|index| &lines[index]);
+        let used = || (0..lines.len()).filter(|index| is_used[*index]).map(|index| &lines[index]);
         let named = header.map(|header| &lines[header]);
         let [angle, lift] = columns.unwrap_or_default();
         let cells = |column: usize| {
@@ -191,7 +192,7 @@ impl<'a> Table<'a> {
         let lifts = cells(lift).map(|(line, cell, heading)| (line, cell, heading.lift));
         let units = used().filter(|above| above.is_units()).last();
         let seen = (0..lines.len())
-            .filter(|index| !is_used(*index))
+            .filter(|index| !is_used[*index])
             .map(|index| &lines[index])
             .flat_map(|above| prose_units(above.text).into_iter().map(|(word, unit)| (above.line, word, unit)));
         Ok(Above {
@@ -266,8 +267,9 @@ impl<'a> LineAbove<'a> {
     pub(super) fn new((line, text): (usize, &'a str), separator: Separator, width: usize, is_comment: bool) -> Self {
         let bare = text.trim_matches(|letter: char| letter.is_whitespace() || "#%/*".contains(letter));
         // In `#,Angle` the sign is a name.
-        let is_name =
-            is_comment && text[1..].starts_with([',', ';', '\t', '|']) && separator.filled_cells(text).len() == width;
+        let is_name = is_comment
+            && text.strip_prefix('#').is_some_and(|after| after.starts_with([',', ';', '\t', '|']))
+            && separator.filled_cells(text).len() == width;
         let text = if is_comment && !is_name { bare } else { text };
         let cells = separator.names(text, width);
         let headings = cells.iter().map(|cell| Heading::of(cell)).collect();

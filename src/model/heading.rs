@@ -1,5 +1,8 @@
 //! Words and units in the lines above a table of lifts: what a column holds, and what its numbers are in.
 
+use std::collections::HashMap;
+use std::sync::LazyLock;
+
 use super::table_units::{AngleUnit, LiftUnit, decimal_part};
 
 /// Meaning of a word.
@@ -25,7 +28,7 @@ enum Meaning {
     Part(u32),
 }
 
-/// Words by their meaning; the first line with a word decides. A word behind a hyphen may end a longer one, as in German.
+/// Words by their meaning, each once. One behind a hyphen may end a longer word, as in German.
 const WORDS: [(Meaning, &str); 20] = [
     (
         Meaning::Other,
@@ -60,6 +63,16 @@ const WORDS: [(Meaning, &str); 20] = [
     (Meaning::Part(2), "hundredth hundredths hundertstel"),
     (Meaning::Part(3), "thousandth thousandths tausendstel"),
 ];
+/// The meaning of each word.
+static MEANINGS: LazyLock<HashMap<&str, Meaning>> = LazyLock::new(|| words().collect());
+/// The endings of longer words.
+static ENDINGS: LazyLock<Vec<(&str, Meaning)>> =
+    LazyLock::new(|| words().filter_map(|(word, meaning)| Some((word.strip_prefix('-')?, meaning))).collect());
+
+fn words() -> impl Iterator<Item = (&'static str, Meaning)> {
+    WORDS.iter().flat_map(|(meaning, words)| words.split_whitespace().map(|word| (word, *meaning)))
+}
+
 /// Words that begin the name of a crank's angle, and of a cam's.
 const CRANK: [&str; 5] = ["crank", "kurbel", "kw", "cad", "vilebrequin"];
 const CAM: [&str; 3] = ["cam", "nocken", "nw"];
@@ -79,11 +92,8 @@ struct Token {
 
 impl Token {
     fn meaning(&self) -> Option<Meaning> {
-        let is_it = |word: &str| match word.strip_prefix('-') {
-            Some(end) => self.text.ends_with(end),
-            None => self.text == word,
-        };
-        WORDS.iter().find(|(_, words)| words.split_whitespace().any(is_it)).map(|(meaning, _)| *meaning)
+        let ending = || ENDINGS.iter().find(|(word, _)| self.text.ends_with(word)).map(|(_, meaning)| *meaning);
+        MEANINGS.get(&*self.text).copied().or_else(ending)
     }
 
     fn is_unit(&self) -> bool {

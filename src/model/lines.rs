@@ -168,8 +168,10 @@ const MARKS: [&str; 3] = ["#", "%", "//"];
 
 /// The line without its comment, and the comment.
 pub(super) fn without_comment(line: &str) -> (&str, Option<&str>) {
-    let begins = line.trim_start().starts_with('*').then_some(0);
-    let at = begins.or_else(|| MARKS.iter().filter_map(|mark| line.find(mark)).min());
+    if line.trim_start().starts_with('*') {
+        return ("", Some(line));
+    }
+    let at = MARKS.iter().filter_map(|mark| line.find(mark)).min();
     // In `Pt #,Angle` and `Pt #  Angle` the sign belongs to the name, and in `Angle,#` it is one.
     let is_name = |at: usize| {
         const PARTS: [char; 4] = [',', ';', '\t', '|'];

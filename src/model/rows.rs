@@ -70,7 +70,8 @@ impl<'a> Table<'a> {
         let (text, _) = without_comment(self.text.lines().nth(line.checked_sub(1)?)?);
         let cell = |column: usize| layout.separator.cells(text).nth(column - 1);
         let [angle, lift] = layout.columns.map(cell);
-        Some([angle?, lift?].map(|cell| decimal(cell, layout.decimal_comma).into_owned()))
+        let number = |cell: &str| decimal(cell.trim_end_matches(['°', ' ']), layout.decimal_comma).into_owned();
+        Some([number(angle?), number(lift?)])
     }
 
     /// Reads the rows of the text and its layout; `chosen` are the columns that the model chooses, the angle's first.
@@ -123,8 +124,10 @@ impl<'a> Table<'a> {
         let is_slip = |text: &str| is_number(text) && separator.filled_cells(text).len() == width;
         let begins = found - above.iter().rev().take_while(|(_, text)| is_slip(text)).count();
         let first_line = filled().nth(begins).map_or(0, |(line, _)| line);
-        let is_read = |line: &(usize, &str)| line.0 < first_line && above.iter().all(|(other, _)| *other != line.0);
-        let comments = lines().filter(is_read).filter_map(|(line, text)| Some((line, without_comment(text).1?)));
+        let comments = lines().take_while(|(line, _)| *line < first_line).filter_map(|(line, text)| {
+            let (text, comment) = without_comment(text);
+            Some((line, comment.filter(|_| text.is_empty())?))
+        });
         let mut above: Vec<LineAbove<'_>> =
             above[..begins].iter().map(|line| LineAbove::new(*line, separator, width, false)).collect();
         above.extend(comments.map(|line| LineAbove::new(line, separator, width, true)));

@@ -41,6 +41,7 @@ fn headers_are_read_wherever_they_stand() {
         ("#Angle;Lift;\n#[deg];[in];", SEMICOLON, 25.4),
         ("#\tAngle\tLift\n#\tdeg\tinch", TAB, 25.4),
         ("*** DEG   LIFT(IN) ***", BLANKS, 25.4),
+        ("\u{a0}* DEG   LIFT(IN)", BLANKS, 25.4),
         ("#,Angle [deg],Lift [in]", "N,A,L", 25.4),
         ("# Rocker ratio 1.5, lash 0.25 mm\n# angle_deg, lift_in", COMMA, 25.4),
         ("# Lift [in], Angle [deg]", "L,A", 25.4),
@@ -244,7 +245,7 @@ fn a_unit_that_is_not_understood_is_refused_with_the_line_that_says_it() {
         ("angle,lift", "A,L", "unit = \"0.01 deg\"", "must be one of"),
         ("angle,lift", "A,L", "unit = 5", "must be text in quotes"),
         ("# theta h", "A L 0", "", "has 3 columns without names"),
-        ("x,y", "A,L", "", "must name the angle"),
+        ("x,y", "A,L", "", "say which they are in [cam], as angle_column = 1 and lift_column = 2 do"),
         ("angle,no lift in", "A,L", "", "must name the angle"),
         ("angle [0.1 rad] lift", "A L", "", "the unit of the angle must be one of"),
     ];
@@ -252,5 +253,6 @@ fn a_unit_that_is_not_understood_is_refused_with_the_line_that_says_it() {
         let said = refusal(&table(head, row), fields);
         assert!(said.contains(says), "{head}: no \"{says}\" in {said}");
     }
+    is_the_lobe(&table("x,y", COMMA), "angle_column = 1\nlift_column = 2", 1.0);
     is_the_lobe(&table("angle,lift", COMMA), "unit = \"0.001 in\"", 0.0254);
 }
