@@ -190,7 +190,7 @@ impl<'a> Table<'a> {
         };
         let angles = cells(angle).map(|(line, cell, heading)| (line, cell, heading.angle));
         let lifts = cells(lift).map(|(line, cell, heading)| (line, cell, heading.lift));
-        let units = used().filter(|above| above.is_units()).last();
+        let units = used().filter(|above| above.is_units()).next_back();
         let seen = (0..lines.len())
             .filter(|index| !is_used[*index])
             .map(|index| &lines[index])

@@ -311,7 +311,8 @@ fn unit_at(tokens: &[Token], index: usize, meaning: Meaning, from: usize) -> Fou
         end += 1;
     }
     // In `s"` the sign may be a unit, or a second derivative.
-    if tokens[index].text == "\"" && tokens[index].is_joined && index > 0 && tokens[index - 1].is_word() {
+    let is_behind_word = index.checked_sub(1).is_some_and(|before| tokens[before].is_word());
+    if tokens[index].text == "\"" && tokens[index].is_joined && is_behind_word {
         meaning = Meaning::OtherUnit;
     }
     let decimal = (0..=MOST_PLACES).find(|places| decimal_part(*places) == parts);
