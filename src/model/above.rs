@@ -125,93 +125,88 @@ impl<'a> Table<'a> {
         width: usize,
         chosen: &[Option<Chosen>; 2],
     ) -> Result<Above<'a>, ModelError> {
-        let columns_of = |above: &LineAbove<'a>| -> Result<Option<Columns>, ModelError> {
-            match self.named(above, chosen) {
-                Err(words) if above.cells.len() == width => {
-                    Err(self.reject(above.line, "header", above.text.trim(), words))
-                }
-                found => Ok(found.unwrap_or_default()),
-            }
+        let header = self.header(lines, width, chosen)?;
+        let is_used = |&(index, above): &(usize, &LineAbove<'a>)| {
+            header.is_some_and(|(at, columns)| {
+                let is_known = || above.headings.iter().all(Heading::is_known);
+                let names_them = || above.is_units() || is_known() && self.named(above, chosen) == Ok(Some(columns));
+                index == at || above.cells.len() == width && names_them()
+            })
         };
-        // A line of units may stand for a header, and so may a comment, but neither does where there is another.
-        let is_comment = |above: &LineAbove<'a>| above.is_comment;
-        let (mut header, mut columns) = (None, None);
-        for order in [[false, false], [true, false], [false, true], [true, true]] {
-            let [of_units, of_comments] = order;
-            for (index, above) in lines.iter().enumerate().rev() {
-                if columns.is_some() || above.is_units() != of_units || is_comment(above) != of_comments {
-                    continue;
-                }
-                if above.is_comment && !(above.cells.len() == width && above.headings.iter().all(Heading::is_known)) {
-                    continue;
-                }
-                if let Some(found) = columns_of(above)? {
-                    (header, columns) = (Some(index), Some(found));
-                }
-            }
-        }
-        let names_them = |above: &LineAbove<'a>| {
-            let is_like = above.is_units() || above.headings.iter().all(Heading::is_known);
-            above.cells.len() == width && is_like && (above.is_units() || self.named(above, chosen) == Ok(columns))
-        };
-        let is_used: Vec<bool> = (0..lines.len())
-            .map(|index| columns.is_some() && (header == Some(index) || names_them(&lines[index])))
-            .collect();
-        let last = (header.map_or(0, |header| header + 1)..lines.len()).rev().find(|index| !lines[*index].is_comment);
-        if let Some(last) = last.filter(|last| !is_used[*last]).map(|last| &lines[last])
+        let below = lines.iter().enumerate().skip(header.map_or(0, |(at, _)| at + 1));
+        if let Some((_, last)) = below.rev().find(|(_, above)| !above.is_comment).filter(|last| !is_used(last))
             && last.cells.len() == width
             && !last.text.split_whitespace().any(|word| word.starts_with(|letter: char| letter.is_ascii_digit()))
         {
-            let more = match chosen.iter().any(Option::is_some) {
-                true => format!("; its columns are {}", last.cells.join(", ")),
-                false => "; or say which they are in [cam], as angle_column = 1 and lift_column = 2 do".to_owned(),
-            };
-            let allowed =
-                format!("must name the angle, then the lift, as {HEADER} does, with their units or without{more}");
-            return Err(self.reject(last.line, "header", last.text.trim(), allowed));
+            return Err(self.unnamed(last, chosen));
         }
-        let used = || (0..lines.len()).filter(|index| is_used[*index]).map(|index| &lines[index]);
-        let named = header.map(|header| &lines[header]);
-        let [angle, lift] = columns.unwrap_or_default();
+        let (used, others): (Vec<_>, Vec<_>) = lines.iter().enumerate().partition(is_used);
+        let named = header.map(|(at, _)| &lines[at]);
+        let [angle, lift] = header.map_or([0, 1], |(_, columns)| columns);
+        let is_below = |above: &LineAbove<'a>| named.is_some_and(|named| named.line != above.line);
         let cells = |column: usize| {
-            let cell = move |above: &LineAbove<'a>| {
+            used.iter().filter_map(move |(_, above)| {
                 let (cell, mut heading) = (above.cells.get(column)?.clone(), above.headings.get(column)?.clone());
                 // Below a header a word among units is one that is not known.
-                if named.is_some_and(|named| named.line != above.line)
-                    && above.is_units()
-                    && !heading.is_unit
-                    && has_letters(&cell)
-                {
+                if is_below(above) && above.is_units() && !heading.is_unit && has_letters(&cell) {
                     (heading.angle, heading.lift) = (Err(Vec::new()), Err(Vec::new()));
                 }
                 Some((above.line, cell, heading))
-            };
-            used().filter_map(cell)
+            })
         };
         let angles = cells(angle).map(|(line, cell, heading)| (line, cell, heading.angle));
         let lifts = cells(lift).map(|(line, cell, heading)| (line, cell, heading.lift));
-        let units = used().filter(|above| above.is_units()).next_back();
-        let seen = (0..lines.len())
-            .filter(|index| !is_used[*index])
-            .map(|index| &lines[index])
-            .flat_map(|above| prose_units(above.text).into_iter().map(|(word, unit)| (above.line, word, unit)));
+        let units = used.iter().rev().find(|(_, above)| above.is_units());
+        let seen = others
+            .iter()
+            .flat_map(|(_, above)| prose_units(above.text).into_iter().map(|(word, unit)| (above.line, word, unit)));
         Ok(Above {
-            titles: (0..lines.len()).filter(|index| !lines[*index].is_comment && header != Some(*index)).count()
-                - used()
-                    .filter(|above| {
-                        above.is_units() && !above.is_comment && named.is_some_and(|named| named.line != above.line)
-                    })
-                    .count(),
-            comments: used().filter(|above| above.is_comment).count(),
+            titles: others.iter().filter(|(_, above)| !above.is_comment).count(),
+            comments: used.iter().filter(|(_, above)| above.is_comment).count(),
             header: named.filter(|named| !named.is_units()).map(|named| named.text.trim()),
-            units: units.map(|units| units.text.trim()),
-            columns,
+            units: units.map(|(_, units)| units.text.trim()),
+            columns: header.map(|(_, columns)| columns),
             names: named.map_or_else(Vec::new, |named| named.cells.clone()),
             is_of_crank: named.and_then(|named| named.headings.get(angle)).is_some_and(|heading| heading.is_of[0]),
             angle: self.together(angles, 0, |unit| AngleUnit::NAMES[*unit].to_owned()),
             lift: self.together(lifts, 1, |unit: &LiftUnit| unit.name()),
             seen: seen.collect(),
         })
+    }
+
+    /// The last line that names the columns, by its index. A line of units stands for a header, and so does a comment, where there is no other.
+    fn header(
+        &self,
+        lines: &[LineAbove<'a>],
+        width: usize,
+        chosen: &[Option<Chosen>; 2],
+    ) -> Result<Option<(usize, Columns)>, ModelError> {
+        for (of_comments, of_units) in [(false, false), (false, true), (true, false), (true, true)] {
+            for (index, above) in lines.iter().enumerate().rev() {
+                let is_whole = above.cells.len() == width;
+                let is_known = || is_whole && above.headings.iter().all(Heading::is_known);
+                if above.is_comment != of_comments || above.is_units() != of_units || above.is_comment && !is_known() {
+                    continue;
+                }
+                match self.named(above, chosen) {
+                    Ok(Some(columns)) => return Ok(Some((index, columns))),
+                    Err(words) if is_whole => return Err(self.reject(above.line, "header", above.text.trim(), words)),
+                    _ => {}
+                }
+            }
+        }
+        Ok(None)
+    }
+
+    /// The complaint about a line in place of a header.
+    fn unnamed(&self, last: &LineAbove<'a>, chosen: &[Option<Chosen>; 2]) -> ModelError {
+        let more = match chosen.iter().any(Option::is_some) {
+            true => format!("; its columns are {}", last.cells.join(", ")),
+            false => "; or say which they are in [cam], as angle_column = 1 and lift_column = 2 do".to_owned(),
+        };
+        let allowed =
+            format!("must name the angle, then the lift, as {HEADER} does, with their units or without{more}");
+        self.reject(last.line, "header", last.text.trim(), allowed)
     }
 
     /// The one unit that the cells of a column name.
