@@ -153,7 +153,7 @@ impl Separator {
         let is_pairs = |cells: &&Vec<&str>| {
             cells.len() == 2 * width && cells.iter().skip(1).step_by(2).all(|cell| Heading::of(cell).is_unit)
         };
-        if let Some(cells) = ways.iter().find(|cells| cells.len() == width) {
+        if let Some(cells) = ways.iter().find(|cells| cells.len() == width && width > 1) {
             return cells.iter().map(|cell| (*cell).to_owned()).collect();
         }
         if let Some(cells) = ways.iter().find(is_pairs) {

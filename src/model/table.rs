@@ -60,6 +60,8 @@ impl TableProfile {
 
     /// Doubts about what the rows mean, a sentence each.
     pub fn doubts(&self) -> Vec<String> {
+        /// Part of the rise that a lift may be below 0 by the errors of a gauge.
+        const BELOW: f64 = 0.01;
         let (reading, mut doubts) = (&self.reading, Vec::new());
         if reading.layout.as_ref().is_some_and(|layout| layout.is_of_crank) && reading.turn_deg.is_none() {
             let words = "cam.turn_deg: the header of the table names a crank's angle, and 360 deg are read as one turn of the cam; if the cam \
@@ -67,7 +69,7 @@ impl TableProfile {
             doubts.push(words.to_owned());
         }
         let lowest = self.rows.iter().map(|row| row.lift).fold(f64::INFINITY, f64::min);
-        if lowest < -tolerance::ON_BASE.value * self.rise() {
+        if lowest < -BELOW * self.rise() {
             doubts.push(format!(
                 "{}: the lowest lift is {} {}; lifts below 0 are read as they are written: does the gauge count the other way round, or from the \
                  nose?",

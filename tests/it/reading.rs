@@ -471,7 +471,7 @@ fn doubts_about_a_table_are_noted() {
     assert!(doubts(&twice, "turn_deg = 720").is_empty() && doubts(&of("cam angle,lift", 1.0), "").is_empty());
     let told = doubts(&of("angle,lift", -1.0), "");
     assert!(told.len() == 1 && told[0].starts_with("cam.file: the lowest lift is -8 mm"), "{told:?}");
-    // Less than a thousandth of the rise is a gauge's.
+    // Less than a hundredth of the rise is a gauge's.
     let low = |lowest: &str| of("angle,lift", 1.0).replacen("\n7,0.0000", &format!("\n7,{lowest}"), 1);
-    assert_eq!([low("-0.0079"), low("-0.0081")].map(|csv| doubts(&csv, "").len()), [0, 1]);
+    assert_eq!([low("-0.0807"), low("-0.0809")].map(|csv| doubts(&csv, "").len()), [0, 1]);
 }
