@@ -285,7 +285,9 @@ fn unit_at(tokens: &[Token], index: usize, meaning: Meaning, from: usize) -> Fou
         match above {
             Some(above) => (start, parts) = (index - 3, above / value),
             // The 2 of "Cam 2 deg" belongs to the name.
-            None if tokens[index].bracket > 0 || !(1.0..10.0).contains(&value) => (start, parts) = (index - 1, value),
+            None if tokens[index].bracket > 0 || value != 0.0 && !(1.0..10.0).contains(&value) => {
+                (start, parts) = (index - 1, value)
+            }
             None => {}
         }
     }
@@ -417,16 +419,13 @@ fn named<T: PartialEq>(
     of: impl Fn(Meaning, u32) -> Option<T>,
     name: impl Fn(&T) -> String,
 ) -> Named<T> {
-    // "Lift*100 mm", "Lift x1000 (in)"
-    let times =
-        tokens.windows(2).filter(|pair| pair[0].text == "*" || pair[0].text == "x").find_map(|pair| pair[1].number());
+    let times = multiple(tokens, units);
     let mut found: Vec<T> = Vec::new();
     for unit in units.iter().filter(|unit| !unit.is_rate) {
         match (unit.parts, times) {
             (Parts::Decimal(places), None) => found.extend(of(unit.meaning, places)),
             (Parts::Decimal(_), Some(times)) | (Parts::Times(times), _) => {
-                let places = (1..=MOST_PLACES).find(|places| 1.0 / times == decimal_part(*places));
-                return Err(places.and_then(|places| of(unit.meaning, places)).iter().map(&name).collect());
+                return Err(places_of(times).and_then(|places| of(unit.meaning, places)).iter().map(&name).collect());
             }
         }
     }
@@ -438,7 +437,30 @@ fn named<T: PartialEq>(
     }
 }
 
-/// Whether a part of a unit, brackets or what follows a slash or "in" is no unit that is known.
+/// Multiple of a unit that the numbers are by a factor that stands apart from the unit, or may be: "Lift x1000 (in)", "Lift/100 [mm]",
+/// "hundredths [mm]".
+fn multiple(tokens: &[Token], units: &[FoundUnit]) -> Option<f64> {
+    let factor = |index: usize| {
+        let before = index.checked_sub(1).map_or("", |before| &tokens[before].text);
+        let is_used = units.iter().any(|unit| unit.at.contains(&index));
+        match (before, tokens[index].number(), tokens[index].meaning()) {
+            ("*", Some(number), _) => Some(number),
+            ("x", Some(number), _) if number >= 10.0 => Some(number),
+            ("/", Some(number), _) if !is_used && places_of(number).is_some() => Some(number),
+            (_, Some(number), _) if !is_used && places_of(1.0 / number).is_some() => Some(1.0 / number),
+            (_, _, Some(Meaning::Part(places))) if !is_used => Some(1.0 / decimal_part(places)),
+            _ => None,
+        }
+    };
+    (0..tokens.len()).find_map(factor)
+}
+
+/// Decimal places of the unit of numbers that are so many times those in it: 2 for 100.
+fn places_of(times: f64) -> Option<u32> {
+    (1..=MOST_PLACES).find(|places| 1.0 / times == decimal_part(*places))
+}
+
+/// Whether brackets or what follows a slash or "in" is no unit that is known.
 fn is_unread(tokens: &[Token], units: &[FoundUnit]) -> bool {
     (0..tokens.len()).any(|index| {
         let token = &tokens[index];
@@ -450,8 +472,7 @@ fn is_unread(tokens: &[Token], units: &[FoundUnit]) -> bool {
             matches!(token.meaning(), Some(Angle | Filler | Lift | Other | Radius))
         };
         let is_open = token.bracket > 0 || follows("/") || is_last && (follows("in") || follows("/"));
-        let is_part = matches!(token.meaning(), Some(Meaning::Part(_)));
-        !is_used(index) && (is_part || is_open && !is_word(token))
+        !is_used(index) && is_open && !is_word(token)
     })
 }
 
@@ -483,6 +504,7 @@ pub(super) fn prose_units(text: &str) -> Vec<(String, ProseUnit)> {
     const WORDS_TOO: [&str; 10] =
         ["in", "m", "turn", "turns", "rev", "revs", "revolution", "revolutions", "foot", "feet"];
     let tokens = tokens(text);
+    let units = units(&tokens);
     let is_of_lift = tokens.iter().any(|token| token.meaning() == Some(Meaning::Lift));
     let seen = |unit: &FoundUnit| {
         let index = unit.at.clone().find(|index| tokens[*index].is_unit())?;
@@ -493,6 +515,7 @@ pub(super) fn prose_units(text: &str) -> Vec<(String, ProseUnit)> {
         }
         // A number beside the unit is the part of it that lifts are in, or some length.
         let places = match unit.parts {
+            Parts::Decimal(0) if is_of_lift => multiple(&tokens, &units).and_then(places_of).unwrap_or(0),
             Parts::Decimal(places) if is_of_lift => places,
             _ => 0,
         };
@@ -503,5 +526,5 @@ pub(super) fn prose_units(text: &str) -> Vec<(String, ProseUnit)> {
         };
         Some((word.text.clone(), unit))
     };
-    units(&tokens).iter().filter_map(seen).collect()
+    units.iter().filter_map(seen).collect()
 }

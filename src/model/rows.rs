@@ -51,7 +51,7 @@ pub struct TableLayout {
     /// Whether the header says that angles are a crank's.
     #[serde(skip)]
     pub is_of_crank: bool,
-    /// Unit of angles that the lines above the rows name, by its index in [`AngleUnit::NAMES`]; a complaint where it is not understood.
+    /// Unit of angles that the lines above the rows name, by its index in the names of a model file; a complaint where it is not understood.
     #[serde(skip)]
     pub(super) angle: Result<Option<usize>, ModelError>,
     /// Unit of lifts that they name.
