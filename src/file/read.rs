@@ -9,19 +9,32 @@ use std::path::Path;
 const LONGEST: usize = 16 << 20;
 const LONGEST_LINE: usize = 1 << 20;
 
+/// Codes of the text of a file that an older program may have written.
+const ANY_CODE: &str = "UTF-8, UTF-16 with its mark or Latin-1";
+
 /// Reads the text of a file; never reads more than the limit.
 pub(crate) fn text(path: &Path) -> io::Result<String> {
     lines(String::from_utf8(bytes(path)?).map_err(|_| no_text("UTF-8"))?)
 }
 
-/// Reads a file that an older program may have written: text that is not UTF-8 is Latin-1, in which a degree sign is one byte.
+/// Reads a file that an older program may have written: UTF-16 behind its mark, and text that is not UTF-8 as Latin-1, in which a degree sign
+/// is one byte.
 pub(crate) fn text_of_any_age(path: &Path) -> io::Result<String> {
     let bytes = bytes(path)?;
-    // UTF-16 and binary files contain zero bytes.
-    if bytes.contains(&0) {
-        return Err(no_text("UTF-8 or Latin-1"));
-    }
-    lines(String::from_utf8(bytes).unwrap_or_else(|error| error.into_bytes().into_iter().map(char::from).collect()))
+    let text = match bytes[..] {
+        [0xff, 0xfe, ..] => wide(&bytes[2..], u16::from_le_bytes)?,
+        [0xfe, 0xff, ..] => wide(&bytes[2..], u16::from_be_bytes)?,
+        _ => String::from_utf8(bytes).unwrap_or_else(|error| error.into_bytes().into_iter().map(char::from).collect()),
+    };
+    // Binary files contain zero bytes, and so does UTF-16 without its mark.
+    if text.contains('\0') { Err(no_text(ANY_CODE)) } else { lines(text) }
+}
+
+/// Text in UTF-16.
+fn wide(bytes: &[u8], number: fn([u8; 2]) -> u16) -> io::Result<String> {
+    let (pairs, rest) = bytes.as_chunks();
+    let text = String::from_utf16(&pairs.iter().map(|pair| number(*pair)).collect::<Vec<u16>>());
+    text.ok().filter(|_| rest.is_empty()).ok_or_else(|| no_text(ANY_CODE))
 }
 
 fn no_text(code: &str) -> io::Error {

@@ -51,13 +51,13 @@ impl ModelError {
     }
 
     /// Adds a suggested correction, a question.
-    pub(super) fn meaning(mut self, meant: Option<String>) -> Self {
+    pub fn meaning(mut self, meant: Option<String>) -> Self {
         self.pointer.meant = meant;
         self
     }
 
     /// Appends a description of what was found instead.
-    pub(super) fn found(mut self, words: &str) -> Self {
+    pub fn found(mut self, words: &str) -> Self {
         self.allowed.push_str(words);
         self
     }

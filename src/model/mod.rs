@@ -4,19 +4,24 @@
 //! (circles that cannot touch) are found in [`crate::cam`]. It reports them through
 //! [`Model::reject`], so that every complaint about a file names file, line, field and value.
 
+mod above;
 mod changed;
 mod complaint;
 mod document;
 mod exact;
 mod fields;
+mod heading;
+mod lines;
 mod nearest;
 mod numeral;
 mod profile;
 mod quantity;
 mod rows;
 mod table;
+mod table_units;
 mod text;
 mod toml;
+mod turn;
 mod units;
 
 use std::path::Path;
@@ -26,6 +31,7 @@ use serde::{Deserialize, Serialize};
 
 pub use complaint::ModelError;
 use fields::Fields;
+pub use lines::Separator;
 pub use nearest::nearest;
 pub use numeral::{Numeral, finite, parted};
 pub use profile::CORNER_ROUNDING;
@@ -35,8 +41,8 @@ pub(crate) use profile::{
 pub use profile::{CamProfile, FollowerContact, HarmonicProfile, StandardMotion};
 #[doc(hidden)]
 pub use quantity::{Dimension, MODEL_NUMBERS, ModelNumber};
+pub use rows::TableLayout;
 pub(crate) use rows::TableRow;
-pub use rows::{Separator, TableLayout};
 pub use table::Reading;
 pub use table::{MOST_PROVED_ROWS, Smoothing, SmoothingTolerance, Spline, TableProfile};
 pub use units::{Converted, Unit, Units};

@@ -7,9 +7,14 @@ use std::sync::Arc;
 use serde::Serialize;
 
 use super::ModelError;
+use super::above::Chosen;
 use super::fields::{Fields, Pair, Value};
-use super::rows::{AngleUnit, Chosen, MOST_ROWS, Table, TableLayout, TableRow};
+use super::heading::{ProseUnit, part_of_unit};
+use super::lines::Table;
+use super::rows::{MOST_ROWS, TableLayout, TableRow};
+use super::table_units::{AngleUnit, LiftUnit};
 use super::toml;
+use super::turn::FEWEST_ROWS;
 use super::units::{LENGTHS, Unit, Units};
 use crate::file;
 use crate::tolerance;
@@ -51,6 +56,29 @@ impl TableProfile {
     pub(crate) fn rise(&self) -> f64 {
         let lifts = self.rows.iter().map(|row| row.lift);
         lifts.clone().fold(f64::NEG_INFINITY, f64::max) - lifts.fold(f64::INFINITY, f64::min)
+    }
+
+    /// Doubts about what the rows mean, a sentence each.
+    pub fn doubts(&self) -> Vec<String> {
+        /// Part of the rise that a lift may be below 0 by the errors of a gauge.
+        const BELOW: f64 = 0.01;
+        let (reading, mut doubts) = (&self.reading, Vec::new());
+        if reading.layout.as_ref().is_some_and(|layout| layout.is_of_crank) && reading.turn_deg.is_none() {
+            let words = "cam.turn_deg: the header of the table names a crank's angle, and 360 deg are read as one turn of the cam; if the cam \
+                         turns once in two turns of the crank, say turn_deg = 720 in [cam]";
+            doubts.push(words.to_owned());
+        }
+        let lowest = self.rows.iter().map(|row| row.lift).fold(f64::INFINITY, f64::min);
+        if lowest < -BELOW * self.rise() {
+            doubts.push(format!(
+                "{}: the lowest lift is {} {}; lifts below 0 are read as they are written: does the gauge count the other way round, or from the \
+                 nose?",
+                self.place(),
+                reading.in_model.told(lowest),
+                reading.unit
+            ));
+        }
+        doubts
     }
 
     /// Field that gives the rows.
@@ -123,6 +151,9 @@ pub enum SmoothingTolerance {
 pub struct Reading {
     /// The unit of lifts in the table.
     pub unit: String,
+    /// The decimal part of that unit that the numbers of the table are.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub part: Option<String>,
     /// Unit of lifts as a multiple of the model's unit of length.
     #[serde(skip)]
     pub in_model: Unit,
@@ -149,6 +180,9 @@ pub struct Reading {
     /// Whether the rows are half a lobe and its mirror image.
     #[serde(rename = "mirrored")]
     pub is_mirrored: bool,
+    /// Angle that they are mirrored about, degrees of the cam.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub nose_deg: Option<f64>,
     /// Number of rows that were added on the base circle.
     pub filled: usize,
     /// Whether the last row repeated the first and was dropped.
@@ -175,8 +209,6 @@ enum Kind {
 
 /// The splines, with their names in the field `spline`.
 const SPLINES: [(&str, Kind); 3] = [("cubic", Kind::Cubic), ("quintic", Kind::Quintic), ("smoothing", Kind::Smoothing)];
-/// Fewest rows: a periodic spline needs three for every row to have a neighbour on either side.
-const FEWEST_ROWS: usize = 3;
 /// Fewest rows of a smoothing spline, which has to separate the motion from errors of measurement.
 const FEWEST_SMOOTHED: usize = 12;
 /// Most corners or dwells: more than any cam has.
@@ -195,7 +227,13 @@ pub(super) fn read(fields: &mut Fields) -> Result<TableProfile, ModelError> {
         }
         let has_lines = pairs.iter().all(|(_, line)| line.is_some());
         let text = fields.source().to_owned();
-        let table = Table { file: fields.file().into(), text: &text, has_lines, angles: AngleUnit::DEGREES };
+        let table = Table {
+            file: fields.file().into(),
+            text: &text,
+            has_lines,
+            angles: AngleUnit::DEGREES,
+            says_angles: false,
+        };
         let row = |(index, ([angle_deg, lift], line)): (usize, Pair)| {
             let line = line.unwrap_or(index + 1);
             if angle_deg.is_finite() && lift.is_finite() {
@@ -213,31 +251,48 @@ pub(super) fn read(fields: &mut Fields) -> Result<TableProfile, ModelError> {
     let shown = path.display().to_string();
     let text = file::text_of_any_age(&path)
         .map_err(|error| fields.reject("cam.file", format!("cannot be read at {shown}: {error}")))?;
-    // Spreadsheets begin UTF-8 with a byte order mark; old ones end lines with a carriage return alone.
-    let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
+    // Spreadsheets begin UTF-8 with a byte order mark; old ones end lines with a carriage return alone, and old systems a text with Ctrl-Z.
+    let text = text.strip_prefix('\u{feff}').unwrap_or(&text).trim_end_matches(['\u{1a}', '\r', '\n']);
     let text = if text.contains('\r') {
         Cow::Owned(text.replace("\r\n", "\n").replace('\r', "\n"))
     } else {
         Cow::Borrowed(text)
     };
-    let table = Table { file: shown, text: &text, has_lines: true, angles: AngleUnit::DEGREES };
+    let table = Table { file: shown, text: &text, has_lines: true, angles: AngleUnit::DEGREES, says_angles: false };
     let chosen = [Chosen::read(fields, "cam.angle_column")?, Chosen::read(fields, "cam.lift_column")?];
     let (rows, layout) = table.rows(&chosen)?;
     table.profile(fields, (Some(file), spline), rows, Some(layout))
 }
 
-/// Index of the unit that a field or a header names; 0 if neither names one.
-fn unit(fields: &mut Fields, path: &str, names: &[&str], header: Option<usize>) -> Result<usize, ModelError> {
+/// The unit that a field or the table names; `usual` if neither does. A field that is given decides where the table is not understood.
+fn unit<T: Copy + PartialEq>(
+    fields: &Fields,
+    path: &str,
+    [given, usual]: [Option<T>; 2],
+    named: Result<Option<T>, ModelError>,
+    name: impl Fn(T) -> String,
+) -> Result<Option<T>, ModelError> {
+    match (given, named) {
+        (None, named) => Ok(named?.or(usual)),
+        (Some(given), Ok(Some(other))) if other != given => {
+            Err(fields.reject(path, format!("is not what the header of the table says: {}", name(other))))
+        }
+        (given, _) => Ok(given),
+    }
+}
+
+/// Unit that `cam.unit` names: a unit of length, or a decimal part of one as in `0.01 mm`.
+fn lift_unit(fields: &mut Fields) -> Result<Option<LiftUnit>, ModelError> {
+    let path = "cam.unit";
     fields.may_hold(path);
-    if !fields.has(path) {
-        return Ok(header.unwrap_or(0));
-    }
-    let choices: Vec<(&str, usize)> = names.iter().enumerate().map(|(index, name)| (*name, index)).collect();
-    let chosen = fields.choice(path, &choices)?;
-    match header.filter(|header| *header != chosen) {
-        Some(other) => Err(fields.reject(path, format!("is not what the header of the table says: {}", names[other]))),
-        None => Ok(chosen),
-    }
+    let part = match fields.fields.get(path).map(|field| &field.value) {
+        None => return Ok(None),
+        Some(Value::Text(text)) => part_of_unit(text),
+        Some(_) => None,
+    };
+    let choices: Vec<(&str, LiftUnit)> =
+        LENGTHS.iter().enumerate().map(|(index, unit)| (unit.name(), LiftUnit { index, places: 0 })).collect();
+    part.map_or_else(|| fields.choice(path, &choices), Ok).map(Some)
 }
 
 /// Degrees of the table in one turn of the cam.
@@ -328,6 +383,12 @@ fn smoothing(fields: &mut Fields, step: Option<f64>, in_model: &Unit) -> Result<
     Ok(Smoothing { tolerance, corners_deg, dwells_deg, are_near: false })
 }
 
+/// A decimal number as it is written, divided by a power of ten.
+fn shifted(number: &str, places: u32) -> String {
+    let (digits, exponent) = number.split_once(['e', 'E']).unwrap_or((number, "0"));
+    format!("{digits}e{}", exponent.parse::<i64>().unwrap_or(0) - i64::from(places))
+}
+
 /// Step of the coarsest decimal grid, 1, 2 or 5 times a power of ten, that all numbers lie on. `None` if they have as many
 /// digits as a double, or are all 0.
 fn grid(numbers: &[TableRow]) -> Option<f64> {
@@ -367,19 +428,43 @@ impl Table<'_> {
         layout: Option<TableLayout>,
     ) -> Result<TableProfile, ModelError> {
         let named = layout.as_ref();
-        let index = unit(fields, "cam.angle_unit", &AngleUnit::NAMES, named.and_then(|named| named.angle))?;
-        self.angles = AngleUnit { index, turn_deg: turn_deg(fields)? };
+        fields.may_hold("cam.angle_unit");
+        let names: Vec<(&str, usize)> =
+            AngleUnit::NAMES.iter().enumerate().map(|(index, name)| (*name, index)).collect();
+        let given_angle = fields.has("cam.angle_unit").then(|| fields.choice("cam.angle_unit", &names)).transpose()?;
+        let angle = named.map_or(Ok(None), |named| named.angle.clone());
+        self.says_angles = angle.as_ref().is_ok_and(Option::is_some);
+        let index =
+            unit(fields, "cam.angle_unit", [given_angle, None], angle, |index| AngleUnit::NAMES[index].to_owned())?;
+        self.angles = AngleUnit { index: index.unwrap_or(0), turn_deg: turn_deg(fields)? };
         let of_model = Units::read(fields)?.length;
-        let named_length = named.and_then(|named| named.length);
-        if let Some((line, word)) = named.and_then(|named| named.unread.as_ref()).filter(|_| !fields.has("cam.unit")) {
-            let words =
-                "is a unit of length that no column is said to be in: say which the lifts are in, by unit in [cam]";
-            return Err(self.reject(*line, "title", word, words.into()));
+        let own = LENGTHS.iter().position(|unit| *unit == of_model).map(|index| LiftUnit { index, places: 0 });
+        let given = lift_unit(fields)?;
+        let lift = named.map_or(Ok(None), |named| named.lift.clone());
+        let said = unit(fields, "cam.unit", [given, None], lift, LiftUnit::name)?;
+        let lift_unit = said.or(own).unwrap_or(LiftUnit { index: 0, places: 0 });
+        // A unit in a title or a comment may be that of the lifts, or of something else.
+        let unread = |(_, _, seen): &&(usize, String, ProseUnit)| match seen {
+            ProseUnit::Angle(seen) => index.is_none() && *seen != self.angles.index,
+            ProseUnit::Length(seen) => said.is_none() && *seen != lift_unit,
+        };
+        if let Some((line, word, seen)) = named.and_then(|named| named.seen.iter().find(unread)) {
+            let (what, of, field, meant) = match seen {
+                ProseUnit::Angle(index) => ("angle", "angles", "angle_unit", AngleUnit::NAMES[*index].to_owned()),
+                ProseUnit::Length(unit) => ("length", "lifts", "unit", unit.name()),
+            };
+            let words = format!(
+                "is a unit of {what} that no column is said to be in: say which the {of} are in, by {field} in [cam], such as {field} = \"{meant}\""
+            );
+            return Err(self.reject(*line, "unit", word, words));
         }
-        let named_length = named_length
-            .or_else(|| LENGTHS.iter().position(|unit| *unit == of_model).filter(|_| !fields.has("cam.unit")));
-        let unit = &LENGTHS[unit(fields, "cam.unit", &LENGTHS.each_ref().map(Unit::name), named_length)?];
+        let unit = &LENGTHS[lift_unit.index];
         let in_model = unit.in_parts_of(&of_model);
+        if lift_unit.places > 0 {
+            rows.iter_mut().for_each(|row| {
+                row.lift = shifted(&row.lift.to_string(), lift_unit.places).parse().unwrap_or(row.lift)
+            });
+        }
         let step = grid(&rows);
         for row in &mut rows {
             row.lift = in_model.inside(row.lift);
@@ -406,10 +491,19 @@ impl Table<'_> {
                 (None, field) => field.map_or_else(Vec::new, |field| toml::pairs(&field.written)),
             };
         }
-        if is_mirrored {
-            self.mirror(fields, &mut rows)?;
+        if lift_unit.places > 0 {
+            written.iter_mut().for_each(|[_, lift]| *lift = shifted(lift, lift_unit.places));
         }
-        let (repeats_first, filled) = self.turned(fields, &mut rows, fills)?;
+        let nose_deg = if is_mirrored { self.mirror(fields, &mut rows)? } else { None };
+        // Row numbers are as far apart as degrees are.
+        let counts =
+            fields.has("cam.angle_column") && rows.windows(2).all(|pair| pair[1].angle_deg - pair[0].angle_deg == 1.0);
+        let column = named.map_or(0, |named| named.columns[0]);
+        let (repeats_first, filled) = self.turned(fields, &mut rows, fills).map_err(|error| {
+            let meant =
+                format!("does column {column} count the rows? then choose another one by angle_column in [cam]");
+            if counts { error.meaning(Some(meant)) } else { error }
+        })?;
         let fewest = if spline == Kind::Smoothing { FEWEST_SMOOTHED } else { FEWEST_ROWS };
         if rows.len() < fewest {
             let words = format!("{} different angles; {fewest} to {MOST_ROWS} are needed", rows.len());
@@ -423,6 +517,7 @@ impl Table<'_> {
         written.truncate(if written.len() < rows.len() { 0 } else { rows.len() });
         let reading = Reading {
             unit: unit.name().to_owned(),
+            part: (lift_unit.places > 0).then(|| lift_unit.name()),
             in_model,
             written,
             angle_unit: self.angles.name(),
@@ -433,234 +528,11 @@ impl Table<'_> {
             falls,
             merged,
             is_mirrored,
+            nose_deg,
             filled,
             repeats_first,
             step,
         };
         Ok(TableProfile { file, spline, rows: rows.into(), reading: Arc::new(reading) })
-    }
-
-    /// Adds the mirror image of half a lobe about its nose, the row of the greatest lift at one of the ends.
-    fn mirror(&self, fields: &Fields, rows: &mut Vec<TableRow>) -> Result<(), ModelError> {
-        let highest = rows.iter().copied().reduce(|highest, row| if row.lift > highest.lift { row } else { highest });
-        let (Some(first), Some(last), Some(highest)) = (rows.first().copied(), rows.last().copied(), highest) else {
-            return Ok(());
-        };
-        let image = |nose: f64| move |row: &TableRow| TableRow { angle_deg: 2.0 * nose - row.angle_deg, ..*row };
-        let slack = tolerance::TURN_CLOSED.value * 360.0 / rows.len() as f64;
-        if last.angle_deg - first.angle_deg > 180.0 + slack {
-            let words = format!(
-                "is asked of rows over {} degrees: half a lobe has 180 at most",
-                last.angle_deg - first.angle_deg
-            );
-            return Err(fields.reject("cam.mirrored", words));
-        }
-        // What is half a turn from the nose is its own image.
-        let is_other = |row: &TableRow| {
-            let from = (row.angle_deg - highest.angle_deg).abs();
-            from > 0.0 && from < 180.0 - slack
-        };
-        if highest.lift == first.lift {
-            let images: Vec<TableRow> = rows.iter().filter(|row| is_other(row)).map(image(first.angle_deg)).collect();
-            rows.splice(0..0, images.into_iter().rev());
-        } else if highest.lift == last.lift {
-            let images: Vec<TableRow> =
-                rows.iter().rev().filter(|row| is_other(row)).map(image(last.angle_deg)).collect();
-            rows.extend(images);
-        } else {
-            let words =
-                format!("needs the nose, the greatest lift, at one end of the rows: it is on {}", self.place(&highest));
-            return Err(fields.reject("cam.mirrored", words));
-        }
-        Ok(())
-    }
-
-    /// Adds rows on the base circle over the widest gap, as far apart as the others are. Returns their number.
-    fn fill(&self, fields: &Fields, rows: &mut Vec<TableRow>) -> Result<usize, ModelError> {
-        let Some(first) = rows.first().copied() else { return Ok(0) };
-        let next = |index: usize| {
-            rows.get(index + 1).map_or(TableRow { angle_deg: first.angle_deg + 360.0, ..first }, |row| *row)
-        };
-        let mut gaps: Vec<f64> = (0..rows.len()).map(|index| next(index).angle_deg - rows[index].angle_deg).collect();
-        let widest = (0..rows.len()).max_by(|one, two| gaps[*one].total_cmp(&gaps[*two])).unwrap_or_default();
-        let (before, after, gap) = (rows[widest], next(widest), gaps[widest]);
-        let middle = gaps.len() / 2;
-        let (_, median, _) = gaps.select_nth_unstable_by(middle, f64::total_cmp);
-        let count = ((gap / *median).round() as usize).saturating_sub(1).min(MOST_ROWS - rows.len().min(MOST_ROWS));
-        let lifts = rows.iter().map(|row| row.lift);
-        let (base, top) =
-            lifts.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), lift| (low.min(lift), high.max(lift)));
-        let little = tolerance::ON_BASE.value * (top - base);
-        // From the gap inwards on either side; a rise from the circle begins with little and goes on with more.
-        let inwards = |from: usize, back: bool| {
-            [0, 1, 2].map(|step| rows[(from + if back { rows.len() - step } else { step }) % rows.len()].lift)
-        };
-        let is_off = |[one, two, three]: [f64; 3]| {
-            one - base > little || (two - one).abs() > little && (two - one).abs() > 0.5 * (three - two).abs()
-        };
-        let sides = [(widest, before, true), ((widest + 1) % rows.len(), after, false)];
-        if count > 0
-            && rows.len() >= FEWEST_ROWS
-            && let Some((_, row, _)) = sides.into_iter().find(|(from, _, back)| is_off(inwards(*from, *back)))
-        {
-            let words = format!(
-                "is asked of rows that do not begin and end on the base circle: the lift on {} is {} above the lowest, or does not rise from it \
-                 smoothly",
-                self.place(&row),
-                row.lift - base
-            );
-            return Err(fields.reject("cam.outside", words));
-        }
-        let added = (1..=count).map(|index| TableRow {
-            angle_deg: before.angle_deg + gap * index as f64 / (count + 1) as f64,
-            lift: base,
-            line: before.line,
-        });
-        let added: Vec<TableRow> = added.collect();
-        rows.splice(widest + 1..widest + 1, added);
-        rows.iter_mut().for_each(|row| row.angle_deg = row.angle_deg.rem_euclid(360.0) % 360.0);
-        rows.sort_by(|one, two| one.angle_deg.total_cmp(&two.angle_deg));
-        Ok(count)
-    }
-
-    /// Orders the rows of one turn from 0 to below 360, from any first angle, and fills the base circle if that is asked for. Returns whether the
-    /// last row repeated the first, and how many were added.
-    fn turned(&self, fields: &Fields, rows: &mut Vec<TableRow>, fills: bool) -> Result<(bool, usize), ModelError> {
-        /// Smallest fall of the angle that begins a new turn, degrees.
-        const BACK: f64 = 180.0;
-        let mut turns = 0.0;
-        let first = rows.first().map_or(0.0, |row| row.angle_deg);
-        // In radians, a turn is 2 pi to as many digits as were written.
-        let slack = tolerance::TURN_CLOSED.value * 360.0 / rows.len() as f64;
-        let mut before_written = first;
-        for index in 1..rows.len() {
-            let (before, row) = (rows[index - 1], &mut rows[index]);
-            let written = row.angle_deg;
-            let begins_turn = turns == 0.0 && before.angle_deg - written > BACK;
-            if begins_turn {
-                turns = 360.0;
-            }
-            row.angle_deg += turns;
-            let row = *row;
-            self.in_order([(&before, before_written), (&row, written)], begins_turn)?;
-            before_written = written;
-            if row.angle_deg - first > 360.0 + slack {
-                let [from, to] = [first - turns, first + 360.0 - turns].map(|angle| self.shown(angle));
-                let words = format!("must be within a turn of the first row, from {from} to {to}");
-                let twice = rows.last().is_some_and(|last| last.angle_deg - first <= 2.0 * (360.0 + slack));
-                let meant = twice.then(|| "are these degrees of a crank? then say turn_deg = 720 in [cam]".to_owned());
-                return Err(self.reject_angle(row.line, written, words).meaning(meant));
-            }
-        }
-        let last = rows.last().copied().filter(|last| last.angle_deg - first >= 360.0 - slack);
-        if let Some(last) = last {
-            self.closes(rows, &rows[0], &last)?;
-            rows.pop();
-        }
-        rows.iter_mut().for_each(|row| row.angle_deg = row.angle_deg.rem_euclid(360.0) % 360.0);
-        let start = rows.iter().enumerate().min_by(|one, two| one.1.angle_deg.total_cmp(&two.1.angle_deg));
-        let start = start.map_or(0, |(index, _)| index);
-        rows.rotate_left(start);
-        rows.windows(2).try_for_each(|pair| {
-            let [before, row] = [&pair[0], &pair[1]].map(|row| (row, row.angle_deg));
-            self.in_order([before, row], false)
-        })?;
-        let filled = if fills { self.fill(fields, rows)? } else { 0 };
-        if rows.len() >= FEWEST_ROWS {
-            self.even(rows)?;
-        }
-        Ok((last.is_some(), filled))
-    }
-
-    fn place(&self, row: &TableRow) -> String {
-        format!("{} {}", if self.has_lines { "line" } else { "row" }, row.line)
-    }
-
-    /// An angle, degrees of the cam, as the table has it.
-    fn shown(&self, angle_deg: f64) -> f64 {
-        self.angles.told(angle_deg)
-    }
-
-    fn reject_angle(&self, line: usize, angle_deg: f64, words: String) -> ModelError {
-        let field = format!("angle_{}", self.angles.name());
-        self.reject(line, &field, &self.shown(angle_deg).to_string(), words)
-    }
-
-    /// Refuses a row that is not above the one before it; each comes with its angle as written, degrees.
-    fn in_order(&self, rows: [(&TableRow, f64); 2], begins_turn: bool) -> Result<(), ModelError> {
-        let [(before, above), (row, written)] = rows;
-        // Angles that are equal in radians count as one.
-        if row.angle_deg.to_radians() > before.angle_deg.to_radians() {
-            return Ok(());
-        }
-        let repeats = row.angle_deg >= before.angle_deg;
-        let what = if repeats { "repeats the angle of the row before with another lift" } else { "angles must rise" };
-        let of_turn = if begins_turn { " less a turn" } else { "" };
-        let words = format!("{what}: must be above {}{of_turn}, {}", self.shown(above), self.place(before));
-        Err(self.reject_angle(row.line, written, words))
-    }
-
-    /// Checks that a last row one turn after the first has the same lift.
-    fn closes(&self, rows: &[TableRow], first: &TableRow, last: &TableRow) -> Result<(), ModelError> {
-        let largest = rows.iter().fold(0.0_f64, |largest, row| largest.max(row.lift.abs()));
-        if (last.lift - first.lift).abs() > tolerance::CAM_CLOSURE.value * largest {
-            let words = format!(
-                "must be {}, the lift at {} on {}: a turn later it is the same again, and the row may be left out",
-                first.lift,
-                self.shown(first.angle_deg),
-                self.place(first)
-            );
-            return Err(self.reject(last.line, "lift", &last.lift.to_string(), words));
-        }
-        Ok(())
-    }
-
-    /// Refuses a gap where rows are missing.
-    fn even(&self, rows: &[TableRow]) -> Result<(), ModelError> {
-        /// Smallest gap that is refused for any number of rows, degrees.
-        const HALF: f64 = 180.0;
-        /// Gap, degrees, above which the rows cover only a part of the turn.
-        const PART: f64 = 90.0;
-        let next = |index: usize| match rows.get(index + 1) {
-            Some(row) => row.angle_deg,
-            None => rows[0].angle_deg + 360.0,
-        };
-        let gaps: Vec<f64> = rows.iter().enumerate().map(|(index, row)| next(index) - row.angle_deg).collect();
-        let mut sorted = gaps.clone();
-        let (_, median, _) = sorted.select_nth_unstable_by(gaps.len() / 2, f64::total_cmp);
-        let widest = *median / tolerance::TABLE_GAP.value;
-        // Allow for the digits to which a turn is written.
-        let half = HALF - tolerance::TURN_CLOSED.value * 360.0 / rows.len() as f64;
-        let Some(index) = gaps.iter().position(|gap| *gap > widest || *gap > half) else {
-            return Ok(());
-        };
-        // The difference of two angles has fewer digits than the angles.
-        let covered = ((360.0 - gaps[index]) * 1e9).round() / 1e9;
-        let words = if gaps[index] > PART {
-            format!(
-                "no row from {} to {}: the rows cover {covered} degrees, and a whole turn is needed, also of a cam that is its own \
-                 mirror image",
-                self.shown(rows[index].angle_deg),
-                self.shown(next(index))
-            )
-        } else {
-            format!(
-                "no row from {} to {}: rows are missing; a gap may be at most {}, {} times the median one",
-                self.shown(rows[index].angle_deg),
-                self.shown(next(index)),
-                self.shown(widest),
-                1.0 / tolerance::TABLE_GAP.value
-            )
-        };
-        let meant = match covered {
-            _ if !self.angles.is_of_cam() || gaps[index] <= PART => None,
-            turn if (0.5..=1.0).contains(&turn) => Some("did you mean angle_unit = \"turn\" in [cam]?"),
-            turn if turn <= std::f64::consts::TAU => Some("did you mean angle_unit = \"rad\" in [cam]?"),
-            _ => Some(
-                "of the open part alone say outside = \"base\" in [cam], which fills the base circle; of a half about the nose, mirrored = true",
-            ),
-        };
-        let meant = meant.map(str::to_owned);
-        Err(self.reject_angle(rows[index].line, rows[index].angle_deg, words).meaning(meant))
     }
 }

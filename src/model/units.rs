@@ -49,6 +49,11 @@ impl Unit {
         Self { name: self.name.clone(), ratio }
     }
 
+    /// Whether it is so many decimal places of another unit: a thousandth for 3.
+    pub(super) fn is_part_of(&self, other: &Self, places: u32) -> bool {
+        self.ratio == [other.ratio[0], other.ratio[1] * 10_u128.pow(places)]
+    }
+
     fn over(&self, other: &Self) -> [u128; 2] {
         [self.ratio[0] * other.ratio[1], self.ratio[1] * other.ratio[0]]
     }

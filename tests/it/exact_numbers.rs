@@ -156,6 +156,32 @@ fn rows_of_a_file_keep_their_digits() {
     }
 }
 
+/// Digits are kept of numbers that are written otherwise, and of parts of a unit.
+#[test]
+fn rows_in_parts_of_a_unit_keep_their_digits() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("exact.toml");
+    let text = |cam: &str| {
+        format!(
+            "name = \"exact\"\n[units]\nlength = \"mm\"\n[follower]\n{FOLLOWER}[cam]\nlaw = \"table\"\nspline = \"cubic\"\n{cam}"
+        )
+    };
+    let expected = json!([
+        { "angle_deg": "0", "lift": "1083.00000000000000000000001e-2" },
+        { "angle_deg": "120", "lift": "5e-3" },
+        { "angle_deg": "240", "lift": "7.5e-3" },
+    ]);
+    let csv = "angle;lift [1/100 mm]\n0°;1'083.00000000000000000000001\n120 °;5D-1\n240°;7.5e-1\n";
+    std::fs::write(folder.path().join("lift.csv"), csv).unwrap();
+    std::fs::write(&file, text("file = \"lift.csv\"\n")).unwrap();
+    let model = Model::read(&file).unwrap();
+    assert_eq!(model.exact()["cam"]["rows"], expected);
+    let rows = text("unit = \"0.01 mm\"\nrows = [[0, 1083.00000000000000000000001], [120, 5e-1], [240, 7.5e-1]]\n");
+    let same = Model::parse("exact.toml", &rows).unwrap();
+    assert_eq!(same.exact()["cam"]["rows"], expected);
+    assert_eq!(same.table().unwrap().rows.iter().map(|row| row.lift).collect::<Vec<_>>(), [10.83, 0.005, 0.0075]);
+}
+
 /// A table of as many rows as proofs are of keeps its digits, with the first row told again at the end of the turn.
 #[test]
 fn a_thousand_rows_and_the_first_again_keep_their_digits() {

@@ -57,6 +57,7 @@ mod followers;
 mod fuzz;
 mod global;
 mod growth_numbers;
+mod headings;
 mod hostile;
 mod impact_map;
 mod inner;

@@ -8,7 +8,7 @@ use tempfile::TempDir;
 use crate::common::{corner_impact, in_one_line, text};
 
 /// Lift of an open duration from 120 to 240 degrees with its nose at 180, mm to four decimals.
-fn lift(angle: f64) -> f64 {
+pub(crate) fn lift(angle: f64) -> f64 {
     let from_nose = (angle.rem_euclid(360.0) - 180.0).abs();
     let lift = if from_nose < 60.0 { 4.0 * (1.0 + (3.0 * from_nose).to_radians().cos()) } else { 0.0 };
     (lift * 1e4).round() / 1e4
@@ -24,7 +24,7 @@ fn plain(angle: f64, lift: f64) -> String {
 }
 
 /// A follower in millimetres on the cam of a table, with these fields beside it.
-fn model(folder: &TempDir, table: &str, fields: &str) -> Result<Model, String> {
+pub(crate) fn model(folder: &TempDir, table: &str, fields: &str) -> Result<Model, String> {
     fs::write(folder.path().join("lift.csv"), table).unwrap();
     let text = format!(
         "name = \"read\"\n[units]\nlength = \"mm\"\nstiffness = \"N/mm\"\n[follower]\nmass = 0.1\ndamping = 0\nstiffness = 30\npreload = 220\n\
@@ -42,9 +42,9 @@ fn table(model: &Model) -> &TableProfile {
 
 /// Demands that a table with these fields is read as the lobe, `size` times as high in millimetres.
 #[track_caller]
-fn is_the_lobe(csv: &str, fields: &str, size: f64) -> Model {
+pub(crate) fn is_the_lobe(csv: &str, fields: &str, size: f64) -> Model {
     let folder = TempDir::new().unwrap();
-    let model = model(&folder, csv, fields).unwrap();
+    let model = model(&folder, csv, fields).unwrap_or_else(|words| panic!("{:?}: {words}", &csv[..60]));
     let rows = &table(&model).rows;
     assert!((170..=360).contains(&rows.len()), "{} rows", rows.len());
     for row in rows.iter() {
@@ -64,7 +64,7 @@ fn is_the_lobe(csv: &str, fields: &str, size: f64) -> Model {
     model
 }
 
-fn reading(csv: &str, fields: &str) -> serde_json::Value {
+pub(crate) fn reading(csv: &str, fields: &str) -> serde_json::Value {
     let folder = TempDir::new().unwrap();
     serde_json::to_value(&*table(&model(&folder, csv, fields).unwrap()).reading).unwrap()
 }
@@ -188,6 +188,120 @@ fn units_are_known_in_words() {
     is_the_lobe(&table("angle,lift"), "unit = \"thou\"", 0.0254);
 }
 
+/// Numbers as they are typed in other countries and by other programs.
+#[test]
+fn numbers_are_read_however_they_are_typed() {
+    let all = || (0..360).step_by(2);
+    let thousands = |by: &str| {
+        rows(all(), |angle, lift| {
+            let microns = format!("{:.1}", 1000.0 * lift);
+            let parted = match microns.len() {
+                6.. => format!("{}{by}{}", &microns[..1], &microns[1..]),
+                _ => microns,
+            };
+            format!("{angle};{parted}")
+        })
+    };
+    for by in ["'", "’", "\u{a0}", "\u{202f}"] {
+        is_the_lobe(&format!("angle;lift [um]\n{}", thousands(by)), "", 1.0);
+    }
+    let minus = |sign: &str| rows(all(), |angle, lift| format!("{sign}{};{lift}", 360.0 - angle));
+    for sign in ["-", "\u{2212}", "–"] {
+        is_the_lobe(&format!("angle;lift\n{}", minus(sign)), "", 1.0);
+    }
+    let degrees = rows(all(), |angle, lift| format!("{angle} °;{lift}"));
+    is_the_lobe(&format!("angle;lift\n{degrees}"), "", 1.0);
+    is_the_lobe(&format!("angle [deg];lift\n{degrees}"), "", 1.0);
+    is_the_lobe(&degrees, "", 1.0);
+    for (csv, says) in [
+        (format!("angle [rad];lift\n{degrees}"), "name rad and deg"),
+        ("angle;lift [um]\n0;1'08\n1;2\n".to_owned(), "lift = 1'08: must be a finite number"),
+        ("angle;lift [um]\n0;1'0a8\n1;2\n".to_owned(), "lift = 1'0a8: must be a finite number"),
+        ("angle;lift\n0;1°\n1;2\n".to_owned(), "lift = 1°: must be a finite number"),
+        (
+            rows(all(), |angle, lift| format!("{:.1},{lift:.2}", angle + 0.5).replace('.', ",")),
+            "semicolons, or write decimal points",
+        ),
+        ("angle,lift\n0,5,0,25\n".to_owned(), "and the header has 2; if commas are decimal as well"),
+    ] {
+        let words = model(&TempDir::new().unwrap(), &csv, "").map(|_| "it is read").unwrap_err();
+        assert!(words.contains(says), "no \"{says}\" in: {words}");
+    }
+    let plain = "angle,lift,v\n0,0.5,0.25,1\n".to_owned();
+    assert!(!model(&TempDir::new().unwrap(), &plain, "").unwrap_err().contains("semicolons"));
+}
+
+/// Texts in other codes, and with the sign that ends one on old systems.
+#[test]
+fn texts_in_utf_16_are_read() {
+    let folder = TempDir::new().unwrap();
+    let text = format!(
+        "\u{feff}Winkel [°];Hub [mm]\r\n{}",
+        rows((0..360).step_by(2), |angle, lift| format!("{angle};{lift}"))
+    );
+    let of_bytes = |bytes: &[u8]| {
+        model(&folder, "", "").unwrap_err();
+        fs::write(folder.path().join("lift.csv"), bytes).unwrap();
+        Model::read(&folder.path().join("read.toml")).map_err(|error| error.to_string())
+    };
+    let wide = |code: fn(u16) -> [u8; 2]| text.encode_utf16().flat_map(code).collect::<Vec<u8>>();
+    for bytes in [wide(u16::to_le_bytes), wide(u16::to_be_bytes), format!("{text}\u{1a}\r\n").into_bytes()] {
+        let read = of_bytes(&bytes).unwrap();
+        assert_eq!((table(&read).rows.len(), table(&read).reading.unit.as_str()), (180, "mm"));
+    }
+    let (mut odd, mut broken) = (wide(u16::to_le_bytes), wide(u16::to_le_bytes));
+    odd.pop();
+    broken.extend(0xd800_u16.to_le_bytes());
+    for bytes in [odd, broken, wide(u16::to_le_bytes)[2..].to_vec(), [0xff, 0xfe, 0, 0].to_vec()] {
+        assert!(of_bytes(&bytes).unwrap_err().contains("it is no text in UTF-8, UTF-16 with its mark or Latin-1"));
+    }
+}
+
+/// Half a lobe is mirrored about its nose, though no row may be there.
+#[test]
+fn halves_are_mirrored_about_the_nose() {
+    let of = |angles: &[f64], turn: f64| -> String {
+        angles.iter().map(|angle| format!("{angle},{:.4}\n", lift(angle + turn))).collect()
+    };
+    let from = |first: f64, step: f64, count: u32| -> Vec<f64> {
+        (0..count).map(|row| first + step * f64::from(row)).collect()
+    };
+    // First angle and step of the rows, turned by half a turn or not; the nose, and how many rows there are then.
+    for (first, step, count, turn, nose, all) in [
+        (0.5, 1.0, 180, 180.0, 0.0, 360),
+        (0.5, 1.0, 180, 0.0, 180.0, 360),
+        (180.5, 1.0, 180, 0.0, 180.0, 360),
+        (0.25, 0.5, 360, 180.0, 0.0, 720),
+        (0.3, 1.0, 180, 180.0, 0.3, 359),
+        (1.0, 1.0, 180, 180.0, 1.0, 359),
+        (0.0, 1.0, 181, 180.0, 0.0, 360),
+        (0.0, 1.0, 181, 0.0, 180.0, 360),
+    ] {
+        let folder = TempDir::new().unwrap();
+        let model = model(&folder, &of(&from(first, step, count), turn), "mirrored = true").unwrap();
+        let told = serde_json::to_value(&*table(&model).reading).unwrap();
+        assert_eq!((&told["nose_deg"], &told["rows"]), (&nose.into(), &all.into()), "{first} {step}");
+        let at = |angle: f64| {
+            table(&model)
+                .rows
+                .iter()
+                .find(|row| (row.angle_deg - angle.rem_euclid(360.0)).abs() < 1e-9)
+                .map(|row| row.lift)
+        };
+        let sides = from(first, step, count).iter().filter(|angle| at(**angle) != at(2.0 * nose - **angle)).count();
+        assert_eq!(sides, 0, "{first} {step}");
+    }
+    // Two rows or more at the top are one nose.
+    for turn in [0.0, 180.0] {
+        let folder = TempDir::new().unwrap();
+        let flat = |angle: f64| lift(angle + turn).min(lift(177.0));
+        let csv: String = (0..=180).map(f64::from).map(|angle| format!("{angle},{:.4}\n", flat(angle))).collect();
+        let model = model(&folder, &csv, "mirrored = true").unwrap();
+        assert!(table(&model).rows.iter().all(|row| row.lift == flat(row.angle_deg)));
+        assert_eq!(table(&model).rows.len(), 360);
+    }
+}
+
 /// A number with three digits behind every comma has two readings, and both are told.
 #[test]
 fn commas_that_may_part_thousands_are_told() {
@@ -196,6 +310,19 @@ fn commas_that_may_part_thousands_are_told() {
         reading(&format!("angle [deg];lift [mm]\n{}", rows(0..360, row)), "")["thousands"].clone()
     };
     assert_eq!((of(3), of(4)), ("40,000".into(), serde_json::Value::Null));
+    // Behind points, where numbers below a thousand have none.
+    let microns = |below: fn(u32) -> String| {
+        let row = |angle: f64, lift: f64| {
+            let whole = (1000.0 * lift).round() as u32;
+            let lift = if whole < 1000 { below(whole) } else { format!("{}.{:03}", whole / 1000, whole % 1000) };
+            format!("{angle};{lift}")
+        };
+        reading(&format!("angle [deg];lift [um]\n{}", rows(0..360, row)), "")["thousands"].clone()
+    };
+    let whole = microns(|lift| lift.to_string());
+    assert_eq!((whole, microns(|lift| format!("0.{lift:03}"))), ("1.027".into(), serde_json::Value::Null));
+    assert_eq!(microns(|_| "0".into()), serde_json::Value::Null);
+    assert_eq!(microns(|_| "7.5".into()), serde_json::Value::Null);
 }
 
 #[test]
@@ -210,7 +337,7 @@ fn what_is_not_read_is_refused_with_what_makes_it_read() {
         (all("angle [deg],lift in furlongs"), "", "say it in [cam], by unit"),
         (all("angle [deg],lift yards"), "", "the unit of the lift must be one of"),
         (all("angle [gon],lift [mm]"), "", "the unit of the angle must be one of: deg, rad, turn;"),
-        (all("lifts in mm of cam 3\nangle,lift"), "", "say which the lifts are in, by unit in [cam]"),
+        (all("lifts in inches of cam 3\nangle,lift"), "", "say which the lifts are in, by unit in [cam]"),
         (wide("angle,lift intake,lift exhaust"), "", "say which in [cam], by lift_column"),
         (wide("angle,left,right"), "", "say which in [cam], by lift_column"),
         (
@@ -244,10 +371,107 @@ fn what_is_not_read_is_refused_with_what_makes_it_read() {
         (all("angle [deg],lift [mm]"), "turn_deg = -720", "must be a finite number above 0"),
         (all("angle [deg],lift [mm]"), "turn_deg = nan", "must be a finite number"),
         ("root:x:0\nnobody:x:1\n".into(), "", "is no table of lifts"),
+        // The line is named that makes it read.
+        (
+            format!(
+                "no,angle,lift\n{}",
+                rows((0..360).step_by(2), |angle, lift| format!("{},{angle},{lift}", angle / 2.0))
+            ),
+            "angle_column = \"no\"",
+            "does column 1 count the rows? then choose another one by angle_column in [cam]",
+        ),
+        (
+            format!("angle,lift\n{}", rows(0..720, plain)),
+            "",
+            "repeat those of the turn before: keep one turn of them; or are these degrees",
+        ),
+        (
+            format!(
+                "angle,lift\n{}",
+                rows(0..720, |angle, lift_| plain(angle, if angle > 700.0 { 1.0 } else { lift_ }))
+            ),
+            "",
+            "from 0 to 360; are these degrees of a crank? then say turn_deg = 720",
+        ),
+        (
+            format!(
+                "angle,lift\n{}",
+                rows(0..360, |angle, lift| format!("{:.4},{lift}", angle.to_radians())) + "6.2833,0\n"
+            ),
+            "",
+            "did you mean angle_unit = \"rad\" in [cam]?",
+        ),
+        (
+            format!("angle [deg],lift\n{}", rows(0..360, |angle, lift| format!("{:.4},{lift}", angle.to_radians()))),
+            "",
+            "the header says deg: is it rad? then correct it there",
+        ),
+        (
+            format!("angle [deg],lift\n{}", rows(0..360, |angle, lift| format!("{:.5},{lift}", angle / 360.0))),
+            "",
+            "the header says deg: is it turn? then correct it there",
+        ),
+        (slip("180,8.0000", "angle [deg],lift [mm]\n180,8.0000"), "", "this is the header again; leave the line out"),
+        (
+            all("angle [deg],lift [mm]") + "Max lift,8.0\n",
+            "",
+            "must be a finite number; if this line is no row, leave it out or begin it with #",
+        ),
+        (
+            all("angle [deg],lift [mm]") + "-- end of data\n",
+            "",
+            "must be two numbers: angle_deg,lift; if this line is no row",
+        ),
+        (of(130..=240), "outside = \"base\"", "is 0.5359 above the lowest"),
+        (
+            format!("angle [deg],lift [mm]\n129,0\n{}250,0\n", rows(130..=240, plain)),
+            "outside = \"base\"",
+            "on line 2 is the lowest, and the next one is 0.5359 from it at once: the flank is cut off",
+        ),
+        (of(116..=180), "mirrored = true", "outside = \"base\" in [cam], which fills the base circle"),
     ] {
         let folder = TempDir::new().unwrap();
         let said = model(&folder, &csv, fields).expect_err(says);
         assert!(said.contains(says), "no \"{says}\" in: {said}");
         assert!(!said.contains("nobody"), "{said}");
+        // What the model says is not advised.
+        assert!(fields.is_empty() || !said.split("; of ").skip(1).any(|advice| advice.contains(fields)), "{said}");
     }
+}
+
+/// A table in place of a model has no [cam] yet: what is refused says how to have one.
+#[test]
+fn a_refused_table_without_a_model_says_how_to_have_one() {
+    let folder = TempDir::new().unwrap();
+    let file = folder.path().join("lifts.csv");
+    let page = |csv: &str| {
+        fs::write(&file, csv).unwrap();
+        let output = corner_impact(["cam", &file.display().to_string()]);
+        (output.status.code(), in_one_line(&text(output.stderr)))
+    };
+    let of = |head: &str, angles: std::ops::Range<i32>| format!("{head}\n{}", rows(angles, plain));
+    let new = "there is no model file yet: `corner-impact new --law table my-machine.toml` writes one, and file = \"lifts.csv\" in it names this table";
+    for csv in [of("angle,lift [furlong]", 0..360), of("angle,lift", 100..250)] {
+        let (code, said) = page(&csv);
+        assert!(code == Some(2) && said.contains(new), "{said}");
+    }
+    assert!(!page("angle,lift\n0,x\n").1.contains("no model file yet"));
+}
+
+/// What may not be meant is said.
+#[test]
+fn doubts_about_a_table_are_noted() {
+    let doubts = |csv: &str, fields: &str| table(&model(&TempDir::new().unwrap(), csv, fields).unwrap()).doubts();
+    let of = |head: &str, sign: f64| format!("{head}\n{}", rows(0..360, |angle, lift| plain(angle, sign * lift)));
+    for head in ["crank angle,lift", "Kurbelwinkel,lift", "Winkel [°KW],lift", "angle (CAD),lift"] {
+        let told = doubts(&of(head, 1.0), "");
+        assert!(told.len() == 1 && told[0].contains("say turn_deg = 720 in [cam]"), "{head}: {told:?}");
+    }
+    let twice = format!("crank angle,lift\n{}", rows(0..360, |angle, lift| plain(2.0 * angle, lift)));
+    assert!(doubts(&twice, "turn_deg = 720").is_empty() && doubts(&of("cam angle,lift", 1.0), "").is_empty());
+    let told = doubts(&of("angle,lift", -1.0), "");
+    assert!(told.len() == 1 && told[0].starts_with("cam.file: the lowest lift is -8 mm"), "{told:?}");
+    // Less than a hundredth of the rise is a gauge's.
+    let low = |lowest: &str| of("angle,lift", 1.0).replacen("\n7,0.0000", &format!("\n7,{lowest}"), 1);
+    assert_eq!([low("-0.0807"), low("-0.0809")].map(|csv| doubts(&csv, "").len()), [0, 1]);
 }

@@ -272,9 +272,21 @@ impl ModelArgument {
                     file.display()
                 ));
                 // The assumed model is in no file of that name.
-                let assumed = |error: ModelError| ModelError {
-                    file: format!("{} and what is assumed beside it", path.display()).into(),
-                    ..error
+                let assumed = |error: ModelError| {
+                    let names_field = error.to_string().contains("in [cam]");
+                    let words = format!(
+                        "; there is no model file yet: `corner-impact new --law table my-machine.toml` writes one, and file = \"{}\" in it \
+                         names this table",
+                        path.file_name().unwrap_or_default().display()
+                    );
+                    let file = format!("{} and what is assumed beside it", path.display()).into();
+                    let meant = error.pointer.meant.clone();
+                    let error = ModelError { file, ..error };
+                    match meant.filter(|_| names_field) {
+                        Some(meant) => error.meaning(Some(meant + &words)),
+                        None if names_field => error.found(&words),
+                        None => error,
+                    }
                 };
                 watched("reading the table", |_| Model::parse(&file.to_string_lossy(), &text).map_err(assumed))?
             }

@@ -11,6 +11,7 @@ use corner_impact::model::{Model, ModelError, TableProfile};
 pub fn notes(model: &Model, rpm: Option<[f64; 2]>) -> Result<Vec<String>, ModelError> {
     let mut notes: Vec<String> = model.doubt(rpm)?.into_iter().collect();
     let Some(profile) = model.table() else { return Ok(notes) };
+    notes.extend(profile.doubts());
     let Remarks { strays, loose, contradicted } = Remarks::on(model)?;
     let reading = &profile.reading;
     let told = |length: f64| Digits::Aligned(2).text(reading.in_model.told(length));

@@ -484,6 +484,7 @@ pub(crate) fn reading(reading: &Reading) -> [String; 3] {
             Some(header) => format!("the header is \"{header}\""),
             None => "there is no header".into(),
         });
+        table.extend(layout.units.as_ref().map(|units| format!("the units are \"{units}\"")));
         for (count, what) in [(layout.comments, "comment"), (layout.titles, "title")] {
             match count {
                 0 => {}
@@ -509,18 +510,21 @@ pub(crate) fn reading(reading: &Reading) -> [String; 3] {
         angles.push("the last row repeats the first".into());
     }
     if reading.is_mirrored {
-        angles.push("half a lobe, and its mirror image".into());
+        let nose = reading.nose_deg.map(|nose| format!(" about {} deg", Digits::UpTo(6).text(nose)));
+        angles.push(format!("half a lobe, and its mirror image{}", nose.unwrap_or_default()));
     }
     if reading.filled > 0 {
         angles.push(format!("{} rows are added on the base circle", reading.filled));
     }
-    let mut lifts = vec![format!("{}in {}", column(1), reading.unit)];
+    let mut lifts = vec![format!("{}in {}", column(1), reading.part.as_ref().unwrap_or(&reading.unit))];
     if let Some(layout) = layout.filter(|layout| !layout.left_out.is_empty()) {
         lifts.push(format!("columns left out: {}", layout.left_out.join(", ")));
     }
     if let Some(number) = layout.and_then(|layout| layout.thousands.as_ref()) {
-        let [decimal, whole] = [".", ""].map(|comma| number.replace(',', comma));
-        lifts.push(format!("{number} is read as {decimal}; if commas part thousands, it is {whole}, and they must go"));
+        let [decimal, whole] = [".", ""].map(|sign| number.replace([',', '.'], sign));
+        let signs = if number.contains(',') { "commas" } else { "points" };
+        lifts
+            .push(format!("{number} is read as {decimal}; if {signs} part thousands, it is {whole}, and they must go"));
     }
     [("table", table), ("angles", angles), ("lifts", lifts)]
         .map(|(name, parts)| format!("{name}: {}", parts.join("; ")))

@@ -1,0 +1,81 @@
+//! Units of a table of lifts.
+
+use super::units::LENGTHS;
+
+/// Unit of the angles of a table.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct AngleUnit {
+    /// Index in the names of the units.
+    pub(super) index: usize,
+    /// Degrees of the table in one turn of the cam: 720 for those of a crank.
+    pub(super) turn_deg: f64,
+}
+
+impl AngleUnit {
+    pub(super) const DEGREES: Self = Self { index: 0, turn_deg: 360.0 };
+    /// Names in a model file.
+    pub(super) const NAMES: [&'static str; 3] = ["deg", "rad", "turn"];
+
+    pub(super) fn name(self) -> &'static str {
+        Self::NAMES[self.index]
+    }
+
+    /// Whether numbers of the table are degrees of the cam.
+    pub(super) fn is_of_cam(self) -> bool {
+        self == Self::DEGREES
+    }
+
+    /// Degrees of the cam of an angle as written.
+    pub(super) fn degrees(self, angle: f64) -> f64 {
+        let degrees = match self.index {
+            0 => angle,
+            1 => angle.to_degrees(),
+            _ => 360.0 * angle,
+        };
+        if self.turn_deg == 360.0 { degrees } else { degrees * 360.0 / self.turn_deg }
+    }
+
+    /// An angle, degrees of the cam, as the table has it, to the digits that survive a conversion there and back.
+    pub(super) fn told(self, angle_deg: f64) -> f64 {
+        if self.is_of_cam() {
+            return angle_deg;
+        }
+        let degrees = angle_deg * self.turn_deg / 360.0;
+        let angle = match self.index {
+            0 => degrees,
+            1 => degrees.to_radians(),
+            _ => degrees / 360.0,
+        };
+        format!("{angle:.14e}").parse().unwrap_or(angle)
+    }
+}
+
+/// Unit of lifts in a table: one of the units of length, or a decimal part of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct LiftUnit {
+    /// Index in the table of lengths.
+    pub(super) index: usize,
+    /// Decimal places: 2 for hundredths of the unit.
+    pub(super) places: u32,
+}
+
+impl LiftUnit {
+    /// The part of a unit of length, which has a name of its own where there is one: a thousandth of an inch is a thou.
+    pub(super) fn part(index: usize, places: u32) -> Self {
+        match LENGTHS.iter().position(|unit| places > 0 && unit.is_part_of(&LENGTHS[index], places)) {
+            Some(index) => Self { index, places: 0 },
+            None => Self { index, places },
+        }
+    }
+
+    /// Name, as in a model file.
+    pub(super) fn name(self) -> String {
+        let unit = LENGTHS[self.index].name();
+        if self.places == 0 { unit.to_owned() } else { format!("{} {unit}", decimal_part(self.places)) }
+    }
+}
+
+/// A decimal part as it is written: 0.01.
+pub(super) fn decimal_part(places: u32) -> f64 {
+    format!("1e-{places}").parse().unwrap_or(f64::NAN)
+}
