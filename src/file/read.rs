@@ -1,6 +1,6 @@
-//! Files that are read whole: model files and tables of lifts.
+//! Files that are read whole, up to a limit: model files, tables of lifts, fonts, and the files of a store.
 
-use std::fs::File;
+use std::fs::{self, File, OpenOptions};
 use std::io::{self, Read};
 use std::path::Path;
 
@@ -11,12 +11,12 @@ const LONGEST_LINE: usize = 1 << 20;
 
 /// Reads the text of a file; never reads more than the limit.
 pub(crate) fn text(path: &Path) -> io::Result<String> {
-    lines(String::from_utf8(bytes(path)?).map_err(|_| no_text("UTF-8"))?)
+    lines(String::from_utf8(bytes(path, LONGEST)?).map_err(|_| no_text("UTF-8"))?)
 }
 
 /// Reads a file that an older program may have written: text that is not UTF-8 is Latin-1, in which a degree sign is one byte.
 pub(crate) fn text_of_any_age(path: &Path) -> io::Result<String> {
-    let bytes = bytes(path)?;
+    let bytes = bytes(path, LONGEST)?;
     // UTF-16 and binary files contain zero bytes.
     if bytes.contains(&0) {
         return Err(no_text("UTF-8 or Latin-1"));
@@ -33,10 +33,35 @@ fn too_long(what: &str, most: usize) -> io::Error {
     io::Error::new(io::ErrorKind::FileTooLarge, words)
 }
 
-fn bytes(path: &Path) -> io::Result<Vec<u8>> {
+/// Opens a regular file for reading. Refuses devices, pipes, sockets and folders without opening them, and never waits for a pipe.
+pub fn regular(path: &Path) -> io::Result<File> {
+    is_regular(&fs::metadata(path)?)?;
+    let mut options = OpenOptions::new();
+    options.read(true);
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::OpenOptionsExt;
+        // A pipe may take the file's place between the two calls.
+        options.custom_flags(rustix::fs::OFlags::NONBLOCK.bits() as i32);
+    }
+    let file = options.open(path)?;
+    is_regular(&file.metadata()?)?;
+    Ok(file)
+}
+
+fn is_regular(found: &fs::Metadata) -> io::Result<()> {
+    match (found.is_file(), found.is_dir()) {
+        (true, _) => Ok(()),
+        (_, true) => Err(io::ErrorKind::IsADirectory.into()),
+        _ => Err(io::Error::new(io::ErrorKind::InvalidInput, "it is a device, a pipe or a socket, and no file")),
+    }
+}
+
+/// Reads a regular file whole, up to `most` bytes.
+pub fn bytes(path: &Path, most: usize) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    File::open(path)?.take(LONGEST as u64 + 1).read_to_end(&mut bytes)?;
-    if bytes.len() > LONGEST { Err(too_long("it", LONGEST)) } else { Ok(bytes) }
+    regular(path)?.take(most as u64 + 1).read_to_end(&mut bytes)?;
+    if bytes.len() > most { Err(too_long("it", most)) } else { Ok(bytes) }
 }
 
 fn lines(text: String) -> io::Result<String> {

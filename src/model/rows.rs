@@ -385,6 +385,9 @@ impl Kind {
     }
 }
 
+/// Number of lines by which a text is taken for a table: titles may stand above its rows.
+const FIRST_LINES: usize = 20;
+
 /// The columns of a table, from 0, the angle's first.
 type Columns = [usize; 2];
 
@@ -452,6 +455,23 @@ impl<'a> Table<'a> {
     pub(super) fn complain(&self, line: Option<usize>, allowed: String) -> ModelError {
         let line = line.filter(|_| self.has_lines);
         ModelError { line, ..ModelError::file(&self.file, allowed) }.in_line(self.text, None)
+    }
+
+    /// Takes what a line has out of a complaint about a text that does not begin like a table: the model may name any file of its reader.
+    pub(super) fn discreet(&self, complaint: ModelError, chosen: &[Option<Chosen>; 2]) -> ModelError {
+        let mut first = self.text.lines().map(|line| without_comment(line).0).filter(|line| !line.trim().is_empty()).take(FIRST_LINES);
+        let begins_like_table = first.any(|line| has_numbers(line) || self.is_header(line, chosen));
+        if begins_like_table || complaint.pointer.text.is_none() {
+            return complaint;
+        }
+        let words = format!("is no table of lifts: none of its first {FIRST_LINES} lines has two numbers, or an angle and a lift as {HEADER}");
+        ModelError { line: complaint.line, ..ModelError::file(&self.file, words) }
+    }
+
+    /// Whether a line names an angle and a lift.
+    fn is_header(&self, line: &str, chosen: &[Option<Chosen>; 2]) -> bool {
+        let cells: Vec<&str> = Separator::of(line).cells(line).collect();
+        self.named(&cells, chosen).is_ok_and(|columns| columns.is_some())
     }
 
     /// Angle and lift of the row in a line, as written except for the decimal point.
@@ -542,13 +562,9 @@ impl<'a> Table<'a> {
                 .starts_with(|letter: char| letter.is_ascii_digit() || "+-.".contains(letter))
         };
         // Below a header even a line without a number is a row, with a slip.
-        let is_header = |text: &'a str| {
-            let cells: Vec<&str> = Separator::of(text).cells(text).collect();
-            self.named(&cells, chosen).is_ok_and(|columns| columns.is_some())
-        };
         let found =
             filled().position(|(_, text)| has_numbers(text)).or_else(|| filled().position(|(_, text)| is_number(text)));
-        let found = found.or_else(|| Some(1 + filled().position(|(_, text)| is_header(text))?));
+        let found = found.or_else(|| Some(1 + filled().position(|(_, text)| self.is_header(text, chosen))?));
         let Some(found) = found else {
             return Err(
                 self.complain(None, format!("is no table of lifts: no line has two numbers, as below {HEADER}"))

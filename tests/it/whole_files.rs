@@ -185,6 +185,66 @@ mod unix {
         }
     }
 
+    /// Not a test: the process that the next test stops, while it gives many files their names.
+    #[test]
+    fn child_that_names_many() {
+        let Ok(folder) = std::env::var("CORNER_IMPACT_TEST_FOLDER") else { return };
+        corner_impact_cli::cli::clear_on_signals().unwrap();
+        let file = |index: u32| {
+            let mut output = create(&Path::new(&folder).join(index.to_string()));
+            output.write_all(b"x").unwrap();
+            output
+        };
+        Output::commit_all((0..MANY).map(file).collect()).unwrap();
+    }
+
+    /// Number of files that are named at once in the test below.
+    const MANY: u32 = 800;
+
+    /// A signal in the middle of the names, as soon as the first is there.
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_signal_leaves_all_files_or_none() {
+        let folder = TempDir::new().unwrap();
+        let mut program = Command::new(std::env::current_exe().unwrap());
+        program.args(["--exact", "whole_files::unix::child_that_names_many"]);
+        let mut program = crate::common::that_signals_end(&program);
+        let mut child = program.env("CORNER_IMPACT_TEST_FOLDER", folder.path()).stdout(Stdio::null()).spawn().unwrap();
+        // A shell that runs already sends a signal sooner than one that begins.
+        let signal = format!("read begun; kill -TERM {}", child.id());
+        let mut shell = Command::new("sh").args(["-c", &signal]).stdin(Stdio::piped()).spawn().unwrap();
+        while names(&folder).is_empty() && child.try_wait().unwrap().is_none() {}
+        shell.stdin.take().unwrap().write_all(b"\n").unwrap();
+        shell.wait().unwrap();
+        child.wait().unwrap();
+        assert_eq!(names(&folder).len(), MANY as usize);
+    }
+
+    /// One of three files cannot have its name: the others are as they were.
+    #[test]
+    fn one_name_that_cannot_be_leaves_all_as_they_were() {
+        let folder = TempDir::new().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        fs::write(at("old"), "before").unwrap();
+        let outputs: Vec<Output<'_>> = ["old", "new", "taken"]
+            .iter()
+            .map(|name| {
+                let mut output = create(&at(name));
+                output.write_all(b"after").unwrap();
+                output
+            })
+            .collect();
+        fs::create_dir(at("taken")).unwrap();
+        let refused = Output::commit_all(outputs).unwrap_err().to_string();
+        assert!(refused.contains("taken: cannot be replaced"), "{refused}");
+        assert_eq!(fs::read_to_string(at("old")).unwrap(), "before");
+        assert_eq!(names(&folder), ["old", "taken"]);
+        // With all names free, or files, they are given.
+        fs::remove_dir(at("taken")).unwrap();
+        Output::commit_all(["old", "new"].map(|name| create(&at(name))).into()).unwrap();
+        assert_eq!((names(&folder), fs::read_to_string(at("old")).unwrap()), (vec!["new".into(), "old".into()], String::new()));
+    }
+
     /// A name that is taken while the work goes on is replaced, as one that was taken before.
     #[test]
     fn a_name_that_is_taken_meanwhile_is_replaced() {

@@ -43,7 +43,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
             let rpm = theorem.set.rpm[0];
             let title = format!("{} at {rpm} rpm: strips of N, and where so many impacts carry them", model.name);
             let figure = chaos_figure(&title, &theorem.set, &portrait(&model, &theorem.set)?);
-            super::commit(vec![canvas.draw(figure, &model.units)?])?;
+            canvas.draw(figure, &model.units)?.commit()?;
         }
         (Some(_), None) => session.note("nothing is proved, so nothing is drawn"),
         (None, _) => {}

@@ -122,7 +122,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     };
     let found = watched("", |watch| design(&model, &asked, watch))?;
     if let Some(canvas) = canvas {
-        super::commit(vec![canvas.draw(design_figure(&found), &model.units)?])?;
+        canvas.draw(design_figure(&found), &model.units)?.commit()?;
     }
     session.answer(&found, &arguments.answer)
 }

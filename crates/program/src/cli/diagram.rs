@@ -150,7 +150,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
                 file.write_all(csv::diagram(&sweep).as_bytes())?;
                 let take = |lines: csv::Lines| Ok::<(), CommandError>(file.write_all(lines.text.as_bytes())?);
                 let swept = Swept::new(name, &sweep, threads, &progress, take)?;
-                super::commit(vec![file])?;
+                file.commit()?;
                 swept
             }
             Some(Target::Picture(canvas)) => {
@@ -166,7 +166,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
                     Section::Impacts => impact_diagram(&title, places, &corners, exponents),
                     Section::Strobe(_) => strobe_diagram(&title, places, exponents),
                 };
-                super::commit(vec![canvas.draw(across.under(figure), &model.units)?])?;
+                canvas.draw(across.under(figure), &model.units)?.commit()?;
                 swept
             }
         };
@@ -224,7 +224,7 @@ fn one_row(arguments: &Arguments, survey: &Survey, session: &mut Session<'_>) ->
     let budget = arguments.budget.budget(Budget::CHART)?;
     let points = watched("", |watch| swept::one_row(survey, start, budget, threads, watch))?;
     file.write_all(csv::one_row(survey.axis(), &points, survey.units()).as_bytes())?;
-    super::commit(vec![file])?;
+    file.commit()?;
     let failed = || points.iter().enumerate().filter_map(|(index, point)| Some((index, point.as_ref().err()?)));
     if let Some((index, why)) = failed().next() {
         let first = format!("{}: {why}", survey.words(index));

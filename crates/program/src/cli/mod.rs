@@ -52,7 +52,7 @@ use session::Wishes;
 pub use signals::watch as clear_on_signals;
 
 use corner_impact::cancel;
-use corner_impact::file::{FileError, Output};
+use corner_impact::file::FileError;
 use corner_impact::model::{ModelError, Units};
 use corner_impact::simulate::SimulateError;
 
@@ -182,12 +182,6 @@ impl<E: Error + 'static> From<E> for CommandError {
         }
         Self::Words(words)
     }
-}
-
-/// Gives files their names, when every one of them is on the disk as far as can be told.
-fn commit(mut files: Vec<Output<'_>>) -> Result<(), CommandError> {
-    files.iter_mut().try_for_each(Write::flush)?;
-    Ok(files.into_iter().try_for_each(Output::commit)?)
 }
 
 /// Runs one command line, program name first; neither stream is a terminal.

@@ -163,7 +163,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     if let Some(canvas) = plane {
         files.push(canvas.draw(phase_plane_figure(&title, &seen(figures::TracedRun::DRAWN)?), &model.units)?);
     }
-    super::commit(files)?;
+    Output::commit_all(files)?;
     if arguments.answer.json || streams == 0 {
         session.answer(&run, &arguments.answer)?;
     }
