@@ -459,12 +459,19 @@ impl<'a> Table<'a> {
 
     /// Takes what a line has out of a complaint about a text that does not begin like a table: the model may name any file of its reader.
     pub(super) fn discreet(&self, complaint: ModelError, chosen: &[Option<Chosen>; 2]) -> ModelError {
-        let mut first = self.text.lines().map(|line| without_comment(line).0).filter(|line| !line.trim().is_empty()).take(FIRST_LINES);
+        let mut first = self
+            .text
+            .lines()
+            .map(|line| without_comment(line).0)
+            .filter(|line| !line.trim().is_empty())
+            .take(FIRST_LINES);
         let begins_like_table = first.any(|line| has_numbers(line) || self.is_header(line, chosen));
         if begins_like_table || complaint.pointer.text.is_none() {
             return complaint;
         }
-        let words = format!("is no table of lifts: none of its first {FIRST_LINES} lines has two numbers, or an angle and a lift as {HEADER}");
+        let words = format!(
+            "is no table of lifts: none of its first {FIRST_LINES} lines has two numbers, or an angle and a lift as {HEADER}"
+        );
         ModelError { line: complaint.line, ..ModelError::file(&self.file, words) }
     }
 

@@ -51,6 +51,8 @@ fn left(folder: &Path) -> PathBuf {
     killed.wait().unwrap();
     let mut new = names(folder);
     new.retain(|name| !before.contains(name));
+    // Its other scripts ran beside them.
+    new[1..].iter().for_each(|name| fs::remove_dir_all(folder.join(name)).unwrap());
     folder.join(&new[0])
 }
 

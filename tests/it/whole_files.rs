@@ -242,7 +242,10 @@ mod unix {
         // With all names free, or files, they are given.
         fs::remove_dir(at("taken")).unwrap();
         Output::commit_all(["old", "new"].map(|name| create(&at(name))).into()).unwrap();
-        assert_eq!((names(&folder), fs::read_to_string(at("old")).unwrap()), (vec!["new".into(), "old".into()], String::new()));
+        assert_eq!(
+            (names(&folder), fs::read_to_string(at("old")).unwrap()),
+            (vec!["new".into(), "old".into()], String::new())
+        );
     }
 
     /// A name that is taken while the work goes on is replaced, as one that was taken before.

@@ -37,7 +37,7 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
     let model = arguments.model.read_as_drawn(session)?;
     let canvas = arguments.out.as_ref().map(|path| Canvas::create(path, arguments.picture.look()?)).transpose()?;
-    let found = watched("", |watch| chaos(&model, arguments.rpm, arguments.trapping, watch))?;
+    let found = watched("looking for h-sets", |watch| chaos(&model, arguments.rpm, arguments.trapping, watch))?;
     match (canvas, found.theorems.first()) {
         (Some(canvas), Some(theorem)) => {
             let rpm = theorem.set.rpm[0];

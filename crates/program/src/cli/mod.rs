@@ -192,7 +192,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, out: &mut dyn Write, e
 /// Runs a command, as long as somebody reads it, where its results are nowhere else.
 fn begun(arguments: &Arguments, only_prints: bool, session: &mut Session<'_>) -> Result<Exit, CommandError> {
     (session.color, session.quiet, session.threads) = (arguments.color, arguments.quiet, arguments.threads);
-    progress::hide(arguments.quiet);
+    progress::begin(arguments.quiet);
     let is_watched = session.terminal.is_process && only_prints;
     let next = arguments.command.next();
     signals::watch().map_err(|error| CommandError::Words(format!("signals: {error}")))?;

@@ -68,7 +68,9 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         Some(path) => Some(Output::create(path, &mut *session.out)?),
         None => None,
     };
-    let report = watched("", |watch| Report::of(&model, arguments.external.routes(), arguments.rpm, watch))?;
+    let report = watched("looking for the corner impact", |watch| {
+        Report::of(&model, arguments.external.routes(), arguments.rpm, watch)
+    })?;
     let document = arguments.json.then(|| json::render(&report, &model.units)).transpose()?;
     let write = |mut file: Output<'_>| {
         let page = html::render(&report)?;

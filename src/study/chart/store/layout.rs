@@ -29,7 +29,9 @@ pub enum StoreError {
     #[error("{blocks} blocks: a store has {most} or fewer; larger blocks or fewer points make fewer")]
     TooMany { blocks: usize, most: usize },
     /// The store has more blocks than can be checked in time.
-    #[error("{folder}: too large to be looked through within a second: {done} of its first {looked} blocks are done, and it has {total}")]
+    #[error(
+        "{folder}: too large to be looked through within a second: {done} of its first {looked} blocks are done, and it has {total}"
+    )]
     Slow { folder: String, done: usize, looked: usize, total: usize },
     /// The store has no such block.
     #[error("no block {block}: the store has {total}, counted from 0")]
@@ -89,7 +91,9 @@ impl Layout {
         };
         let both = numbers(&classes["shape"]).zip(numbers(&classes["chunk_grid"]["configuration"]["chunk_shape"]));
         let (points, sides) = both.ok_or_else(|| none(folder, "it has no classes".into()))?;
-        Self { points, sides, has_checksums: has_checksums(&group) }.checked().map_err(|error| none(folder, error.to_string()))
+        Self { points, sides, has_checksums: has_checksums(&group) }
+            .checked()
+            .map_err(|error| none(folder, error.to_string()))
     }
 
     /// Numbers of blocks.
@@ -106,8 +110,11 @@ impl Layout {
             let length = self.sides[0] * self.sides[1] * variable.size() + self.seal();
             let path = folder.join(self.file(variable.name, block));
             // A link is no block: its target may be anywhere.
-            let is_there = std::fs::symlink_metadata(&path).is_ok_and(|found| found.is_file() && found.len() == length as u64);
-            if !is_there || self.has_checksums && !file::bytes(&path, length).is_ok_and(|bytes| checksum::is_sealed(&bytes)) {
+            let is_there =
+                std::fs::symlink_metadata(&path).is_ok_and(|found| found.is_file() && found.len() == length as u64);
+            if !is_there
+                || self.has_checksums && !file::bytes(&path, length).is_ok_and(|bytes| checksum::is_sealed(&bytes))
+            {
                 return Some(false);
             }
         }

@@ -112,7 +112,8 @@ impl<'a> Store<'a> {
     fn complete(&self) -> Result<(), StoreError> {
         let whole = self.document();
         let arrays = whole["consolidated_metadata"]["metadata"].as_object().into_iter().flatten();
-        let documents = arrays.map(|(name, document)| (Path::new(name).join("zarr.json"), pretty(document).into_bytes()));
+        let documents =
+            arrays.map(|(name, document)| (Path::new(name).join("zarr.json"), pretty(document).into_bytes()));
         let axes = self.axes().map(|axis| (axis_file(axis), self.sealed(axis_bytes(axis))));
         for (file, bytes) in axes.into_iter().chain(documents) {
             if !self.holds(&file, &bytes) {
@@ -125,8 +126,7 @@ impl<'a> Store<'a> {
     /// Whether a file of the store, and no link to one, has these bytes.
     fn holds(&self, file: &Path, bytes: &[u8]) -> bool {
         let path = self.folder.join(file);
-        // A file of another length differs and need not be read.
-        std::fs::symlink_metadata(&path).is_ok_and(|found| found.is_file() && found.len() == bytes.len() as u64)
+        std::fs::symlink_metadata(&path).is_ok_and(|found| found.is_file())
             && file::bytes(&path, bytes.len()).is_ok_and(|there| there == bytes)
     }
 
@@ -171,8 +171,7 @@ impl<'a> Store<'a> {
         }
         let [wide, high] = self.layout.sides;
         let range = |index: usize, side: usize, axis: &Axis| index * side..axis.values.len().min((index + 1) * side);
-        let (columns, rows) =
-            (range(block % across, wide, &self.chart.x), range(block / across, high, &self.chart.y));
+        let (columns, rows) = (range(block % across, wide, &self.chart.x), range(block / across, high, &self.chart.y));
         let width = columns.len();
         let (found, times) = self.chart.part([columns, rows], threads, &Unwatched)?;
         let mut files = Vec::new();
@@ -211,7 +210,8 @@ impl<'a> Store<'a> {
             let (fill, _) = variable.fill();
             let attributes = variable.attributes(&chart.model.units);
             let kind = variable.data_type();
-            arrays.insert(variable.name.into(), array(&[y.1, x.1], &[high, wide], kind, &fill, &[y.0, x.0], &attributes));
+            arrays
+                .insert(variable.name.into(), array(&[y.1, x.1], &[high, wide], kind, &fill, &[y.0, x.0], &attributes));
         }
         for (name, count) in [x, y] {
             let units = if name == "rpm" { json!({ "units": "rpm" }) } else { json!({}) };
@@ -339,4 +339,3 @@ fn difference(there: &Value, asked: &Value, chart: &Chart) -> Option<String> {
     let other = || [0, 1].iter().copied().find(is_other).map(axis);
     told.iter().find_map(differs).or_else(other).or_else(|| (there != asked).then(long))
 }
-
