@@ -99,6 +99,7 @@ mod resting;
 mod roots;
 mod rounded;
 mod routes;
+mod same_attractors;
 mod scales;
 mod searched;
 mod second_order;
