@@ -45,7 +45,7 @@ pub(super) struct Arguments {
     /// Positions [default: from the cam to twice as far from it as any orbit of one impact a revolution].
     #[arg(long, value_name = "LO:HI", value_parser = range, allow_hyphen_values = true)]
     position: Option<[f64; 2]>,
-    /// Velocities [default: three times the range of those orbits and of the cam].
+    /// Velocities [default: three times the range of those orbits and of the cam, or of its height in a radian].
     #[arg(long, value_name = "LO:HI", value_parser = range, allow_hyphen_values = true)]
     velocity: Option<[f64; 2]>,
     /// Position and velocity of a start on the section, in place of a grid (may be repeated).
