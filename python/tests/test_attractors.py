@@ -15,7 +15,7 @@ def test_an_attractor_is_the_same_whoever_finds_it(paper: Model, restitution: fl
     here = [share for one in attractors for share in one["shares"] if share["speed_rpm"] == rpm and share["share"]]
     assert here
     names = next(it for it in chart_variables() if it["name"] == "class")["attributes"]["flag_meanings"].split()
-    axes = {"mass": [tomllib.loads(model.text())["follower"]["mass"]], "rpm": [rpm]}
+    axes = {"mass": [tomllib.loads(model.text)["follower"]["mass"]], "rpm": [rpm]}
     chart = Chart(model, axes, transient=200, record=1600, patience=100_000).compute()
     assert names[chart["class"][0, 0]] in {share["kind"] for share in here}
     for share in here:

@@ -185,39 +185,27 @@ mod unix {
         }
     }
 
-    /// Not a test: the process that the next test stops, while it gives many files their names.
+    /// Signals wait for the registry. As soon as the first of many names is there, nobody gets it until the last one is.
     #[test]
-    fn child_that_names_many() {
-        let Ok(folder) = std::env::var("CORNER_IMPACT_TEST_FOLDER") else { return };
-        corner_impact_cli::cli::clear_on_signals().unwrap();
-        let file = |index: u32| {
-            let mut output = create(&Path::new(&folder).join(index.to_string()));
+    fn signals_wait_until_all_files_have_their_names() {
+        /// As many as one process may have open.
+        const MANY: usize = 800;
+        let folder = TempDir::new().unwrap();
+        let file = |index: usize| {
+            let mut output = create(&folder.path().join(index.to_string()));
             output.write_all(b"x").unwrap();
             output
         };
-        Output::commit_all((0..MANY).map(file).collect()).unwrap();
-    }
-
-    /// Number of files that are named at once in the test below.
-    const MANY: u32 = 800;
-
-    /// A signal in the middle of the names, as soon as the first is there.
-    #[cfg(target_os = "linux")]
-    #[test]
-    fn a_signal_leaves_all_files_or_none() {
-        let folder = TempDir::new().unwrap();
-        let mut program = Command::new(std::env::current_exe().unwrap());
-        program.args(["--exact", "whole_files::unix::child_that_names_many"]);
-        let mut program = crate::common::that_signals_end(&program);
-        let mut child = program.env("CORNER_IMPACT_TEST_FOLDER", folder.path()).stdout(Stdio::null()).spawn().unwrap();
-        // A shell that runs already sends a signal sooner than one that begins.
-        let signal = format!("read begun; kill -TERM {}", child.id());
-        let mut shell = Command::new("sh").args(["-c", &signal]).stdin(Stdio::piped()).spawn().unwrap();
-        while names(&folder).is_empty() && child.try_wait().unwrap().is_none() {}
-        shell.stdin.take().unwrap().write_all(b"\n").unwrap();
-        shell.wait().unwrap();
-        child.wait().unwrap();
-        assert_eq!(names(&folder).len(), MANY as usize);
+        let outputs: Vec<Output<'_>> = (0..MANY).map(file).collect();
+        std::thread::scope(|scope| {
+            let naming = scope.spawn(|| Output::commit_all(outputs).unwrap());
+            while names(&folder).is_empty() {}
+            let held = corner_impact::inner::held();
+            let there = names(&folder).len();
+            drop(held);
+            naming.join().unwrap();
+            assert_eq!(there, MANY);
+        });
     }
 
     /// One of three files cannot have its name: the others are as they were.
