@@ -198,13 +198,13 @@ mod unix {
         };
         let outputs: Vec<Output<'_>> = (0..MANY).map(file).collect();
         std::thread::scope(|scope| {
-            let naming = scope.spawn(|| Output::commit_all(outputs).unwrap());
-            while names(&folder).is_empty() {}
-            let held = corner_impact::inner::held();
-            let there = names(&folder).len();
-            drop(held);
-            naming.join().unwrap();
-            assert_eq!(there, MANY);
+            let waiting = scope.spawn(|| {
+                while names(&folder).is_empty() {}
+                let _held = corner_impact::inner::held();
+                names(&folder).len()
+            });
+            Output::commit_all(outputs).unwrap();
+            assert_eq!(waiting.join().unwrap(), MANY);
         });
     }
 
