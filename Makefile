@@ -7,7 +7,7 @@ CARGO ?= cargo
 RELEASE := --release --locked
 
 .DEFAULT_GOAL := help
-.PHONY: help verify report quick test properties python slurm-test check derive derive-check theorems claims pictures review wasm mutants mutants-sample fuzz soak bench bench-each bench-peers clean
+.PHONY: help verify report quick test properties python slurm-test check audit derive derive-check theorems claims pictures review wasm mutants mutants-sample fuzz soak bench bench-each bench-peers clean
 
 # Python and its packages, once; again when the list of packages changes.
 PYTHON ?= python3
@@ -67,6 +67,13 @@ check: ## formatting, lints and documentation, warnings denied
 	$(CARGO) fmt --all --check
 	$(CARGO) clippy --workspace --all-targets $(RELEASE) -- -D warnings
 	RUSTDOCFLAGS="-D warnings" $(CARGO) doc --no-deps $(RELEASE)
+
+# The advisory database is fetched from the network: without it, the rest is checked all the same, and what was not checked is said.
+audit: ## licences, duplicates, sources and known faults of the packages in Cargo.lock, by cargo-deny
+	@command -v cargo-deny >/dev/null || $(CARGO) install cargo-deny --locked
+	$(CARGO) deny --workspace check bans licenses sources
+	@if $(CARGO) deny fetch db >/dev/null 2>&1; then $(CARGO) deny --workspace check --disable-fetch advisories; \
+	    else echo "advisories: NOT CHECKED, because the advisory database cannot be fetched here"; fi
 
 wasm: ## check that the library compiles for a browser's page (`rustup target add wasm32-unknown-unknown` has what that needs)
 	$(CARGO) check --locked --package corner-impact --lib --target wasm32-unknown-unknown

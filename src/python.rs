@@ -3,7 +3,7 @@
 //! The scripts get a model's numbers and nothing that this program computed. They are part of the program: for each run they are written to
 //! a private temporary folder, run there, and removed, whatever signal ends the program. The current folder may contain files of others,
 //! and nothing of it is run or imported: the private folder is the script's own current folder, so that a relative entry of PATH or
-//! PYTHONPATH leads there, too. The interpreter is `$CORNER_IMPACT_PYTHON`; else the one that has loaded this library, if one has; else
+//! PYTHONPATH leads there, too. An interpreter that nobody chose starts with `-E -s`, without PYTHONPATH and without the user's own packages. The interpreter is `$CORNER_IMPACT_PYTHON`; else the one that has loaded this library, if one has; else
 //! that of the `.venv` of the folder in which this program was built, if it still exists; else `python3` of the PATH.
 
 use std::io::{Read, Write};
@@ -87,7 +87,9 @@ pub(crate) fn run<T: serde::de::DeserializeOwned>(script: &str, input: &serde_js
     let not_started = |error| PythonError::NotStarted { command: command.clone(), error };
     let child = Command::new(&interpreter)
         // -B: no compiled copies in a folder that is removed.
-        .args(["-B", &script])
+        .args(["-B"])
+        .args(isolating())
+        .arg(&script)
         .current_dir(folder.path())
         // This variable would keep the scripts from importing each other.
         .env_remove("PYTHONSAFEPATH")
@@ -165,6 +167,13 @@ static HOST: OnceLock<PathBuf> = OnceLock::new();
 /// Sets the interpreter that has loaded this library; only the first call counts.
 pub fn loaded_by(interpreter: PathBuf) {
     let _ = HOST.set(interpreter);
+}
+
+/// Options that keep packages of the user, and variables such as PYTHONPATH, from a script: `-I` would keep its own modules from it, too.
+/// Whoever chooses the interpreter, or has loaded this library, chooses the packages as well.
+fn isolating() -> &'static [&'static str] {
+    let is_chosen = std::env::var_os("CORNER_IMPACT_PYTHON").is_some() || HOST.get().is_some();
+    if is_chosen { &[] } else { &["-E", "-s"] }
 }
 
 fn interpreter() -> PathBuf {

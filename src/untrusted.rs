@@ -1,19 +1,46 @@
 //! Prepares text by others for display: a name in a file, a path, a word of the command line.
 //!
-//! Characters that would steer a terminal or a browser are written out, and long text is cut in the middle. Documents for programs, JSON
-//! and CSV, keep the text unchanged.
+//! Characters that would steer a terminal or a browser, and those that nobody sees, are written out. Long text is cut in the middle. JSON
+//! writes these characters by its own escapes, so that programs read the text unchanged; CSV keeps them.
 
 use std::borrow::Cow;
 
-/// Largest displayed length of a value, and of a sentence with values in it, characters.
+/// Largest displayed length of a message, of a value, and of a sentence with values in it, characters. A message is a sentence with a word
+/// before it.
+pub const MESSAGE: usize = 2000;
+/// Room for that word, in a message.
+pub const PREFIX: usize = 20;
 const VALUE: usize = 60;
-const SENTENCE: usize = 2000;
+const SENTENCE: usize = MESSAGE - PREFIX;
 /// Mark in place of the omitted part.
 const CUT: &str = "...";
 
-/// Whether a letter is not merely displayed: control characters, and those that change the direction of writing.
+/// Characters that are not displayed: the property Default_Ignorable_Code_Point of Unicode 17, and the separators of lines and paragraphs.
+/// The property includes all characters that change the direction of writing, Bidi_Control.
+const UNSEEN: [(char, char); 18] = [
+    ('\u{ad}', '\u{ad}'),
+    ('\u{34f}', '\u{34f}'),
+    ('\u{61c}', '\u{61c}'),
+    ('\u{115f}', '\u{1160}'),
+    ('\u{17b4}', '\u{17b5}'),
+    ('\u{180b}', '\u{180f}'),
+    ('\u{200b}', '\u{200f}'),
+    ('\u{2028}', '\u{2029}'),
+    ('\u{202a}', '\u{202e}'),
+    ('\u{2060}', '\u{206f}'),
+    ('\u{3164}', '\u{3164}'),
+    ('\u{fe00}', '\u{fe0f}'),
+    ('\u{feff}', '\u{feff}'),
+    ('\u{ffa0}', '\u{ffa0}'),
+    ('\u{fff0}', '\u{fff8}'),
+    ('\u{1bca0}', '\u{1bca3}'),
+    ('\u{1d173}', '\u{1d17a}'),
+    ('\u{e0000}', '\u{e0fff}'),
+];
+
+/// Whether a letter is not merely displayed: control characters, and those that are not displayed at all.
 fn steers(letter: char) -> bool {
-    letter.is_control() || matches!(letter, '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+    letter.is_control() || UNSEEN.iter().any(|(first, last)| (*first..=*last).contains(&letter))
 }
 
 fn written_out(text: &str, is_kept: impl Fn(char) -> bool) -> Cow<'_, str> {
@@ -50,19 +77,33 @@ pub fn value(text: &str) -> Cow<'_, str> {
     cut(written_out(text, |_| false), VALUE)
 }
 
+/// Writes the letters of a JSON document that steer by escapes of JSON, which leaves its values as they are.
+pub fn json(document: String) -> String {
+    if !document.chars().any(|letter| letter != '\n' && steers(letter)) {
+        return document;
+    }
+    let part = |letter: char| match letter {
+        '\n' => letter.to_string(),
+        _ if steers(letter) => letter.encode_utf16(&mut [0; 2]).iter().map(|unit| format!("\\u{unit:04x}")).collect(),
+        _ => letter.to_string(),
+    };
+    document.chars().map(part).collect()
+}
+
 /// Makes the text of a file safe to display with every letter at its place, in bytes, for a drawing that points into it.
 pub fn in_place(text: &str) -> String {
     let mut letters = text.chars().peekable();
     let mut seen = String::with_capacity(text.len());
     while let Some(letter) = letters.next() {
         let is_end = letter == '\r' && letters.peek() == Some(&'\n');
-        seen.push(match (letter, letter.len_utf8()) {
-            ('\n' | '\t', _) => letter,
-            _ if is_end || !steers(letter) => letter,
-            (_, 1) => '?',
-            (_, 2) => '\u{b7}',
-            _ => '\u{fffd}',
-        });
+        match (letter, letter.len_utf8()) {
+            ('\n' | '\t', _) => seen.push(letter),
+            _ if is_end || !steers(letter) => seen.push(letter),
+            (_, 1) => seen.push('?'),
+            (_, 2) => seen.push('\u{b7}'),
+            (_, 3) => seen.push('\u{fffd}'),
+            _ => seen.push_str("\u{b7}\u{b7}"),
+        }
     }
     seen
 }

@@ -3,6 +3,7 @@
 use std::error::Error;
 
 use corner_impact::model::ModelError;
+use corner_impact::untrusted::sentence;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
@@ -10,10 +11,11 @@ use pyo3::types::PyType;
 
 /// A `ModelError` where a complaint about a model is the cause, with its place; else a `ValueError`.
 pub(crate) fn raised(error: &(dyn Error + 'static)) -> PyErr {
+    let words = sentence(&error.to_string()).into_owned();
     let causes = std::iter::successors(Some(error), |error| (*error).source());
     match causes.filter_map(|error| error.downcast_ref::<ModelError>()).next() {
-        Some(at) => Python::attach(|py| about_model(py, &error.to_string(), at)).unwrap_or_else(|error| error),
-        None => PyValueError::new_err(error.to_string()),
+        Some(at) => Python::attach(|py| about_model(py, &words, at)).unwrap_or_else(|error| error),
+        None => PyValueError::new_err(words),
     }
 }
 

@@ -47,16 +47,18 @@ pub(super) fn of(smoothing: &Smoothing, angles: &[f64], lifts: &[f64], half_step
         if dwells.is_none() {
             dwells = Some(rows.dwells(found));
         }
-        let inside = |corner: &f64, [from, to]: &[f64; 2]| {
-            // A dwell that ends at a corner ends there to the last bit but for a turn.
-            let room = tolerance::SAME_KNOT.value;
-            (room..to - from - room).contains(&(corner - from).rem_euclid(TAU))
-        };
         if smoothing.corners_deg.is_none() {
-            found.retain(|corner| !dwells.iter().flatten().any(|dwell| inside(corner, dwell)));
+            found.retain(|corner| !dwells.iter().flatten().any(|dwell| is_inside(*corner, dwell)));
         }
     }
     Features { corners: corners.unwrap_or_default(), dwells: dwells.unwrap_or_default() }
+}
+
+/// Whether a corner is inside of a dwell; both in radians.
+pub(super) fn is_inside(corner: f64, [from, to]: &[f64; 2]) -> bool {
+    // A dwell that ends at a corner ends there to the last bit but for a turn.
+    let room = tolerance::SAME_KNOT.value;
+    (room..to - from - room).contains(&(corner - from).rem_euclid(TAU))
 }
 
 /// A row of a table that is far from the value that the rows beside it give.

@@ -95,6 +95,14 @@ pub(crate) fn fit(model: &Model, profile: &TableProfile, smoothing: &Smoothing) 
     if smoothing.dwells_deg.is_none() && layout(&features).is_err() {
         features.dwells.clear();
     }
+    // A dwell that the model gives has been checked with the model.
+    let in_dwell = |corner: &&f64| features.dwells.iter().any(|dwell| features::is_inside(corner.to_radians(), dwell));
+    if let Some(corner) = smoothing.corners_deg.iter().flatten().find(in_dwell) {
+        let words = format!(
+            "has {corner}, which is inside of a dwell: dwells_deg says where those are that the rows seem to have"
+        );
+        return Err(model.reject("cam.corners_deg", words));
+    }
     let mut laid = layout(&features)?;
     let mut weight = weighed(&laid)?;
     if (smoothing.corners_deg.is_none() || smoothing.are_near) && !features.corners.is_empty() {

@@ -51,6 +51,7 @@ pub fn shots(
     let step = |rpm: f64| elementary::ln(rpm) / elementary::ln(SHOT_RATIO);
     let first = step(range.rpm_min / REACH).floor() as i32;
     let speeds = first..=step(range.rpm_max * REACH).ceil() as i32;
+    let pieces = Pieces::new(watch, "shots from the corners", speeds.clone().count() * corners.len());
     let at = |index: i32| {
         let rpm = elementary::powf(SHOT_RATIO, f64::from(index) + 0.5);
         let machine = machine.at_speed(angular_velocity(rpm));
@@ -63,10 +64,9 @@ pub fn shots(
             };
             sides.iter().flat_map(|side| shooter(side).corner_impacts()).collect::<Vec<_>>()
         };
-        corners.iter().flat_map(of_corner).collect::<Vec<_>>()
+        corners.iter().flat_map(|corner| pieces.each(|| of_corner(corner))).collect::<Vec<_>>()
     };
-    let pieces = Pieces::new(watch, "shots from the corners", speeds.clone().count());
-    speeds.into_par_iter().flat_map_iter(|index| pieces.each(|| at(index))).collect()
+    speeds.into_par_iter().flat_map_iter(at).collect()
 }
 
 /// Shots from one side of a corner at one speed.

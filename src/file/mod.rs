@@ -14,6 +14,7 @@ use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
+pub use read::{bytes, regular};
 pub(crate) use read::{text, text_of_any_age};
 pub(crate) use registry::Started;
 pub use registry::{clear, held};
@@ -91,19 +92,52 @@ impl<'a> Output<'a> {
         Ok(Output { path: path.to_owned(), sink: begin(path)?, begun: false })
     }
 
+    /// Begins to write a file that takes the place of whatever has its name, without following a link.
+    pub(crate) fn in_place_of(path: &Path) -> Result<Output<'static>, FileError> {
+        let unfinished = Unfinished::begin(folder(path)).map_err(FileError::new(path, "cannot be written"))?;
+        let sink = Sink::Whole { unfinished: BufWriter::new(unfinished), target: path.to_owned() };
+        Ok(Output { path: path.to_owned(), sink, begun: false })
+    }
+
     /// Completes the output: every byte is on the disk and the file has its name, or there is an error and no file.
-    pub fn commit(mut self) -> Result<(), FileError> {
+    pub fn commit(self) -> Result<(), FileError> {
+        Self::commit_all(vec![self])
+    }
+
+    /// Completes several outputs: all files have their names, or there is an error and each name is as it was. A signal that can be caught
+    /// waits until then.
+    pub fn commit_all(outputs: Vec<Self>) -> Result<(), FileError> {
+        let mut files = Vec::new();
+        for mut output in outputs {
+            if let Some((unfinished, target)) = output.written()? {
+                files.push((unfinished, target, FileError::new(&output.path, "cannot be replaced")));
+            }
+        }
+        unfinished::named_all(files)
+    }
+
+    /// Completes the output if its name is free. Returns false if it is not.
+    pub(crate) fn commit_new(mut self) -> Result<bool, FileError> {
+        let Some((unfinished, target)) = self.written()? else { return Ok(true) };
+        match unfinished.named_new(&target) {
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => Ok(false),
+            named => named.map(|()| true).map_err(FileError::new(&self.path, "cannot be written")),
+        }
+    }
+
+    /// Writes what is still in memory. Returns the file that needs its name, if the output is not a stream.
+    fn written(&mut self) -> Result<Option<(Unfinished, PathBuf)>, FileError> {
         let write = FileError::new(&self.path, "cannot be written");
         match std::mem::replace(&mut self.sink, Sink::Done(io::sink())) {
-            Sink::Standard(mut stream) => stream.flush().map_err(write),
-            Sink::Device(mut device) => device.flush().map_err(write),
+            Sink::Standard(mut stream) => stream.flush().map(|()| None).map_err(write),
+            Sink::Device(mut device) => device.flush().map(|()| None).map_err(write),
             Sink::Whole { unfinished, target } => {
                 let unfinished = unfinished.into_inner().map_err(io::IntoInnerError::into_error).map_err(&write)?;
                 // A full disk or a lost network folder may show only here.
                 unfinished.file().sync_all().map_err(&write)?;
-                unfinished.named(&target).map_err(FileError::new(&self.path, "cannot be replaced"))
+                Ok(Some((unfinished, target)))
             }
-            Sink::Done(_) => Ok(()),
+            Sink::Done(_) => Ok(None),
         }
     }
 

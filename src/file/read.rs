@@ -1,6 +1,6 @@
-//! Files that are read whole: model files and tables of lifts.
+//! Files that are read whole, up to a limit: model files, tables of lifts, fonts, and the files of a store.
 
-use std::fs::File;
+use std::fs::{self, File, OpenOptions};
 use std::io::{self, Read};
 use std::path::Path;
 
@@ -14,13 +14,13 @@ const ANY_CODE: &str = "UTF-8, UTF-16 with its mark or Latin-1";
 
 /// Reads the text of a file; never reads more than the limit.
 pub(crate) fn text(path: &Path) -> io::Result<String> {
-    lines(String::from_utf8(bytes(path)?).map_err(|_| no_text("UTF-8"))?)
+    lines(String::from_utf8(bytes(path, LONGEST)?).map_err(|_| no_text("UTF-8"))?)
 }
 
 /// Reads a file that an older program may have written: UTF-16 behind its mark, and text that is not UTF-8 as Latin-1, in which a degree sign
 /// is one byte.
 pub(crate) fn text_of_any_age(path: &Path) -> io::Result<String> {
-    let bytes = bytes(path)?;
+    let bytes = bytes(path, LONGEST)?;
     let text = match bytes[..] {
         [0xff, 0xfe, ..] => wide(&bytes[2..], u16::from_le_bytes)?,
         [0xfe, 0xff, ..] => wide(&bytes[2..], u16::from_be_bytes)?,
@@ -46,10 +46,35 @@ fn too_long(what: &str, most: usize) -> io::Error {
     io::Error::new(io::ErrorKind::FileTooLarge, words)
 }
 
-fn bytes(path: &Path) -> io::Result<Vec<u8>> {
+/// Opens a regular file for reading. Refuses devices, pipes, sockets and folders without opening them, and never waits for a pipe.
+pub fn regular(path: &Path) -> io::Result<File> {
+    is_regular(&fs::metadata(path)?)?;
+    let mut options = OpenOptions::new();
+    options.read(true);
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::OpenOptionsExt;
+        // A pipe may take the file's place between the two calls.
+        options.custom_flags(rustix::fs::OFlags::NONBLOCK.bits() as i32);
+    }
+    let file = options.open(path)?;
+    is_regular(&file.metadata()?)?;
+    Ok(file)
+}
+
+fn is_regular(found: &fs::Metadata) -> io::Result<()> {
+    match (found.is_file(), found.is_dir()) {
+        (true, _) => Ok(()),
+        (_, true) => Err(io::ErrorKind::IsADirectory.into()),
+        _ => Err(io::Error::new(io::ErrorKind::InvalidInput, "it is a device, a pipe or a socket, and no file")),
+    }
+}
+
+/// Reads a regular file whole, up to `most` bytes.
+pub fn bytes(path: &Path, most: usize) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    File::open(path)?.take(LONGEST as u64 + 1).read_to_end(&mut bytes)?;
-    if bytes.len() > LONGEST { Err(too_long("it", LONGEST)) } else { Ok(bytes) }
+    regular(path)?.take(most as u64 + 1).read_to_end(&mut bytes)?;
+    if bytes.len() > most { Err(too_long("it", most)) } else { Ok(bytes) }
 }
 
 fn lines(text: String) -> io::Result<String> {

@@ -1,17 +1,21 @@
 //! A private folder of files for another program to read.
 
+use std::collections::BTreeSet;
 use std::fs::{self, File};
-use std::io;
+use std::io::{self, Write};
 use std::path::Path;
 
 use tempfile::{Builder, TempDir};
 
+use super::read;
 use super::registry::{self, HeldPath};
 
 /// Prefix of the folder's name, and the file in it that the program keeps locked while it runs.
 const NAME: &str = "corner-impact.";
 const ALIVE: &str = ".alive";
 const UNNAMED: &str = ".alive.new";
+/// First line of that file. The second is the name of the folder, so that a copy is not taken for the program's own.
+const MARK: &str = "scripts of corner-impact, which it removes";
 
 /// Folder that is removed with this value, or by a signal that ends the program. If neither happens, the next program that makes one
 /// removes it.
@@ -25,13 +29,14 @@ pub(crate) struct Scratch {
 impl Scratch {
     /// Creates a folder with these files, each given by its path in the folder and its text.
     pub(crate) fn of(files: &[(&str, &str)]) -> io::Result<Self> {
-        sweep();
+        sweep(files);
         // Signals wait until the last file is complete: a folder cannot be emptied while it is filled.
         let mut held = registry::held();
         let folder = Builder::new().prefix(NAME).tempdir()?;
         // Locked before it is renamed: otherwise another program could find it unlocked in between.
         let unnamed = folder.path().join(UNNAMED);
-        let alive = File::create(&unnamed)?;
+        let mut alive = File::create(&unnamed)?;
+        alive.write_all(mark(folder.path()).as_bytes())?;
         // Without locks the folder works too, but stays if the program is killed.
         if alive.try_lock().is_ok() {
             fs::rename(unnamed, folder.path().join(ALIVE))?;
@@ -50,14 +55,68 @@ impl Scratch {
     }
 }
 
-/// Removes folders of killed programs: those whose lock is free.
-fn sweep() {
+/// Contents of the locked file of a folder.
+fn mark(folder: &Path) -> String {
+    format!("{MARK}\n{}\n", folder.file_name().unwrap_or_default().display())
+}
+
+/// Removes what killed programs of this user left: these files, in folders that bear the mark of this program and whose lock is free. Leaves
+/// everything else alone, and waits for nothing.
+fn sweep(files: &[(&str, &str)]) {
     let Ok(entries) = fs::read_dir(std::env::temp_dir()) else { return };
     for folder in entries.flatten().filter(|entry| entry.file_name().to_string_lossy().starts_with(NAME)) {
-        let alive = File::open(folder.path().join(ALIVE));
-        if alive.is_ok_and(|alive| alive.try_lock().is_ok()) {
+        let folder = folder.path();
+        let path = folder.join(ALIVE);
+        if !is_own(&folder, fs::Metadata::is_dir) || !is_own(&path, fs::Metadata::is_file) {
+            continue;
+        }
+        let mark = mark(&folder);
+        let has_mark = read::bytes(&path, mark.len()).is_ok_and(|text| text == mark.as_bytes());
+        let alive = read::regular(&path).ok().filter(|alive| has_mark && alive.try_lock().is_ok());
+        if alive.is_some() {
             // Another program may remove it at the same time.
-            let _ = fs::remove_dir_all(folder.path());
+            let _ = emptied(&folder, files);
         }
     }
+}
+
+/// Whether something, and not a link to it, is of a kind, and of this user.
+fn is_own(path: &Path, kind: impl Fn(&fs::Metadata) -> bool) -> bool {
+    fs::symlink_metadata(path).is_ok_and(|found| kind(&found) && is_of_this_user(&found))
+}
+
+#[cfg(unix)]
+fn is_of_this_user(found: &fs::Metadata) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    found.uid() == rustix::process::geteuid().as_raw()
+}
+
+#[cfg(not(unix))]
+fn is_of_this_user(_: &fs::Metadata) -> bool {
+    true
+}
+
+/// Removes files of a folder, the folders that they were in, and the folder; stops at whatever else is there.
+fn emptied(folder: &Path, files: &[(&str, &str)]) -> io::Result<()> {
+    let mut folders = BTreeSet::new();
+    for (name, _) in files {
+        let path = folder.join(name);
+        let inside: Vec<&Path> = path.ancestors().skip(1).take_while(|inside| *inside != folder).collect();
+        if inside.iter().all(|inside| is_own(inside, fs::Metadata::is_dir)) && is_own(&path, fs::Metadata::is_file) {
+            fs::remove_file(&path)?;
+        }
+        folders.extend(inside.into_iter().map(Path::to_owned));
+    }
+    // The innermost first. A folder that is not empty, or a link, stays.
+    folders.iter().rev().try_for_each(|inside| match fs::remove_dir(inside) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
+        removed => removed,
+    })?;
+    // The mark goes last: what stays is looked at again.
+    let only_mark = fs::read_dir(folder)?.flatten().all(|entry| entry.file_name() == ALIVE);
+    if only_mark {
+        fs::remove_file(folder.join(ALIVE))?;
+        fs::remove_dir(folder)?;
+    }
+    Ok(())
 }

@@ -6,14 +6,13 @@
 //! file unchanged and the complete new one beside it, as `.XXXXXX.tmp`. File systems without nameless files (NFS, FAT), and other systems,
 //! use `.XXXXXX.tmp` from the beginning; signals that can be caught remove that file, `kill -9` does not.
 
+use std::fs;
 #[cfg(target_os = "linux")]
 use std::fs::File;
 use std::io::{self, Write};
-use std::path::Path;
-#[cfg(target_os = "linux")]
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use tempfile::{Builder, NamedTempFile};
+use tempfile::{Builder, NamedTempFile, TempPath};
 
 use super::registry::{self, HeldPath};
 
@@ -70,25 +69,83 @@ impl Unfinished {
 
     /// Gives the file its name and replaces any file of that name.
     pub fn named(self, target: &Path) -> io::Result<()> {
-        // No signal ends the program while this lock is held.
+        self.held(|file| file.put(target))
+    }
+
+    /// Gives the file its name, if the name is free.
+    pub(super) fn named_new(self, target: &Path) -> io::Result<()> {
+        self.held(|file| match file {
+            #[cfg(target_os = "linux")]
+            Self::Nameless(file, _) => (linux::link(&file, target), None),
+            Self::Hidden(file, listed) => (file.persist_noclobber(target).map(drop).map_err(Into::into), Some(listed)),
+        })
+    }
+
+    /// Names a file while no signal ends the program.
+    fn held(self, name: impl FnOnce(Self) -> (io::Result<()>, Option<HeldPath>)) -> io::Result<()> {
         let held = registry::held();
+        let (named, listed) = name(self);
+        drop(held);
+        // It takes the same lock.
+        drop(listed);
+        named
+    }
+
+    /// Gives the file its name. The caller holds the registry, and drops the entry after that.
+    fn put(self, target: &Path) -> (io::Result<()>, Option<HeldPath>) {
         match self {
             #[cfg(target_os = "linux")]
             Self::Nameless(file, folder) => match linux::link(&file, target) {
                 Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
-                    let there = hidden().make_in(folder, |name| linux::link(&file, name))?;
-                    there.persist(target).map(drop).map_err(|refused| refused.error)
+                    let there = hidden().make_in(folder, |name| linux::link(&file, name));
+                    (there.and_then(|there| Ok(there.persist(target).map(drop)?)), None)
                 }
-                linked => linked,
+                linked => (linked, None),
             },
-            Self::Hidden(file, listed) => {
-                let renamed = file.persist(target).map(drop).map_err(|refused| refused.error);
-                drop(held);
-                drop(listed);
-                renamed
-            }
+            Self::Hidden(file, listed) => (file.persist(target).map(drop).map_err(Into::into), Some(listed)),
         }
     }
+}
+
+/// Gives files their names while no signal ends the program. If one of them cannot have its name, each name is as it was before, and the
+/// error is that of its file.
+pub(super) fn named_all<E>(files: Vec<(Unfinished, PathBuf, impl Fn(io::Error) -> E)>) -> Result<(), E> {
+    let mut listed = Vec::new();
+    let held = registry::held();
+    let is_alone = files.len() == 1;
+    let mut before: Vec<(PathBuf, Option<TempPath>)> = Vec::new();
+    let mut result = Ok(());
+    for (file, target, error) in files {
+        // A second name of the old file, under which it comes back.
+        let kept = match fs::symlink_metadata(&target) {
+            Ok(_) if !is_alone => {
+                let link = hidden().make_in(super::folder(&target), |name| fs::hard_link(&target, name));
+                link.map(|link| Some(link.into_temp_path()))
+            }
+            _ => Ok(None),
+        };
+        let named = kept.and_then(|kept| {
+            let (named, entry) = file.put(&target);
+            listed.push(entry);
+            named.map(|()| before.push((target, kept)))
+        });
+        if let Err(why) = named {
+            result = Err(error(why));
+            break;
+        }
+    }
+    if result.is_err() {
+        for (target, kept) in before {
+            // There is nothing better to do with a file that cannot be put back.
+            let _ = match kept {
+                Some(kept) => kept.persist(&target).map_err(Into::into),
+                None => fs::remove_file(&target),
+            };
+        }
+    }
+    drop(held);
+    drop(listed);
+    result
 }
 
 impl Write for Unfinished {

@@ -64,7 +64,30 @@ pub struct TableLayout {
 
 /// Most rows: more would be finer than any cam is made or measured.
 pub(super) const MOST_ROWS: usize = 1_000_000;
+/// Number of lines by which a text is taken for a table: titles may stand above its rows.
+const FIRST_LINES: usize = 20;
+
 impl<'a> Table<'a> {
+    /// Takes what a line has out of a complaint about a text that does not begin like a table: the model may name any file of its reader.
+    pub(super) fn discreet(&self, complaint: ModelError, chosen: &[Option<Chosen>; 2]) -> ModelError {
+        let lines = self.text.lines().map(|line| without_comment(line).0).filter(|line| !line.trim().is_empty());
+        let begins_like_table =
+            lines.take(FIRST_LINES).any(|line| has_numbers(line) || self.is_header(line, chosen));
+        if begins_like_table || complaint.pointer.text.is_none() {
+            return complaint;
+        }
+        let words = format!(
+            "is no table of lifts: none of its first {FIRST_LINES} lines has two numbers, or an angle and a lift as {HEADER}"
+        );
+        ModelError { line: complaint.line, ..ModelError::file(&self.file, words) }
+    }
+
+    /// Whether a line names an angle and a lift.
+    fn is_header(&self, line: &str, chosen: &[Option<Chosen>; 2]) -> bool {
+        let above = LineAbove::new((0, line), Separator::of(line), 0, false);
+        self.named(&above, chosen).is_ok_and(|columns| columns.is_some())
+    }
+
     /// Angle and lift of the row in a line, as written except for the decimal point.
     pub(super) fn cells(&self, layout: &TableLayout, line: usize) -> Option<[String; 2]> {
         let (text, _) = without_comment(self.text.lines().nth(line.checked_sub(1)?)?);
@@ -99,13 +122,9 @@ impl<'a> Table<'a> {
             text.trim_start_matches(before).starts_with(|letter: char| letter.is_ascii_digit())
         };
         // Below a header even a line without a number is a row, with a slip.
-        let is_header = |text: &str| {
-            let above = LineAbove::new((0, text), Separator::of(text), 0, false);
-            self.named(&above, chosen).is_ok_and(|columns| columns.is_some())
-        };
         let found =
             filled().position(|(_, text)| has_numbers(text)).or_else(|| filled().position(|(_, text)| is_number(text)));
-        let found = found.or_else(|| Some(1 + filled().position(|(_, text)| is_header(text))?));
+        let found = found.or_else(|| Some(1 + filled().position(|(_, text)| self.is_header(text, chosen))?));
         let Some(found) = found else {
             return Err(
                 self.complain(None, format!("is no table of lifts: no line has two numbers, as below {HEADER}"))

@@ -260,7 +260,7 @@ pub(super) fn read(fields: &mut Fields) -> Result<TableProfile, ModelError> {
     };
     let table = Table { file: shown, text: &text, has_lines: true, angles: AngleUnit::DEGREES, says_angles: false };
     let chosen = [Chosen::read(fields, "cam.angle_column")?, Chosen::read(fields, "cam.lift_column")?];
-    let (rows, layout) = table.rows(&chosen)?;
+    let (rows, layout) = table.rows(&chosen).map_err(|complaint| table.discreet(complaint, &chosen))?;
     table.profile(fields, (Some(file), spline), rows, Some(layout))
 }
 
@@ -367,7 +367,9 @@ fn smoothing(fields: &mut Fields, step: Option<f64>, in_model: &Unit) -> Result<
         let corners = if fields.is_empty_list(path) { Vec::new() } else { fields.numbers(path, MOST_FEATURES)? };
         let mut corners: Vec<f64> = corners.into_iter().map(|corner| corner.rem_euclid(360.0)).collect();
         corners.sort_by(f64::total_cmp);
-        corners.dedup();
+        if let Some([corner, _]) = corners.windows(2).find(|pair| pair[0] == pair[1]) {
+            return Err(fields.reject(path, format!("has {corner} twice: a corner is at an angle once")));
+        }
         let inside = |corner: &&f64| {
             // A corner may be an end of a dwell, up to rounding.
             let room = tolerance::SAME_KNOT.value;

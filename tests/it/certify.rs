@@ -419,7 +419,14 @@ fn without_python_it_says_so() {
 fn without_python_flint_it_says_so() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("flint.py"), "raise ImportError\n").unwrap();
-    let output = common::program(["certify"]).env("PYTHONPATH", folder.path()).output().unwrap();
+    let certify = |python: Option<&str>| {
+        let mut command = common::program(["certify"]);
+        command.env("PYTHONPATH", folder.path()).env_remove("CORNER_IMPACT_PYTHON");
+        command.envs(python.map(|python| ("CORNER_IMPACT_PYTHON", python))).output().unwrap()
+    };
+    // Only an interpreter that somebody chose looks into PYTHONPATH.
+    assert_eq!(certify(None).status.code(), Some(0));
+    let output = certify(Some(".venv/bin/python"));
     assert_eq!((output.status.code(), output.stdout.as_slice()), (Some(2), &[][..]));
     let words = text(output.stderr);
     assert!(

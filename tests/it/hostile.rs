@@ -4,6 +4,7 @@ use std::fs;
 use std::process::{Output, Stdio};
 
 use crate::common::{osorio_text, program, text};
+use corner_impact::untrusted;
 use tempfile::TempDir;
 
 const MODEL: &str = "models/osorio-2008.toml";
@@ -29,9 +30,34 @@ fn file(field: &str, value: &str) -> (TempDir, String) {
     (folder, path.to_str().unwrap().to_owned())
 }
 
+/// Unicode's properties Default_Ignorable_Code_Point and Bidi_Control, of which the second is a part of the first: ends of ranges.
+const UNSEEN: [[u32; 2]; 17] = [
+    [0xad; 2],
+    [0x34f; 2],
+    [0x61c; 2],
+    [0x115f, 0x1160],
+    [0x17b4, 0x17b5],
+    [0x180b, 0x180f],
+    [0x200b, 0x200f],
+    [0x202a, 0x202e],
+    [0x2060, 0x206f],
+    [0x3164; 2],
+    [0xfe00, 0xfe0f],
+    [0xfeff; 2],
+    [0xffa0; 2],
+    [0xfff0, 0xfff8],
+    [0x1bca0, 0x1bca3],
+    [0x1d173, 0x1d17a],
+    [0xe0000, 0xe0fff],
+];
+
+fn is_unseen(letter: char) -> bool {
+    UNSEEN.iter().any(|[first, last]| (*first..=*last).contains(&u32::from(letter)))
+}
+
 #[track_caller]
 fn steers_nothing(shown: &str, what: &str) {
-    let odd = shown.chars().find(|letter| letter.is_control() && *letter != '\n' || *letter == '\u{202e}');
+    let odd = shown.chars().find(|letter| letter.is_control() && *letter != '\n' || is_unseen(*letter));
     assert_eq!(odd, None, "{what}: {shown}");
     assert!(what.is_empty() || shown.contains(what), "no {what} in: {shown}");
 }
@@ -62,6 +88,160 @@ fn nothing_steers_a_terminal_or_a_page() {
     steers_nothing(&drawn, "?[31m\u{b7}1m");
 }
 
+/// All of Unicode, letter by letter: written out where it is shown, kept where a program reads it.
+#[test]
+fn every_letter_that_nobody_sees_is_written_out() {
+    for letter in (0..=0x10_ffff).filter_map(char::from_u32) {
+        let text = letter.to_string();
+        let is_odd = letter.is_control() || is_unseen(letter) || matches!(letter, '\u{2028}' | '\u{2029}');
+        let shown = untrusted::value(&text).into_owned();
+        assert_eq!(shown, if is_odd { letter.escape_default().to_string() } else { text.clone() });
+        let in_place = untrusted::in_place(&text);
+        assert_eq!((in_place == text, in_place.len()), (!is_odd || matches!(letter, '\n' | '\t'), text.len()));
+        let json = untrusted::json(format!("\"{text}\""));
+        assert_eq!(json.contains(letter), !is_odd || letter == '\n');
+        if is_odd && !letter.is_ascii_control() {
+            assert_eq!(serde_json::from_str::<String>(&json).unwrap(), text);
+        }
+    }
+}
+
+#[test]
+fn no_letter_that_nobody_sees_gets_out() {
+    let folder = TempDir::new().unwrap();
+    let at = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let odd: String = UNSEEN.as_flattened().iter().filter_map(|letter| char::from_u32(*letter)).collect();
+    fs::write(at("model.toml"), osorio_text(&[("name", &format!("\"a{odd}b\""))])).unwrap();
+    steers_nothing(&text(run(&["cam", &at("model.toml")]).stdout), "a\\u{ad}\\u{ad}\\u{34f}");
+    let json = text(run(&["cam", &at("model.toml"), "--json"]).stdout);
+    steers_nothing(&json, "\\udb43\\udfff");
+    let document: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert_eq!(document["model"], format!("a{odd}b"));
+    assert_eq!(run(&["cam", &at("model.toml"), "--out", &at("cam.svg")]).status.code(), Some(0));
+    steers_nothing(&fs::read_to_string(at("cam.svg")).unwrap(), "a\\u{ad}\\u{ad}");
+    steers_nothing(&refused(run(&["cam", &format!("none{odd}.toml")])), "\\u{61c}");
+    // Raw in a file that is none, where the line is drawn.
+    fs::write(at("raw.toml"), format!("name = a # {odd}\n")).unwrap();
+    steers_nothing(&refused(run(&["cam", &at("raw.toml")])), "\u{fffd}\u{fffd}");
+}
+
+/// A model may name any file of whoever runs it.
+#[test]
+fn no_line_of_a_file_that_is_no_table_is_shown() {
+    let folder = TempDir::new().unwrap();
+    let at = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let table = |name: &str| include_str!("../../models/laws/table-cubic.toml").replace("osorio-2008.csv", name);
+    let says = |name: &str, contents: &str| {
+        fs::write(at(name), contents).unwrap();
+        fs::write(at("model.toml"), table(name)).unwrap();
+        refused(run(&["cam", &at("model.toml")]))
+    };
+    for secret in [
+        "127.0.0.1 secret\n127.0.0.2 hidden\n",
+        "root:secret:0:0:root:/root:/bin/bash\n",
+        "name = secret\nlicense.workspace = true\n",
+        "eval \"$(secret init -)\"\n-1 secret\n",
+        "-----BEGIN SECRET KEY-----\nb3BlbnNzaC1rZXktdjEAAAAABG5vbmU\n",
+        "angle secret lift\n",
+        &format!("{}1 2\nangle,lift\n0,secret\n", "secret\n".repeat(20)),
+    ] {
+        let said = says("hosts", secret).replace("SECRET", "secret");
+        assert!(!said.contains("secret") && !said.contains("hidden") && !said.contains("127."), "{said}");
+    }
+    // Of what begins like a table the line is shown.
+    for line in ["angle_deg,lift\n0,slip\n", "0,1\n1,slip\n2,3\n", "title\n\n# note\nangle_deg,lift\n0,slip\n"] {
+        let said = says("hosts", line);
+        assert!(said.contains("slip") && said.contains("-[") && said.contains("hosts:"), "{said}");
+    }
+    let title = format!("{}0,1\n1,slip\n2,3\n", "title\n".repeat(19));
+    assert!(says("hosts", &title).contains("slip"));
+}
+
+/// Pipes that nobody writes to, in the place of whatever is read.
+#[cfg(unix)]
+#[test]
+fn nothing_waits_for_a_pipe() {
+    let folder = TempDir::new().unwrap();
+    let at = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    assert!(std::process::Command::new("mkfifo").arg(at("pipe")).status().unwrap().success());
+    fs::write(at("model.toml"), include_str!("../../models/laws/table-cubic.toml").replace("osorio-2008.csv", "pipe"))
+        .unwrap();
+    let no_file = "it is a device, a pipe or a socket, and no file";
+    for words in [
+        vec!["cam".to_owned(), at("pipe")],
+        vec!["cam".to_owned(), at("model.toml")],
+        vec!["cam".to_owned(), MODEL.to_owned(), "--out".to_owned(), at("a.svg"), "--font".to_owned(), at("pipe")],
+    ] {
+        let said = refused(program(&words).output().unwrap());
+        assert!(said.contains(no_file), "{said}");
+    }
+}
+
+/// Every command, with the same sentence, before it writes anything.
+#[test]
+fn a_corner_that_cannot_be_is_refused_by_every_command() {
+    let folder = TempDir::new().unwrap();
+    let rows: Vec<String> = (0..36)
+        .map(|row| {
+            let lift = if (6..=30).contains(&row) {
+                0.04 + 0.005 * (1.0 - f64::from(row * 15 - 90).to_radians().cos())
+            } else {
+                0.04
+            };
+            format!("[{}, {lift}]", 10 * row)
+        })
+        .collect();
+    let model = |corners: &str| {
+        format!(
+            "[follower]\nmass = 1.0\ndamping = 1.0\nstiffness = 16000.0\ngravity = 9.81\nrest_position = 0.02\nrestitution = 0.5\n\
+             [cam]\nlaw = \"table\"\nspline = \"smoothing\"\nrows = [{}]\n{corners}\n[study]\nrpm_min = 100.0\nrpm_max = 200.0\n",
+            rows.join(", ")
+        )
+    };
+    for (corners, says) in [
+        ("corners_deg = [60.0, 60.0]", "has 60 twice"),
+        ("corners_deg = [-60, 300]", "has 300 twice"),
+        ("corners_deg = [0, 60, 360]", "has 0 twice"),
+        ("corners_deg = [0.0]", "has 0, which is inside of a dwell"),
+        ("corners_deg = [355]", "has 355, which is inside of a dwell"),
+        ("corners_deg = [20.0]\ndwells_deg = [[10, 40]]", "has 20, which is inside of a dwell"),
+    ] {
+        fs::write(folder.path().join("model.toml"), model(corners)).unwrap();
+        let mut sentences = std::collections::BTreeSet::new();
+        for line in [
+            "cam --out o.pdf",
+            "design --out o.svg",
+            "simulate --rpm 200 --events o.csv",
+            "speeds --rpm 100:200 --speeds 2 --out o.csv",
+            "diagram --rpm 100:200:2 --out o.csv",
+            "chart --over rpm=100:200:2 --over mass=1:2:2 --out o.csv",
+            "chart --over rpm=100:200:2 --over mass=1:2:2 --out o.zarr",
+            "basins --rpm 200 --grid 2x2 --out o.csv",
+            "orbit --rpm 200",
+            "continue --rpm 200 --over rpm=100:200 --out o.csv",
+            "curve --rpm 100:200 --over mass=1:2 --out o.csv",
+            "chaos --rpm 200 --out o.svg",
+            "locate --rpm 100:200",
+            "certify --rpm 100:200",
+            "verify --no-external",
+            "figure cam --out o.svg",
+            "report --no-external --out o.html",
+            "compare --set mass=2",
+        ] {
+            let mut words: Vec<&str> = line.split(' ').collect();
+            words.insert(1, "model.toml");
+            let output = program(&words).current_dir(&folder).output().unwrap();
+            let said = text(output.stderr);
+            assert_eq!(output.status.code(), Some(2), "{line}: {said}");
+            assert_eq!(fs::read_dir(&folder).unwrap().count(), 1, "{line}");
+            let said = said.lines().find(|line| line.starts_with("error: ")).unwrap_or_default();
+            assert!(said.contains(says), "{line}: {said}");
+            sentences.insert(said.to_owned());
+        }
+        assert_eq!(sentences.len(), 1, "{sentences:?}");
+    }
+}
+
 #[test]
 fn a_message_is_no_longer_than_a_page() {
     let long = "9".repeat(100_000);
@@ -69,7 +249,7 @@ fn a_message_is_no_longer_than_a_page() {
     let cut = format!("{0}...{0}", "9".repeat(20));
     let says = |output: Output| {
         let said = refused(output);
-        assert!(said.len() < 2500, "{} bytes: {}", said.len(), &said[..2500]);
+        assert!(said.trim_end().chars().count() <= 2000, "{} letters: {}", said.len(), &said[..2000]);
         assert!(said.contains(&cut), "{said}");
     };
     for (field, value) in [
@@ -104,8 +284,18 @@ fn files_and_lines_have_a_limit() {
     assert!(refused(run(&["cam", &at("long.toml")])).contains(whole));
     assert!(refused(run(&["cam", &at("line.toml")])).contains("line 1 is longer than 1 MiB"));
     assert_eq!(run(&["cam", &at("fits.toml")]).status.code(), Some(0));
+    let huge = fs::File::create(at("huge.ttf")).unwrap();
+    huge.set_len((64 << 20) + 1).unwrap();
+    let font = |name: &str| ["cam", MODEL, "--out", &at("cam.svg"), "--font", name].map(str::to_owned);
+    let drawn = |name: &str| run(&font(name).each_ref().map(String::as_str));
+    assert!(refused(drawn(&at("huge.ttf"))).contains("cannot be read as a font: it is longer than 64 MiB"));
+    huge.set_len(64 << 20).unwrap();
+    assert!(refused(drawn(&at("huge.ttf"))).ends_with("huge.ttf: cannot be read as a font\n"));
+    let whole = "it is a device, a pipe or a socket, and no file";
     if fs::metadata("/dev/zero").is_ok() {
         assert!(refused(run(&["cam", "/dev/zero"])).contains(whole));
+        assert!(refused(drawn("/dev/zero")).contains(whole));
+        assert!(!fs::exists(at("cam.svg")).unwrap());
         let table = include_str!("../../models/laws/table-cubic.toml").replace("osorio-2008.csv", "/dev/zero");
         fs::write(at("table.toml"), table).unwrap();
         let said = refused(run(&["cam", &at("table.toml")]));

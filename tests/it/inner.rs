@@ -38,9 +38,9 @@ fn what_steers_is_written_out_and_what_is_long_is_cut() {
     let long = untrusted::value(&format!("begin{}end", "\x1b".repeat(1000))).into_owned();
     assert!(long.starts_with("begin\\u{1b}") && long.ends_with("end") && long.contains("..."), "{long}");
     assert_eq!(long.chars().count(), 60);
-    assert_eq!(untrusted::sentence(&"ä".repeat(5000)).chars().count(), 2000);
+    assert_eq!(untrusted::sentence(&"ä".repeat(5000)).chars().count(), 1980);
     let text = "\u{feff}x\x1b = \u{9b}\u{2029}\r\n\r\t";
-    assert_eq!(untrusted::in_place(text), "\u{feff}x? = \u{b7}\u{fffd}\r\n?\t");
+    assert_eq!(untrusted::in_place(text), "\u{fffd}x? = \u{b7}\u{fffd}\r\n?\t");
     assert_eq!(untrusted::in_place(text).len(), text.len());
 }
 

@@ -275,8 +275,8 @@ fn titles_and_ends_of_axes_are_as_asked() {
 fn a_font_of_a_file_is_taken_or_refused() {
     let folder = tempfile::TempDir::new().unwrap();
     let file = folder.path().join("letters.ttf");
-    std::fs::write(&file, epaint_default_fonts::HACK_REGULAR).unwrap();
-    let fonts = Fonts::named(file.to_str().unwrap()).unwrap();
+    let name = file.to_str().unwrap();
+    let fonts = Fonts::of_file(name, epaint_default_fonts::HACK_REGULAR.to_vec()).unwrap();
     assert_eq!(fonts.family(), "Hack");
     let look = Look { fonts: Some(fonts), ..column() };
     assert!(svg::render(&parabola(), &look).unwrap().contains("font-family=\"'Hack', sans-serif\""));
@@ -285,8 +285,7 @@ fn a_font_of_a_file_is_taken_or_refused() {
     // Cut off anywhere, a font is refused or drawn without the letters that are gone; nothing breaks.
     let whole = epaint_default_fonts::HACK_REGULAR;
     for share in [0.0, 0.001, 0.3, 0.9] {
-        std::fs::write(&file, &whole[..(share * whole.len() as f64) as usize]).unwrap();
-        if let Ok(fonts) = Fonts::named(file.to_str().unwrap()) {
+        if let Ok(fonts) = Fonts::of_file(name, whole[..(share * whole.len() as f64) as usize].to_vec()) {
             let look = Look { fonts: Some(fonts), ..column() };
             let _ = (svg::render(&parabola(), &look), pdf::render(&parabola(), &look));
         }
@@ -294,7 +293,24 @@ fn a_font_of_a_file_is_taken_or_refused() {
     assert!(
         Fonts::named("No Such Letters").unwrap_err().to_string().contains("no font \"No Such Letters\" is installed")
     );
-    assert!(Fonts::named("none.ttf").unwrap_err().to_string().contains("none.ttf: cannot be read as a font"));
+    assert!(
+        Fonts::of_file(name, Vec::new()).unwrap_err().to_string().contains("letters.ttf: cannot be read as a font")
+    );
+    let names = [
+        ("letters.ttf", true),
+        ("a/Hack", true),
+        ("a\\Hack", true),
+        ("Hack.OTF", true),
+        ("Hack", false),
+        ("ttf", false),
+    ];
+    names.iter().for_each(|(name, is_file)| assert_eq!(Fonts::is_file(name), *is_file, "{name}"));
+    // By the program, which reads the file.
+    std::fs::write(&file, whole).unwrap();
+    let drawn = folder.path().join("cam.svg");
+    let words = ["cam", "models/osorio-2008.toml", "--out", drawn.to_str().unwrap(), "--font", name];
+    assert_eq!(crate::common::corner_impact(words).status.code(), Some(0));
+    assert!(std::fs::read_to_string(drawn).unwrap().contains("'Hack'"));
 }
 
 /// Readable in grey: motions that repeat are told apart by the shapes of their points, and a bar bears the shape of its motion.

@@ -8,6 +8,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 use corner_impact::flight::{Flight, State};
 use corner_impact::simulate::{Event, EventKind, Goal, Machine, Motion, Observer, SimulateError, Variation};
+use corner_impact::study::survey::{Placed, Start};
 use corner_impact::tolerance::RELATIVE_VELOCITY_ROUNDING;
 use nalgebra::{Matrix2, Vector2};
 
@@ -413,6 +414,31 @@ fn a_run_over_many_segments_may_be_split_anywhere() {
 #[ignore = "slow"]
 fn a_run_may_be_started_again_anywhere() {
     check(2000, |case| splits(case, anew));
+}
+
+/// A motion starts anew from angle, position and velocity alone, as a command line and a table have them.
+fn from_its_numbers(machine: &Machine, motion: Motion) -> Result<Motion, TestCaseError> {
+    let told = |number: f64| number.to_string().parse().unwrap();
+    let State { position, velocity } = motion.state;
+    let follower = Placed::At(State { position: told(position), velocity: told(velocity) });
+    let again = Start { cam_angle: told(motion.cam_angle), follower }.motion(machine);
+    let mut again = again.map_err(|error| TestCaseError::fail(format!("{error}: {motion:?}")))?;
+    prop_assert_eq!(again.contact, motion.contact, "{:?}", motion);
+    again.revolution = motion.revolution;
+    Ok(again)
+}
+
+#[test]
+fn a_run_may_be_resumed_from_its_numbers() {
+    check(400, |case| splits(case, from_its_numbers));
+}
+
+/// Also over many segments.
+#[test]
+#[ignore = "slow"]
+fn any_run_may_be_resumed_from_its_numbers() {
+    check(4000, |case| splits(case, from_its_numbers));
+    check_many_segments(150, |case| splits(case, from_its_numbers));
 }
 
 fn splits(case: &Case, goes_on: fn(&Machine, Motion) -> Result<Motion, TestCaseError>) -> TestCaseResult {

@@ -185,6 +185,57 @@ mod unix {
         }
     }
 
+    /// Signals wait for the registry. As soon as the first of many names is there, nobody gets it until the last one is.
+    #[test]
+    fn signals_wait_until_all_files_have_their_names() {
+        /// As many as one process may have open.
+        const MANY: usize = 800;
+        let folder = TempDir::new().unwrap();
+        let file = |index: usize| {
+            let mut output = create(&folder.path().join(index.to_string()));
+            output.write_all(b"x").unwrap();
+            output
+        };
+        let outputs: Vec<Output<'_>> = (0..MANY).map(file).collect();
+        std::thread::scope(|scope| {
+            let waiting = scope.spawn(|| {
+                while names(&folder).is_empty() {}
+                let _held = corner_impact::inner::held();
+                names(&folder).len()
+            });
+            Output::commit_all(outputs).unwrap();
+            assert_eq!(waiting.join().unwrap(), MANY);
+        });
+    }
+
+    /// One of three files cannot have its name: the others are as they were.
+    #[test]
+    fn one_name_that_cannot_be_leaves_all_as_they_were() {
+        let folder = TempDir::new().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        fs::write(at("old"), "before").unwrap();
+        let outputs: Vec<Output<'_>> = ["old", "new", "taken"]
+            .iter()
+            .map(|name| {
+                let mut output = create(&at(name));
+                output.write_all(b"after").unwrap();
+                output
+            })
+            .collect();
+        fs::create_dir(at("taken")).unwrap();
+        let refused = Output::commit_all(outputs).unwrap_err().to_string();
+        assert!(refused.contains("taken: cannot be replaced"), "{refused}");
+        assert_eq!(fs::read_to_string(at("old")).unwrap(), "before");
+        assert_eq!(names(&folder), ["old", "taken"]);
+        // With all names free, or files, they are given.
+        fs::remove_dir(at("taken")).unwrap();
+        Output::commit_all(["old", "new"].map(|name| create(&at(name))).into()).unwrap();
+        assert_eq!(
+            (names(&folder), fs::read_to_string(at("old")).unwrap()),
+            (vec!["new".into(), "old".into()], String::new())
+        );
+    }
+
     /// A name that is taken while the work goes on is replaced, as one that was taken before.
     #[test]
     fn a_name_that_is_taken_meanwhile_is_replaced() {

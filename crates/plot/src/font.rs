@@ -4,7 +4,6 @@
 //! Glyph numbers stay the same, so that the font's own tables of letters and widths remain valid.
 
 use std::collections::BTreeMap;
-use std::path::Path;
 use std::sync::Arc;
 
 use resvg::usvg::fontdb::{Database, Family, ID, Query, Source};
@@ -39,15 +38,23 @@ impl Default for Fonts {
 }
 
 impl Fonts {
-    /// Fonts of an installed family, or of a font file.
+    /// Whether a name is that of a font file, and not that of a family.
+    pub fn is_file(name: &str) -> bool {
+        name.contains(['/', '\\']) || [".ttf", ".otf", ".ttc"].iter().any(|end| name.to_lowercase().ends_with(end))
+    }
+
+    /// Fonts of a font file with these contents.
+    pub fn of_file(name: &str, data: Vec<u8>) -> Result<Self, FontError> {
+        let mut database = Database::new();
+        database.load_font_data(data);
+        let family = database.faces().next().and_then(|face| Some(face.families.first()?.0.clone()));
+        let family = family.ok_or_else(|| FontError::File(name.into()))?;
+        Ok(Self::with(database, Some(family)))
+    }
+
+    /// Fonts of an installed family.
     pub fn named(name: &str) -> Result<Self, FontError> {
         let mut database = Database::new();
-        if name.contains(['/', '\\']) || [".ttf", ".otf", ".ttc"].iter().any(|end| name.to_lowercase().ends_with(end)) {
-            database.load_font_file(Path::new(name)).map_err(|_| FontError::File(name.into()))?;
-            let family = database.faces().next().and_then(|face| Some(face.families.first()?.0.clone()));
-            let family = family.ok_or_else(|| FontError::File(name.into()))?;
-            return Ok(Self::with(database, Some(family)));
-        }
         database.load_system_fonts();
         let mut families = database.faces().flat_map(|face| &face.families).map(|(family, _)| family);
         let family = families.find(|family| family.to_lowercase() == name.to_lowercase()).cloned();

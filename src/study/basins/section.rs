@@ -69,7 +69,8 @@ impl BasinSection {
     }
 
     /// Builds a grid of starts. Without a given range, the positions go from the cam to twice as far from it as its top or the farthest
-    /// orbit. The velocities then cover three times the range of the orbits' and the cam's velocities.
+    /// orbit. The velocities then cover three times the range of the orbits' and the cam's velocities. That range is at least the speed of the
+    /// cam's whole height in a radian, in both directions: cam and orbits may hardly move at the section.
     pub fn grid(
         &self,
         cells: [usize; 2],
@@ -84,9 +85,8 @@ impl BasinSection {
             highest = highest.max(position);
             range = [range[0].min(velocity), range[1].max(velocity)];
         }
-        if range[0] == range[1] {
-            // There is only the cam at rest: take the speed of the cam's whole height in a radian.
-            let fast = machine.angular_velocity() * (machine.cam().top() - machine.cam().lowest().value);
+        let fast = machine.angular_velocity() * (machine.cam().top() - machine.cam().lowest().value);
+        if range[1] - range[0] < fast {
             range = [-fast, fast];
         }
         let span = range[1] - range[0];

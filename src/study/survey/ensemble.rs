@@ -184,7 +184,14 @@ fn judged(
     // A motion that is left sooner or later is also left from each of its rests.
     let wanders_on = |ending: &LongRun| wandering.left > 0 && ending.wanders();
     let mut ensemble = Ensemble { wandering, failed, ..Ensemble::default() };
-    let mut wanderers = wanders.iter().cycle();
+    // Runs that wander share the endings in turn. Of an ending of several runs together, as many of them were recorded.
+    let mut wanderers = (0_u64..).flat_map(|round| {
+        wanders.iter().map(move |ending| {
+            let growth = ending.of_growth().filter(|growth| round < growth.runs);
+            (ending.clone(), growth.map_or(0, Recorded::each))
+        })
+    });
+    let mut wanderer = || (!wanders.is_empty()).then(|| wanderers.next()).flatten();
     let mut judged = Vec::new();
     for (start, end) in ends.into_iter().enumerate() {
         let Some(End { run: Ok(run), mut motion, begun, .. }) = end else { continue };
@@ -193,11 +200,11 @@ fn judged(
         }
         let (mut released, mut followed) = (false, motion.revolution - begun);
         let ending = match run {
-            RunOutcome::Arrives(orbit) => Some(LongRun::Orbit(orbit)),
-            RunOutcome::PermanentContact => Some(LongRun::PermanentContact),
-            RunOutcome::Wanders => wanderers.next().cloned(),
+            RunOutcome::Arrives(orbit) => Some((LongRun::Orbit(orbit), 0)),
+            RunOutcome::PermanentContact => Some((LongRun::PermanentContact, 0)),
+            RunOutcome::Wanders => wanderer(),
             RunOutcome::Released(cam_angle) => match find(&releases, cam_angle) {
-                Some(release) if wanders_on(&release.ending) => wanderers.next().cloned(),
+                Some(release) if wanders_on(&release.ending) => wanderer(),
                 Some(release) => {
                     followed += release.followed;
                     match &release.after {
@@ -205,13 +212,13 @@ fn judged(
                         AfterRelease::Arrives(_, end) => motion = *end,
                         AfterRelease::Wanders { released: begun, .. } => (motion, released) = (*begun, true),
                     }
-                    Some(release.ending.clone())
+                    Some((release.ending.clone(), release.ending.of_growth().map_or(0, Recorded::each)))
                 }
                 None => None,
             },
         };
-        if let Some(ending) = ending {
-            followed += ending.of_growth().map_or(0, Recorded::each);
+        if let Some((ending, recorded)) = ending {
+            followed += recorded;
             judged.push(Judged { ending, followed, start, motion, released });
         }
     }

@@ -45,7 +45,7 @@ pub(super) struct Arguments {
     /// Positions [default: from the cam to twice as far from it as any orbit of one impact a revolution].
     #[arg(long, value_name = "LO:HI", value_parser = range, allow_hyphen_values = true)]
     position: Option<[f64; 2]>,
-    /// Velocities [default: three times the range of those orbits and of the cam].
+    /// Velocities [default: three times the range of those orbits and of the cam, or of its height in a radian].
     #[arg(long, value_name = "LO:HI", value_parser = range, allow_hyphen_values = true)]
     velocity: Option<[f64; 2]>,
     /// Position and velocity of a start on the section, in place of a grid (may be repeated).
@@ -107,7 +107,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     if grid.is_none() && arguments.out.as_deref().is_some_and(|path| picture::kind(path).is_some()) {
         return Err(CommandError::Words("a picture is of a grid: --grid NxM says how fine".into()));
     }
-    let basins = watched("", |watch| begun.basins(&section.map.machine, budget, threads, watch))?;
+    let basins = watched("runs of each start", |watch| begun.basins(&section.map.machine, budget, threads, watch))?;
     let wall_s = clock.elapsed().as_secs_f64();
     if let Some(path) = &arguments.out {
         let table = || csv::basins(&basins, &model.units);
@@ -150,7 +150,9 @@ fn shares(
     };
     let (budget, threads) = (arguments.budget()?, session.threads);
     let to_standard = picture::out_is_standard(arguments.out.as_ref(), arguments.answer.json)?;
-    let found = watched("", |watch| BasinsOver::new(&over, &axis, (cam_angle, &begun), budget, threads, watch));
+    let found = watched("runs of each start", |watch| {
+        BasinsOver::new(&over, &axis, (cam_angle, &begun), budget, threads, watch)
+    });
     if let Some(path) = &arguments.out {
         let table = || csv::basins_over(&found);
         Target::create(path, &mut *session.out, arguments.picture.look()?)?

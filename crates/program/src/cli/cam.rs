@@ -33,13 +33,11 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let model = arguments.model.read_cam(session)?;
     let progress = Progress::spinner("laying out the cam");
     let cam = Cam::new(&model)?;
+    let sheet = CamSheet::new(&model, &cam, arguments.order)?;
     if let Some(path) = &arguments.out {
-        super::commit(vec![
-            picture::Canvas::create(path, arguments.picture.look()?)?
-                .draw(cam_figure(&cam, &model.name), &model.units)?,
-        ])?;
+        let canvas = picture::Canvas::create(path, arguments.picture.look()?)?;
+        canvas.draw(cam_figure(&cam, &model.name), &model.units)?.commit()?;
     }
     drop(progress);
-    let sheet = CamSheet::new(&model, &cam, arguments.order)?;
     session.answer(&sheet, &arguments.answer)
 }

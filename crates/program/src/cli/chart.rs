@@ -153,13 +153,13 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     }
     if let Some(folder) = folder {
         let store = Store::open(folder, &chart, SIDES)?;
-        let filled = watched("", |watch| store.fill(arguments.shard.unwrap_or(Shard::ALL), threads, watch))?;
+        let filled = watched("blocks", |watch| store.fill(arguments.shard.unwrap_or(Shard::ALL), threads, watch))?;
         session.answer(&filled, &arguments.answer)?;
         return Ok(Exit::Agrees);
     }
     // What is refused is so before the work, and found after it: the points are what most of the time goes into.
     let ground = if arguments.with_curves { Some(ground(&chart)?) } else { None };
-    let run = || watched("", |watch| chart.run(threads, watch));
+    let run = || watched("runs of each point", |watch| chart.run(threads, watch));
     let found = match &arguments.out {
         None => run()?,
         Some(path) => {
@@ -169,7 +169,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
             let model = &found.chart.model;
             let wanted = Search { revolutions: 1, impacts: None };
             let events = |(rpm, following): ([f64; 2], Following)| {
-                watched("", |watch| curves(model, rpm, &wanted, &Bifurcation::ALL, &following, watch))
+                watched("looking for events", |watch| curves(model, rpm, &wanted, &Bifurcation::ALL, &following, watch))
             };
             let over = ground.map(events).transpose()?.map(|found| found.curves).unwrap_or_default();
             let table = || csv::chart(&found);

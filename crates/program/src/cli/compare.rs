@@ -45,7 +45,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         None => arguments.changes.of(&a)?,
     };
     session.units = a.units.clone();
-    let found = watched("", |watch| compare(&a, &b, arguments.external.routes(), watch))?;
+    let found = watched("the first model", |watch| compare(&a, &b, arguments.external.routes(), watch))?;
     session.answer(&found, &arguments.answer)?;
     Ok(if found.agrees() { Exit::Agrees } else { Exit::Disagrees })
 }

@@ -79,7 +79,9 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let out = table(arguments.out.as_ref(), arguments.json)?;
     let target = out.map(|path| Target::create(path, &mut *session.out, look)).transpose()?;
     let wanted = Search { revolutions: arguments.revolutions, impacts: arguments.impacts };
-    let found = watched("", |watch| branches(&model, arguments.rpm, &wanted, following, arguments.all, watch))?;
+    let found = watched("following branches", |watch| {
+        branches(&model, arguments.rpm, &wanted, following, arguments.all, watch)
+    })?;
     let name = found.following.parameter.name();
     for (index, branch) in found.branches.iter().enumerate() {
         let account = in_columns(&pages::branches::branch(branch, (name, &model.units), index + 1), columns);
@@ -90,7 +92,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     }
     let rows = || csv::branches(name, &found.branches, &model.units);
     let drawn = || {
-        let settled = watched("", |watch| found.settled(arguments.runs, watch))?;
+        let settled = watched("what runs settle on", |watch| found.settled(arguments.runs, watch))?;
         Ok(branches_figure(
             &found.title(),
             (name, &model.units.of_number(name), *range),

@@ -76,7 +76,8 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let wanted = Search { revolutions: arguments.revolutions, impacts: arguments.impacts };
     let following = Following { parameter, range: *range, longest_step: arguments.step, most_points: MOST_POINTS };
     let events = if arguments.events.is_empty() { &Bifurcation::ALL } else { arguments.events.as_slice() };
-    let found = watched("", |watch| curves(&model, arguments.rpm, &wanted, events, &following, watch))?;
+    let found =
+        watched("looking for events", |watch| curves(&model, arguments.rpm, &wanted, events, &following, watch))?;
     let Curves { own, sharp, curves, .. } = &found;
     let own = *own;
     let (name, [low, high]) = (following.parameter.name(), arguments.rpm);

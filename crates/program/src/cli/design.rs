@@ -120,9 +120,9 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         starts: arguments.start.given(),
         budget: Some(arguments.budget.budget(Budget::DESIGN)?),
     };
-    let found = watched("", |watch| design(&model, &asked, watch))?;
+    let found = watched("loads of the cam", |watch| design(&model, &asked, watch))?;
     if let Some(canvas) = canvas {
-        super::commit(vec![canvas.draw(design_figure(&found), &model.units)?])?;
+        canvas.draw(design_figure(&found), &model.units)?.commit()?;
     }
     session.answer(&found, &arguments.answer)
 }

@@ -142,7 +142,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         return one_row(arguments, &sweep.over, session);
     }
     let (threads, target) = (session.threads, arguments.out.as_deref());
-    let (name, progress) = (model.name.as_str(), Progress::spinner(""));
+    let (name, progress) = (model.name.as_str(), Progress::spinner("runs of each value"));
     let swept =
         match target.map(|path| Target::create(path, &mut *session.out, arguments.picture.look()?)).transpose()? {
             None => Swept::new(name, &sweep, threads, &progress, |_: Counted| Ok::<(), CommandError>(()))?,
@@ -150,7 +150,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
                 file.write_all(csv::diagram(&sweep).as_bytes())?;
                 let take = |lines: csv::Lines| Ok::<(), CommandError>(file.write_all(lines.text.as_bytes())?);
                 let swept = Swept::new(name, &sweep, threads, &progress, take)?;
-                super::commit(vec![file])?;
+                file.commit()?;
                 swept
             }
             Some(Target::Picture(canvas)) => {
@@ -166,7 +166,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
                     Section::Impacts => impact_diagram(&title, places, &corners, exponents),
                     Section::Strobe(_) => strobe_diagram(&title, places, exponents),
                 };
-                super::commit(vec![canvas.draw(across.under(figure), &model.units)?])?;
+                canvas.draw(across.under(figure), &model.units)?.commit()?;
                 swept
             }
         };
@@ -198,7 +198,7 @@ fn loads(
     let target = Target::create(path, &mut *session.out, arguments.picture.look()?)?;
     let (start, threads) = (arguments.start.start()?, session.threads);
     let budget = arguments.budget.lengths(Budget::CHART)?;
-    let found = watched("", |watch| swept::loads(survey, start, budget, threads, watch))?;
+    let found = watched("runs of each value", |watch| swept::loads(survey, start, budget, threads, watch))?;
     let table = || csv::loads(survey.axis().parameter.name(), &found, &model.units);
     let over = match &survey.axis().parameter {
         Parameter::Speed => "cam speed",
@@ -222,9 +222,9 @@ fn one_row(arguments: &Arguments, survey: &Survey, session: &mut Session<'_>) ->
     };
     let (start, threads) = (arguments.start.start()?, session.threads);
     let budget = arguments.budget.budget(Budget::CHART)?;
-    let points = watched("", |watch| swept::one_row(survey, start, budget, threads, watch))?;
+    let points = watched("runs of each value", |watch| swept::one_row(survey, start, budget, threads, watch))?;
     file.write_all(csv::one_row(survey.axis(), &points, survey.units()).as_bytes())?;
-    super::commit(vec![file])?;
+    file.commit()?;
     let failed = || points.iter().enumerate().filter_map(|(index, point)| Some((index, point.as_ref().err()?)));
     if let Some((index, why)) = failed().next() {
         let first = format!("{}: {why}", survey.words(index));

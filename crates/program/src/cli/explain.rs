@@ -55,7 +55,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let needed = links.needs(what, &model)?;
     let verified = needed
         .map(|external| if external == External::Run { arguments.external.routes() } else { external })
-        .map(|external| watched("", |watch| verify_watched(&model, external, watch)))
+        .map(|external| watched("verifying the model", |watch| verify_watched(&model, external, watch)))
         .transpose()
         .map_err(|error| session.note(&format!("no values: {error}")));
     let found = verified.ok().flatten();

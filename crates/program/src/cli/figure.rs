@@ -108,7 +108,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
             let plate = entry.plate(&subject);
             drop(progress);
             match (&plate.drawn, canvas) {
-                (Ok(drawn), Some(canvas)) => super::commit(vec![canvas.draw(drawn.figure.clone(), &model.units)?])?,
+                (Ok(drawn), Some(canvas)) => canvas.draw(drawn.figure.clone(), &model.units)?.commit()?,
                 // A document says why there is none; a file cannot.
                 (Err(_), None) if arguments.json => {}
                 (Err(why), _) => {

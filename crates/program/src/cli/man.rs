@@ -41,7 +41,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         files.push(file);
     }
     let count = files.len();
-    super::commit(files)?;
+    Output::commit_all(files)?;
     session.note(&format!("wrote {count} pages to {}", folder.display()));
     Ok(Exit::Agrees)
 }

@@ -52,7 +52,7 @@ use session::Wishes;
 pub use signals::watch as clear_on_signals;
 
 use corner_impact::cancel;
-use corner_impact::file::{FileError, Output};
+use corner_impact::file::FileError;
 use corner_impact::model::{ModelError, Units};
 use corner_impact::simulate::SimulateError;
 
@@ -184,12 +184,6 @@ impl<E: Error + 'static> From<E> for CommandError {
     }
 }
 
-/// Gives files their names, when every one of them is on the disk as far as can be told.
-fn commit(mut files: Vec<Output<'_>>) -> Result<(), CommandError> {
-    files.iter_mut().try_for_each(Write::flush)?;
-    Ok(files.into_iter().try_for_each(Output::commit)?)
-}
-
 /// Runs one command line, program name first; neither stream is a terminal.
 pub fn run(arguments: impl IntoIterator<Item = OsString>, out: &mut dyn Write, err: &mut dyn Write) -> Exit {
     run_at(Terminal::default(), arguments, out, err)
@@ -198,7 +192,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, out: &mut dyn Write, e
 /// Runs a command, as long as somebody reads it, where its results are nowhere else.
 fn begun(arguments: &Arguments, only_prints: bool, session: &mut Session<'_>) -> Result<Exit, CommandError> {
     (session.color, session.quiet, session.threads) = (arguments.color, arguments.quiet, arguments.threads);
-    progress::hide(arguments.quiet);
+    progress::begin(arguments.quiet);
     let is_watched = session.terminal.is_process && only_prints;
     let next = arguments.command.next();
     signals::watch().map_err(|error| CommandError::Words(format!("signals: {error}")))?;

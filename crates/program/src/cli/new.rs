@@ -101,7 +101,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         output.write_all(text.as_bytes())?;
         outputs.push(output);
     }
-    super::commit(outputs)?;
+    Output::commit_all(outputs)?;
     session.named = format!(" {}", shell_word(&path.to_string_lossy()));
     for (path, _) in &files {
         session.note(&format!("wrote {}", path.display()));

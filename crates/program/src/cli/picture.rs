@@ -7,8 +7,9 @@ use clap::ValueEnum;
 
 use super::CommandError;
 use super::numbers::{positive, range};
-use corner_impact::file::Output;
+use corner_impact::file::{self, Output};
 use corner_impact::model::Units;
+use corner_impact::untrusted;
 use corner_impact_plot::font::Fonts;
 use corner_impact_plot::{Figure, Look, Theme, pdf, png, svg};
 
@@ -64,7 +65,7 @@ impl LookArguments {
         if width.is_none() && size.is_none() && font.is_none() && !no_title && theme.is_none() {
             return Ok(None);
         }
-        let fonts = font.as_deref().map(Fonts::named).transpose()?;
+        let fonts = font.as_deref().map(fonts).transpose()?;
         let theme = match theme {
             Some(ThemeName::Print) => Theme::Print,
             Some(ThemeName::Screen) | None => Theme::Screen,
@@ -83,6 +84,19 @@ impl PictureArguments {
         }
         Ok(Some(Look { x: self.x_range, y: self.y_range, ..look.unwrap_or_default() }))
     }
+}
+
+/// Largest file of a font, bytes.
+const LARGEST_FONT: usize = 64 << 20;
+
+/// The letters of a font that is installed, or of a file.
+fn fonts(name: &str) -> Result<Fonts, CommandError> {
+    if !Fonts::is_file(name) {
+        return Ok(Fonts::named(name)?);
+    }
+    let read = file::bytes(Path::new(name), LARGEST_FONT);
+    let data = read.map_err(|error| CommandError::Words(format!("{name}: cannot be read as a font: {error}")))?;
+    Ok(Fonts::of_file(name, data)?)
 }
 
 /// A length on paper as points, 72 to the inch.
@@ -148,11 +162,12 @@ impl Canvas {
 
     /// The figure with the units of a model, written but not yet a file of that name.
     pub(super) fn draw(mut self, figure: Figure, units: &Units) -> Result<Output<'static>, CommandError> {
-        let figure = figure.in_units(|unit| units.spelled(unit));
+        let mut figure = figure.in_units(|unit| units.spelled(unit));
+        figure.title = untrusted::visible(&figure.title).into_owned();
         let (look, figure) = (&self.look, self.look.framed(figure)?);
         let bytes = match self.kind {
             Kind::Png => png::render(figure, look, look.pixels())?,
-            Kind::Svg => svg::render(&figure, look)?.into_bytes(),
+            Kind::Svg => untrusted::visible(&svg::render(&figure, look)?).as_bytes().to_vec(),
             Kind::Pdf => pdf::render(&figure, look)?,
         };
         self.file.write_all(&bytes)?;
@@ -193,7 +208,7 @@ impl<'a> Target<'a> {
             }
             Self::Picture(canvas) => canvas.draw(figure()?, units)?,
         };
-        super::commit(vec![file])
+        Ok(file.commit()?)
     }
 }
 

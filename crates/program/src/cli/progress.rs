@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::sync::{Mutex, PoisonError};
 use std::thread::JoinHandle;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
@@ -19,9 +19,13 @@ pub(super) fn watched<T>(what: &str, work: impl FnOnce(&dyn Watch) -> T) -> T {
 /// Whether progress is shown to nobody.
 static HIDDEN: AtomicBool = AtomicBool::new(false);
 
-/// Shows progress of this process from now on, or hides it.
-pub(super) fn hide(is_hidden: bool) {
+/// Time at which the command began.
+static BEGUN: Mutex<Option<Instant>> = Mutex::new(None);
+
+/// Shows progress of the command that begins now, or hides it.
+pub(super) fn begin(is_hidden: bool) {
     HIDDEN.store(is_hidden, Ordering::Relaxed);
+    *BEGUN.lock().unwrap_or_else(PoisonError::into_inner) = Some(Instant::now());
 }
 
 /// Progress of a command: a bar if the total is known, otherwise a spinner, and the current step.
@@ -34,8 +38,9 @@ pub(super) struct Progress {
 }
 
 impl Progress {
-    /// Work done before the bar appears.
-    const PATIENCE: Duration = Duration::from_secs(1);
+    /// Time from the beginning of a command until its bar appears, and least time of any work that has one.
+    const PATIENCE: Duration = Duration::from_millis(900);
+    const LEAST: Duration = Duration::from_millis(100);
     /// Between two looks of a bar that nobody moves.
     const TICK: Duration = Duration::from_millis(120);
 
@@ -51,11 +56,14 @@ impl Progress {
         bar.set_message(what.to_owned());
         // Appears by itself: what is watched may have nothing to tell for longer than patience lasts.
         let is_shown = std::io::stderr().is_terminal() && !HIDDEN.load(Ordering::Relaxed);
+        let begun = *BEGUN.lock().unwrap_or_else(PoisonError::into_inner);
+        let over = begun.map_or(Duration::ZERO, |begun| begun.elapsed());
+        let patience = Self::PATIENCE.saturating_sub(over).max(Self::LEAST);
         let shows = is_shown.then(|| {
             let (ended, end) = channel::<()>();
             let shown = bar.clone();
             let thread = std::thread::spawn(move || {
-                if end.recv_timeout(Self::PATIENCE) == Err(RecvTimeoutError::Timeout) {
+                if end.recv_timeout(patience) == Err(RecvTimeoutError::Timeout) {
                     shown.set_draw_target(ProgressDrawTarget::stderr());
                     shown.enable_steady_tick(Self::TICK);
                 }

@@ -68,19 +68,22 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         Some(path) => Some(Output::create(path, &mut *session.out)?),
         None => None,
     };
-    let report = watched("", |watch| Report::of(&model, arguments.external.routes(), arguments.rpm, watch))?;
+    let report = watched("looking for the corner impact", |watch| {
+        Report::of(&model, arguments.external.routes(), arguments.rpm, watch)
+    })?;
+    let document = arguments.json.then(|| json::render(&report, &model.units)).transpose()?;
     let write = |mut file: Output<'_>| {
         let page = html::render(&report)?;
         file.write_all(page.as_bytes())?;
-        super::commit(vec![file])
+        Ok::<(), CommandError>(file.commit()?)
     };
     file.map(write).transpose()?;
     for route in report.failed() {
         session.complain(&format!("{route} did not run; the page says why"));
     }
-    match (arguments.json, &path) {
-        (true, _) => session.print(&json::render(&report, &model.units)?)?,
-        (false, Some(path)) if path.as_path() != Path::new("-") => session.print(&format!("{}\n", path.display()))?,
+    match (document, &path) {
+        (Some(document), _) => session.print(&document)?,
+        (None, Some(path)) if path.as_path() != Path::new("-") => session.print(&format!("{}\n", path.display()))?,
         _ => {}
     }
     Ok(if report.agrees { Exit::Agrees } else { Exit::Disagrees })

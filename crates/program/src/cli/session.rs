@@ -331,6 +331,10 @@ impl Session<'_> {
     pub(super) fn complain_at(&mut self, words: &str, at: &ModelError) {
         self.complain(words);
         let shown = complaint::shown(words, at, self.colours_err(), self.terminal.err, self.width());
+        // A message is to fit a page.
+        if shown.chars().count() + untrusted::sentence(words).chars().count() > untrusted::MESSAGE - untrusted::PREFIX {
+            return;
+        }
         let _ = self.err.write_all(shown.as_bytes());
     }
 

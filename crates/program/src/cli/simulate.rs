@@ -139,7 +139,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         };
         Ok(file.as_mut().map_or(Ok(()), |file| file.write_all(lines.as_bytes()))?)
     };
-    let mut run = watched("", |watch| simulation.run(wanted, watch, see))?;
+    let mut run = watched("following the motion", |watch| simulation.run(wanted, watch, see))?;
     if arguments.answer.json || streams == 0 {
         run.loads = RunLoads::of(&model, machine, &run)?;
     }
@@ -163,7 +163,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     if let Some(canvas) = plane {
         files.push(canvas.draw(phase_plane_figure(&title, &seen(figures::TracedRun::DRAWN)?), &model.units)?);
     }
-    super::commit(files)?;
+    Output::commit_all(files)?;
     if arguments.answer.json || streams == 0 {
         session.answer(&run, &arguments.answer)?;
     }

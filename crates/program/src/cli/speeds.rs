@@ -88,7 +88,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         (arguments.start.sample(arguments.starts as usize), arguments.budget.budget(Budget::SURVEY)?);
     let resolution = Resolution { step, sample, budget, two_impacts: arguments.two_impacts };
     let over = Over::new(&model, parameter, rpm)?;
-    let found = watched("", |watch| speeds(&over, range, &resolution, watch))?;
+    let found = watched("what runs end on", |watch| speeds(&over, range, &resolution, watch))?;
     if let Some(path) = &arguments.out {
         let table = || csv::speeds(&found);
         let look = arguments.picture.look()?;

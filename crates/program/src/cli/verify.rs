@@ -31,7 +31,8 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
                      are for every cam";
         return Err(CommandError::Words(format!("{}: {words}", model.file())));
     }
-    let findings = watched("", |watch| verify_watched(&model, arguments.external.routes(), watch))?;
+    let findings =
+        watched("looking for the corner impact", |watch| verify_watched(&model, arguments.external.routes(), watch))?;
     for failure in findings.skipped.iter().filter(|skipped| skipped.failed) {
         // The page says the same.
         session.complain(&format!("{} did not run: {}", failure.route, failure.why));

@@ -3,6 +3,7 @@
 use std::io::{self, Write};
 
 use corner_impact::model::{Converted, Units};
+use corner_impact::untrusted;
 use serde::Serialize;
 use serde_json::ser::{CharEscape, Formatter, PrettyFormatter, Serializer};
 
@@ -16,7 +17,7 @@ pub fn render(document: &impl Serialize, units: &Units) -> Result<String, serde_
     } else {
         serde_json::to_string_pretty(document)?
     };
-    Ok(text + "\n")
+    Ok(untrusted::json(text + "\n"))
 }
 
 /// Writes a document with names and numbers in the units of a model.
