@@ -82,6 +82,7 @@ mod outside;
 mod over;
 mod page;
 mod physics;
+mod pictures;
 mod planted;
 mod pointed;
 mod print;

@@ -34,10 +34,8 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let progress = Progress::spinner("laying out the cam");
     let cam = Cam::new(&model)?;
     if let Some(path) = &arguments.out {
-        super::commit(vec![
-            picture::Canvas::create(path, arguments.picture.look()?)?
-                .draw(cam_figure(&cam, &model.name), &model.units)?,
-        ])?;
+        let canvas = picture::Canvas::create(path, arguments.picture.request()?)?;
+        super::commit(canvas.draw(cam_figure(&cam, &model.name), &model.units)?)?;
     }
     drop(progress);
     let sheet = CamSheet::new(&model, &cam, arguments.order)?;
