@@ -26,7 +26,8 @@ use corner_impact::study::survey::{
 use corner_impact::study::verify::{External, verify};
 use corner_impact_cli::figures::cam_figure;
 use corner_impact_cli::show::notes;
-use corner_impact_plot::{Look, svg};
+use corner_impact_plot::font::Fonts;
+use corner_impact_plot::{LegendPlace, Look, Theme, TitleChoice, look, svg};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::{PyUserWarning, PyValueError};
 use pyo3::prelude::*;
@@ -668,6 +669,56 @@ impl Model {
     fn _repr_svg_(&self) -> PyResult<String> {
         svg::render(&cam_figure(self.machine.cam(), &self.model.name), &Look::default()).or_raise()
     }
+
+    /// Lift, velocity and acceleration of the cam, as an SVG in a look of the command's options.
+    #[pyo3(signature = (*, width = None, height = None, size = None, font = None, title = None, legend = None, theme = None, x_range = None,
+        y_range = None))]
+    #[expect(clippy::too_many_arguments, reason = "the options of the command")]
+    fn cam_picture(
+        &self,
+        width: Option<&str>,
+        height: Option<&str>,
+        size: Option<&str>,
+        font: Option<&str>,
+        title: Option<Title>,
+        legend: Option<&str>,
+        theme: Option<&str>,
+        x_range: Option<[f64; 2]>,
+        y_range: Option<[f64; 2]>,
+    ) -> PyResult<String> {
+        let length = |name: &str, text: Option<&str>| text.map(|text| told(name, text, look::length)).transpose();
+        let look = Look {
+            width: length("width", width)?,
+            height: length("height", height)?,
+            size: length("size", size)?,
+            fonts: Some(font.map_or_else(|| Ok(Fonts::default()), Fonts::named).or_raise()?),
+            title: match title {
+                None => TitleChoice::OffPaper,
+                Some(Title::Shown(true)) => TitleChoice::Shown,
+                Some(Title::Shown(false)) => TitleChoice::Hidden,
+                Some(Title::Words(words)) => TitleChoice::Words(words),
+            },
+            legend: legend.map_or(Ok(LegendPlace::default()), |text| told("legend", text, LegendPlace::named))?,
+            theme: theme.map_or(Ok(Theme::default()), |text| told("theme", text, Theme::named))?,
+            x: x_range.map(|range| told("x_range", range, look::ends)).transpose()?,
+            y: y_range.map(|range| told("y_range", range, look::ends)).transpose()?,
+        };
+        let (look, units) = (look.checked().or_raise()?, &self.model.units);
+        let figure = cam_figure(self.machine.cam(), &self.model.name).in_units(|unit| units.spelled(unit));
+        svg::render(&look.framed(figure).or_raise()?, &look).or_raise()
+    }
+}
+
+/// A title: whether the figure's own is shown, or other words.
+#[derive(FromPyObject)]
+enum Title {
+    Shown(bool),
+    Words(String),
+}
+
+/// An option of a picture, read as the command reads it.
+fn told<V, T>(name: &str, value: V, read: impl FnOnce(V) -> Result<T, String>) -> PyResult<T> {
+    read(value).or_else(|why| refused(format!("{name} {why}")))
 }
 
 /// The images of some starts, side by side on `threads` threads.

@@ -158,3 +158,29 @@ def test_a_number_is_changed_as_by_the_command(paper: Model) -> None:
 def test_a_model_shows_its_cam(paper: Model) -> None:
     assert ET.fromstring(paper._repr_svg_()).tag.endswith("svg")
     assert repr(paper) == "Model('osorio-2008')"
+
+
+def test_pictures_take_the_looks_of_the_command() -> None:
+    paper = Model.paper()
+    narrow = ET.fromstring(paper.cam_picture(width="85mm", height="100mm", theme="print"))
+    for name, length in [("width", 85), ("height", 100)]:
+        assert float(narrow.attrib[name].removesuffix("pt")) == pytest.approx(length * 72 / 25.4, abs=1)
+    words = [text.text for text in narrow.iter() if text.tag.endswith("}text")]
+    assert paper.name not in words and "cam angle θ (deg)" in words
+    titles: list[tuple[bool | str, str]] = [(True, paper.name), ("Another", "Another")]
+    for title, shown in titles:
+        titled = ET.fromstring(paper.cam_picture(width="85mm", title=title))
+        assert shown in [text.text for text in titled.iter() if text.tag.endswith("}text")]
+    refused: list[tuple[dict[str, Any], str]] = [
+        ({"width": "85"}, "width must be a number with its unit"),
+        ({"width": "1mm"}, "30 to 2400 pt"),
+        ({"height": "20mm"}, "it takes"),
+        ({"legend": "left"}, "legend must be none, above, below or right"),
+        ({"theme": "dark"}, "theme must be screen or print"),
+        ({"x_range": (2, 1)}, "x_range must be"),
+        ({"y_range": (7, 8)}, "shows nothing"),
+        ({"font": "No Such Letters"}, "is installed"),
+    ]
+    for looks, why in refused:
+        with pytest.raises(ValueError, match=why):
+            paper.cam_picture(**looks)

@@ -71,8 +71,7 @@ impl<'a> Table<'a> {
     /// Takes what a line has out of a complaint about a text that does not begin like a table: the model may name any file of its reader.
     pub(super) fn discreet(&self, complaint: ModelError, chosen: &[Option<Chosen>; 2]) -> ModelError {
         let lines = self.text.lines().map(|line| without_comment(line).0).filter(|line| !line.trim().is_empty());
-        let begins_like_table =
-            lines.take(FIRST_LINES).any(|line| has_numbers(line) || self.is_header(line, chosen));
+        let begins_like_table = lines.take(FIRST_LINES).any(|line| has_numbers(line) || self.is_header(line, chosen));
         if begins_like_table || complaint.pointer.text.is_none() {
             return complaint;
         }

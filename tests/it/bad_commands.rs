@@ -185,6 +185,13 @@ fn looks_that_cannot_be() {
         ("--size 8", ["--size <SIZE>", "unit"]),
         ("--font nosuch.ttf", ["nosuch.ttf", "cannot be read as a font"]),
         ("--font NoSuchLetters", ["NoSuchLetters", "is installed"]),
+        ("--height 5pt", ["5.0 pt high", "30.0 pt"]),
+        ("--height 40mm", ["cannot be 113.4 pt high", "it takes"]),
+        ("--legend left", ["--legend <PLACE>", "none, above, below or right"]),
+        ("--title --no-title", ["--title", "cannot be used with"]),
+        ("--script out.txt", ["--script <FILE>", "must end in .py"]),
+        ("--script out.py --events out.csv", ["--events", "the data of --script"]),
+        ("--script out.py --phase-plane plane.svg", ["--script draws one picture", "are two"]),
         ("--theme dark", ["--theme <THEME>", "screen, print"]),
         ("--x 2:1", ["--x-range <LO:HI>", "not below"]),
         ("--x 1:inf", ["--x-range <LO:HI>", "finite"]),
@@ -194,7 +201,18 @@ fn looks_that_cannot_be() {
     ] {
         place.refuses(&format!("simulate MODEL --rpm 183 --revolutions 3 --trace out.svg {look}"), &says);
     }
-    for look in ["--width 85mm", "--size 8pt", "--no-title", "--theme print", "--x 0:1", "--y 0:1"] {
+    for look in [
+        "--width 85mm",
+        "--height 85mm",
+        "--size 8pt",
+        "--title",
+        "--no-title",
+        "--legend below",
+        "--theme print",
+        "--x 0:1",
+        "--y 0:1",
+        "--script out.py",
+    ] {
         place.refuses(&format!("cam MODEL {look}"), &["--out <FILE>", "not provided"]);
         place.refuses(
             &format!("diagram MODEL --rpm 600:700:3 --out out.csv {look}"),

@@ -16,7 +16,7 @@ use corner_impact_cli::cli::{Exit, run};
 use corner_impact_cli::figures::{
     Effort, FigureContext, Neighbour, Outline, RenderedFigure, branches_figure, listed, plate, plates,
 };
-use corner_impact_plot::layout::{Layout, WIDTH};
+use corner_impact_plot::layout::Layout;
 use corner_impact_plot::{Data, Figure, Look, Series, svg};
 use rayon::prelude::*;
 
@@ -42,7 +42,7 @@ fn points(data: &Data) -> &[[f64; 2]] {
     match data {
         Data::Line { points, .. } | Data::Area { points, .. } | Data::Arrow { points, .. } => points,
         Data::Points { points, .. } => points,
-        Data::Words(_) | Data::Density(_) | Data::Region { .. } => &[],
+        Data::Words(_) | Data::Band { .. } | Data::Density(_) | Data::Region { .. } => &[],
     }
 }
 
@@ -56,7 +56,7 @@ fn series(figure: &Figure, panel: usize, label: &str) -> Vec<[f64; 2]> {
 /// Whether a figure can be read: numbers, or breaks; something to see in each panel; a small file.
 fn check(plate: &RenderedFigure) {
     let figure = &plate.drawn.as_ref().unwrap().figure;
-    let (id, layout) = (plate.id, Layout::new(figure, &figure.title, WIDTH));
+    let (id, layout) = (plate.id, Layout::new(figure, &Look::default()));
     for (panel, place) in figure.panels.iter().zip(&layout.panels) {
         let mut seen = false;
         for series in &panel.series {
@@ -224,7 +224,7 @@ fn the_shape_is_the_papers_construction() {
     let turn = points(&figure.panels[0].series.iter().find(turns).unwrap().data);
     assert!(turn[turn.len() - 1][0] < turn[0][0], "the cam turns to the left");
     // On the page a circle is one.
-    let layout = Layout::new(&figure, &figure.title, WIDTH);
+    let layout = Layout::new(&figure, &Look::default());
     let (frame, range) = (layout.panels[0].frame, layout.panels[0].range);
     let [across, up] = [frame.width / (layout.range[1] - layout.range[0]), frame.height / (range[1] - range[0])];
     assert_relative_eq!(across, up, max_relative = 1e-9);

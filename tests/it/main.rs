@@ -84,6 +84,7 @@ mod outside;
 mod over;
 mod page;
 mod physics;
+mod pictures;
 mod planted;
 mod pointed;
 mod print;

@@ -16,7 +16,8 @@ use corner_impact_cli::figures::{cam_figure, corner_marks, impact_diagram, speed
 use corner_impact_plot::font::Fonts;
 use corner_impact_plot::layout::{Layout, TEXT, Text, WIDTH, width};
 use corner_impact_plot::{
-    Beside, Colour, Data, Density, Figure, FigureAxis, Label, Look, Marker, Panel, Series, Stroke, Theme, pdf, png, svg,
+    Beside, Colour, Data, Density, Figure, FigureAxis, Label, Look, Marker, Panel, Series, Stroke, Theme, TitleChoice,
+    pdf, png, svg,
 };
 use flate2::read::ZlibDecoder;
 use resvg::tiny_skia::{Pixmap, Transform};
@@ -156,7 +157,7 @@ fn a_figure_is_as_wide_and_its_letters_as_high_as_asked() {
     assert_eq!(dots.xppu, dots.yppu);
 }
 
-/// Whatever the width: nothing beyond the page, and two ticks at least on each axis, or it tells no scale.
+/// Whatever the width: nothing beyond the page, and three labels at least on each axis.
 #[test]
 fn a_narrow_figure_holds_its_words_and_ticks() {
     let model = Model::parse("osorio-2008.toml", OSORIO_2008).unwrap();
@@ -166,19 +167,27 @@ fn a_narrow_figure_holds_its_words_and_ticks() {
     let impacts = impact_diagram("impacts of 100 revolutions", cloud, &corner_marks(&cam), None);
     for figure in [parabola(), cam_figure(&cam, "osorio-2008"), impacts] {
         for mm in [70.0, 85.0, 120.0, 170.0] {
-            let wide = Look { width: Some(mm * MM), ..column() }.across();
-            let layout = Layout::new(&figure, &figure.title, wide);
+            let look = Look { width: Some(mm * MM), ..column() };
+            let (wide, layout) = (look.across(), Layout::new(&figure, &look));
             let panels = layout.panels.iter();
-            let labels =
-                panels.clone().flat_map(|panel| panel.legend.iter().map(|(_, label)| label).chain([&panel.name]));
+            let labels = panels.clone().flat_map(|panel| panel.legend.iter().map(|(_, label)| label));
             let labels =
                 labels.chain(panels.flat_map(|panel| panel.marks.iter().filter_map(|mark| mark.label.as_ref())));
             let labels = labels.chain(layout.marks.iter().filter_map(|mark| mark.label.as_ref()));
             for Text { at, text } in labels.chain([&layout.name]).chain(&layout.note) {
                 assert!(at[0] >= 0.0 && at[0] + width(text, TEXT) <= wide, "{mm} mm: \"{text}\" at {at:?} of {wide}");
             }
+            for (panel, Text { at, text }) in
+                layout.panels.iter().flat_map(|panel| panel.name.iter().map(move |line| (panel, line)))
+            {
+                let [low, high] = [panel.frame.top, panel.frame.bottom()];
+                assert!(
+                    at[0] >= TEXT && at[0] < panel.frame.left && low < at[1] && at[1] < high,
+                    "\"{text}\" at {at:?}"
+                );
+            }
             assert!(
-                layout.ticks.len() > 1 && layout.panels.iter().all(|panel| panel.ticks.len() > 1),
+                layout.ticks.len() > 2 && layout.panels.iter().all(|panel| panel.ticks.len() > 2),
                 "{}: {mm} mm",
                 figure.title
             );
@@ -226,7 +235,8 @@ fn an_svg_brings_its_letters() {
 /// Letters of a PDF can be looked for and copied: glyphs, by the table that says what they stand for, are the words.
 #[test]
 fn a_pdf_has_its_words_and_fonts() {
-    let (streams, rest) = streams(&pdf::render(&parabola(), &column()).unwrap());
+    let look = Look { title: TitleChoice::Shown, ..column() };
+    let (streams, rest) = streams(&pdf::render(&parabola(), &look).unwrap());
     assert!(rest.contains("LETTER+Ubuntu-Light") && rest.contains("/FontFile2") && rest.contains("/SMask"), "{rest}");
     let text = |stream: &[u8]| String::from_utf8_lossy(stream).into_owned();
     let map = streams.iter().map(|stream| text(stream)).find(|stream| stream.contains("beginbfchar")).unwrap();
@@ -251,13 +261,22 @@ fn a_pdf_has_its_words_and_fonts() {
 
 #[test]
 fn titles_and_ends_of_axes_are_as_asked() {
-    let look = Look { untitled: true, x: Some([20.0, 60.0]), y: Some([500.0, 2500.0]), ..column() };
+    let look = Look { x: Some([20.0, 60.0]), y: Some([500.0, 2500.0]), ..column() };
     let figure = look.framed(parabola()).unwrap();
-    let layout = Layout::new(&figure, "", look.across());
+    let layout = Layout::new(&figure, &look);
     assert_eq!((layout.range, layout.panels[0].range), ([20.0, 60.0], [500.0, 2500.0]));
     assert!(layout.panels[1].range[1] > 9000.0, "the second panel keeps its own: {:?}", layout.panels[1].range);
     let text = svg::render(&figure, &look).unwrap();
-    assert_eq!(text.matches("A parabola").count(), 1, "for a reader aloud alone");
+    assert_eq!(text.matches("A parabola").count(), 1, "for a reader aloud alone, where a width is given");
+    for (title, says, count) in [
+        (TitleChoice::Shown, "A parabola", 2),
+        (TitleChoice::Hidden, "A parabola", 1),
+        (TitleChoice::Words("Another name".into()), "Another name", 1),
+    ] {
+        let text = svg::render(&figure, &Look { title, ..look.clone() }).unwrap();
+        assert_eq!(text.matches(says).count(), count, "{says}");
+    }
+    assert_eq!(svg::render(&figure, &Look::default()).unwrap().matches("A parabola").count(), 2, "without a width");
     for (x, y, says) in [
         (Some([200.0, 300.0]), None, "--x-range from 200 to 300 shows nothing"),
         (Some([20.0, 20.5]), None, "--x-range from 20 to 20.5 is less than a hundredth"),
@@ -366,20 +385,40 @@ fn names_of_attractors_have_room() {
     found.attractors[0].ends[1] = Place::of_speed(700.2);
     let (few, note) = words(&found, WIDTH);
     assert_eq!((few[0].at[1], few[1].at[1], few.len(), note.as_str()), (0.0, 0.0, 3, ""), "{few:?}");
-    found.attractors.extend((4..40).map(|index| over(700.5, 700.501, index)));
+    found.attractors.extend((4..40).map(|index| over(700.5, 700.5009, index)));
     let (many, note) = words(&found, WIDTH);
-    assert_eq!(many.len(), 3, "{many:?}");
-    assert_eq!(note, "lowest lane: 36 over short ranges, without names");
+    let names: Vec<&str> = many.iter().map(|word| word.text.as_str()).collect();
+    assert_eq!(names, ["A1", "A2", "A3", "36 brief"]);
+    assert_eq!(note, "small grey dots: 36 more, each over less than a thousandth of the range");
+    // A little longer they have lanes of their own, unless these are too many to look through.
+    found.attractors.truncate(5);
+    found.attractors.iter_mut().skip(3).for_each(|it| it.ends[1] = Place::of_speed(700.502));
+    assert_eq!((words(&found, WIDTH).0.len(), words(&found, WIDTH).1.as_str()), (5, ""));
+    found.attractors.extend((6..40).map(|index| over(700.5, 700.502, index)));
+    assert_eq!(words(&found, WIDTH).1, "small grey dots: 36 more, each over less than a hundredth of the range");
 }
 
 /// Every command that draws has the options of paper.
 #[test]
 fn every_picture_takes_the_options() {
-    for command in ["cam", "simulate", "diagram", "chart", "figure", "speeds", "basins", "continue", "curve", "chaos"] {
+    for command in
+        ["cam", "simulate", "diagram", "chart", "figure", "speeds", "basins", "continue", "curve", "chaos", "design"]
+    {
         let help = common::text(common::corner_impact([command, "--help"]).stdout);
-        for option in
-            ["--width <", "--size <", "--font <", "--no-title", "--theme <", "--x-range <", "--y-range <", ".pdf"]
-        {
+        for option in [
+            "--width <",
+            "--height <",
+            "--size <",
+            "--font <",
+            "--title",
+            "--no-title",
+            "--legend <",
+            "--theme <",
+            "--x-range <",
+            "--y-range <",
+            "--script <",
+            ".pdf",
+        ] {
             assert!(help.contains(option), "{command}: no {option}");
         }
     }

@@ -96,6 +96,35 @@ impl Density {
         })
     }
 
+    /// Returns the occupied cells as rectangles, as few as rows of the same cells make: the centre, width, height and number of cells.
+    pub fn rectangles(&self) -> Vec<([f64; 2], [f64; 2], usize)> {
+        // Columns of the runs of the row below, and the row in which each rectangle began.
+        let mut open: Vec<(usize, usize, usize)> = Vec::new();
+        let mut closed = Vec::new();
+        let [wide, high] = [(self.x[1] - self.x[0]) / self.columns as f64, (self.y[1] - self.y[0]) / self.rows as f64];
+        let mut close = |(from, to, first): (usize, usize, usize), row: usize| {
+            let middle = |low: f64, side: f64, from: usize, to: usize| low + side * 0.5 * (from + to) as f64;
+            let at = [middle(self.x[0], wide, from, to), middle(self.y[0], high, first, row)];
+            closed.push((at, [wide * (to - from) as f64, high * (row - first) as f64], (to - from) * (row - first)));
+        };
+        for row in 0..=self.rows {
+            let cells = self.counts.get(row * self.columns..(row + 1) * self.columns).unwrap_or_default();
+            let mut runs: Vec<(usize, usize)> = Vec::new();
+            for (column, _) in cells.iter().enumerate().filter(|(_, count)| **count > 0) {
+                match runs.last_mut() {
+                    Some((_, to)) if *to == column => *to += 1,
+                    _ => runs.push((column, column + 1)),
+                }
+            }
+            let (go_on, end): (Vec<_>, Vec<_>) = open.iter().partition(|(from, to, _)| runs.contains(&(*from, *to)));
+            end.into_iter().for_each(|rectangle| close(rectangle, row));
+            let begun = runs.into_iter().filter(|(from, to)| !go_on.iter().any(|(a, b, _)| (a, b) == (from, to)));
+            let begun: Vec<_> = begun.map(|(from, to)| (from, to, row)).collect();
+            open = go_on.into_iter().chain(begun).collect();
+        }
+        closed
+    }
+
     /// Number of occupied cells.
     pub fn occupied(&self) -> usize {
         self.counts.iter().filter(|count| **count > 0).count()

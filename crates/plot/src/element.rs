@@ -8,18 +8,50 @@ use super::{Colour, Marker, Stroke};
 pub(super) const FAR: f64 = 1e5;
 
 pub(super) fn stroked(out: &mut impl Write, path: &str, how: Stroke, colour: Colour) -> fmt::Result {
-    let (width, dash) = match how {
-        Stroke::Thin => (0.9, ""),
-        Stroke::Solid => (1.5, ""),
-        Stroke::Dashed => (1.5, r#" stroke-dasharray="6 3""#),
-        Stroke::Dotted => (1.5, r#" stroke-dasharray="1.5 2.5""#),
-        Stroke::Thick => (4.5, ""),
-    };
+    let (width, dash) = (stroke_width(how), dashes(how));
+    let dash = if dash.is_empty() { String::new() } else { format!(r#" stroke-dasharray="{dash}""#) };
     let colour = stroke(colour);
     writeln!(out, r#"<path d="{path}" fill="none" stroke-width="{width}" stroke-linejoin="round"{dash} {colour}/>"#)
 }
 
-pub(super) fn markers(out: &mut impl Write, points: &[[f64; 2]], marker: Marker, colour: Colour) -> fmt::Result {
+/// Width of a stroke.
+pub fn stroke_width(how: Stroke) -> f64 {
+    match how {
+        Stroke::Thin => 0.9,
+        Stroke::Solid | Stroke::Dashed | Stroke::Dotted | Stroke::DashDotted | Stroke::DashDotDotted => 1.5,
+        Stroke::Thick | Stroke::ThickDashed | Stroke::ThickDotted | Stroke::ThickDashDotted => 4.5,
+    }
+}
+
+/// Lengths of the dashes of a stroke and of the gaps between them; empty for an unbroken one.
+pub fn dashes(how: Stroke) -> &'static str {
+    match how {
+        Stroke::Thin | Stroke::Solid | Stroke::Thick => "",
+        Stroke::Dashed => "6 3",
+        Stroke::Dotted => "1.5 2.5",
+        Stroke::DashDotted => "7 2.5 1.5 2.5",
+        Stroke::DashDotDotted => "7 2.5 1.5 2.5 1.5 2.5",
+        Stroke::ThickDashed => "8 4",
+        Stroke::ThickDotted => "2.5 2.5",
+        Stroke::ThickDashDotted => "8 3 3 3",
+    }
+}
+
+/// Draws a rim in the colour of the paper below a stroke, so that it contrasts with whatever area is behind it.
+pub(super) fn rim(out: &mut impl Write, path: &str, width: f64) -> fmt::Result {
+    let width = number(width + 2.6);
+    writeln!(
+        out,
+        r##"<path d="{path}" class="halo" fill="none" stroke="#ffffff" stroke-width="{width}" stroke-linejoin="round" stroke-linecap="round"/>"##
+    )
+}
+
+pub(super) fn markers(
+    out: &mut impl Write,
+    points: &[[f64; 2]],
+    (marker, colour): (Marker, Colour),
+    is_rimmed: bool,
+) -> fmt::Result {
     /// Number of markers above which they are small, so that they do not hide the data.
     const MANY: usize = 40;
     let small = points.len() > MANY;
@@ -42,6 +74,9 @@ pub(super) fn markers(out: &mut impl Write, points: &[[f64; 2]], marker: Marker,
     let mut path = String::new();
     for [x, y] in points {
         write!(path, "M{} {}{shape}", number(*x), number(*y))?;
+    }
+    if is_rimmed {
+        rim(out, &path, if small { 0.7 } else { 1.2 })?;
     }
     let (stroke, fill) = (stroke(colour), fill(colour));
     match marker {

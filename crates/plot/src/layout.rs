@@ -3,17 +3,15 @@
 //! The page is as wide, in units, as its look says, by default [`WIDTH`], and as high as necessary. Widths of
 //! letters are estimated generously, because an SVG in a page is shown in whatever sans-serif font is available.
 
-use super::ticks::{self, Tick, ticks};
+use super::look::{LegendPlace, Look};
+pub use super::look::{TEXT, WIDTH};
+use super::ticks::{self, Tick, enough_ticks};
 use super::{Data, Figure, FigureAxis, Mark, Panel};
 
-/// Default width of the page.
-pub const WIDTH: f64 = 720.0;
-/// Height of most letters.
-pub const TEXT: f64 = 12.5;
 /// Height of the title's letters.
 pub const TITLE: f64 = 15.0;
 /// Width of a sample in a legend.
-pub const SAMPLE: f64 = 24.0;
+pub const SAMPLE: f64 = 20.0;
 /// Limit from which on values are not drawn: differences of them would overflow.
 pub const LARGEST: f64 = 1e300;
 
@@ -22,6 +20,14 @@ pub const LARGEST: f64 = 1e300;
 const DRAWN_SPAN: f64 = 1e-9;
 
 const LINE: f64 = 16.0;
+/// Height of a row of a legend.
+const LEGEND_LINE: f64 = 15.0;
+/// Pages that are at least as high as so many legends: a legend takes at most a sixth of the height.
+const LEGENDS_HIGH: f64 = 6.0;
+/// Smallest height of a frame: room for three labels however the range lies.
+const LEAST_HEIGHT: f64 = 66.0;
+/// Distance between panels: half a label of each.
+const BETWEEN: f64 = 15.0;
 const EDGE: f64 = 12.0;
 const GAP: f64 = 6.0;
 const LEADER: f64 = 14.0;
@@ -79,9 +85,9 @@ pub struct PanelLayout {
     pub range: [f64; 2],
     /// Ticks of the vertical axis.
     pub ticks: Vec<Tick>,
-    /// Name of the vertical axis.
-    pub name: Text,
-    /// Legend entries: index of the series, and its name at the sample's position.
+    /// Lines of the name of the vertical axis, written upwards; `at` is the middle of the base line.
+    pub name: Vec<Text>,
+    /// Legend entries: index of the series, and its name beside the sample.
     pub legend: Vec<(usize, Text)>,
     /// Horizontal reference lines.
     pub marks: Vec<MarkLine>,
@@ -108,6 +114,8 @@ pub struct Layout {
     pub panels: Vec<PanelLayout>,
     /// Lines of the note.
     pub note: Vec<Text>,
+    /// Height of the rows of legends above and below frames.
+    pub legend_height: f64,
 }
 
 /// Width of a text, estimated generously.
@@ -156,6 +164,10 @@ fn extent(panel: &Panel, direction: usize) -> Option<[f64; 2]> {
         Data::Density(density) | Data::Region { cells: density, .. } => {
             (density.occupied() > 0).then(|| density.ranges()[direction])
         }
+        Data::Band { edges } => {
+            let drawable = edges.iter().filter(|edge| edge.iter().all(|part| part.abs() < LARGEST));
+            known(drawable.flat_map(|[x, low, high]| if direction == 0 { [*x, *x] } else { [*low, *high] }))
+        }
         // Words stand at what is drawn.
         data => known(data.points()?.iter().filter(drawable).map(|point| point[direction])),
     });
@@ -185,23 +197,24 @@ fn name(axis: &FigureAxis, exponent: i32) -> String {
 
 fn vertical_ticks(panel: &Panel, range: Option<[f64; 2]>, height: f64) -> ticks::Ticks {
     let Some(range) = range else { return ticks::Ticks::default() };
-    let fits = |ticks: &[Tick]| {
-        ticks.windows(2).all(|pair| height * (share(pair[1].at, range) - share(pair[0].at, range)) >= LINE)
+    let apart = |ticks: &[Tick], least: f64| {
+        ticks.windows(2).all(|pair| height * (share(pair[1].at, range) - share(pair[0].at, range)) >= least)
     };
-    let few = ticks(range, panel.y.spacing, (height / 30.0) as usize, fits);
-    // One tick shows no scale: add as many as have room.
-    if few.ticks.len() == 1 { ticks(range, panel.y.spacing, (height / LINE) as usize, fits) } else { few }
+    let most = (height / 30.0) as usize;
+    enough_ticks(range, panel.y.spacing, most, |ticks| apart(ticks, LINE), |ticks| apart(ticks, TEXT))
 }
 
 fn horizontal_ticks(axis: &FigureAxis, range: Option<[f64; 2]>, across: f64) -> ticks::Ticks {
     let Some(range) = range else { return ticks::Ticks::default() };
     let half = |tick: &Tick| width(&tick.label, TEXT) / 2.0;
-    ticks(range, axis.spacing, (across / 44.0) as usize, |ticks| {
+    let apart = |ticks: &[Tick], least: f64| {
         ticks.windows(2).all(|pair| {
             let apart = across * (share(pair[1].at, range) - share(pair[0].at, range));
-            apart >= half(&pair[0]) + half(&pair[1]) + GAP
+            apart >= half(&pair[0]) + half(&pair[1]) + least
         })
-    })
+    };
+    let most = (across / 44.0) as usize;
+    enough_ticks(range, axis.spacing, most, |ticks| apart(ticks, GAP), |ticks| apart(ticks, 0.0))
 }
 
 /// Breaks text at word ends into lines of at most `room`.
@@ -284,62 +297,133 @@ fn above(marks: &[Mark], range: [f64; 2], frame: &Frame) -> (Vec<MarkLine>, usiz
     (lines, count)
 }
 
-/// Legend beside the axis name if both fit, else in rows below it: entries at `[x, row]`, and the number of rows.
-fn legend(panel: &Panel, name: &str, left: f64, right: f64) -> (Vec<(usize, [f64; 2])>, usize) {
-    let entries: Vec<(usize, f64)> = panel
-        .series
-        .iter()
-        .enumerate()
-        .filter(|(_, series)| !series.label.is_empty())
-        .map(|(index, series)| (index, SAMPLE + GAP + width(&series.label, TEXT) + 2.0 * GAP))
-        .collect();
-    let whole: f64 = entries.iter().map(|(_, wide)| wide).sum();
-    let beside = EDGE + width(name, TEXT) + 2.0 * GAP + whole <= right;
-    let (mut x, mut row) = if beside { (right - whole + 2.0 * GAP, 0) } else { (left, 1) };
-    let mut places = Vec::new();
-    for (index, wide) in entries {
-        if x > left && x + wide > right + 2.0 * GAP + 1.0 {
-            (x, row) = (left, row + 1);
+/// Whether the box between two points meets the box of these ranges.
+fn crosses(one: [f64; 2], other: [f64; 2], ranges: [[f64; 2]; 2]) -> bool {
+    (0..2).all(|direction| {
+        let [low, high] = super::extent([one[direction], other[direction]]);
+        low <= ranges[direction][1] && high >= ranges[direction][0]
+    })
+}
+
+/// Whether some of a series is inside the ranges of its frame: a legend names nothing else.
+fn occurs(data: &Data, ranges: [[f64; 2]; 2]) -> bool {
+    let has = |at: [f64; 2]| crosses(at, at, ranges);
+    let line = |points: &[[f64; 2]]| {
+        let is_joined = points.windows(2).any(|pair| crosses(pair[0], pair[1], ranges));
+        is_joined || points.iter().any(|at| has(*at))
+    };
+    match data {
+        Data::Words(words) => words.iter().any(|word| has(word.at)),
+        Data::Density(cells) | Data::Region { cells, .. } => cells.counted().any(|(at, _)| has(at)),
+        Data::Points { points, .. } => points.iter().any(|at| has(*at)),
+        Data::Line { points, .. } | Data::Arrow { points, .. } => line(points),
+        // An area is filled down to the frame.
+        Data::Area { points, .. } => line(points) || points.iter().any(|[x, y]| has([*x, y.min(ranges[1][1])])),
+        Data::Band { edges } => {
+            edges.windows(2).any(|pair| crosses([pair[0][0], pair[0][1]], [pair[1][0], pair[1][2]], ranges))
         }
-        places.push((index, [x, row as f64]));
-        x += wide;
     }
-    (places, row + 1)
+}
+
+/// An entry of a legend: its panel, the index of its series, and its width.
+type Entry = (usize, usize, f64);
+
+/// Entries of a panel's legend, in order.
+fn entries(index: usize, panel: &Panel, ranges: [[f64; 2]; 2]) -> impl Iterator<Item = Entry> {
+    let named = panel.series.iter().enumerate().filter(|(_, series)| !series.label.is_empty());
+    let there = named.filter(move |(_, series)| occurs(&series.data, ranges));
+    there.map(move |(series, it)| (index, series, SAMPLE + GAP + width(&it.label, TEXT)))
+}
+
+/// Entries in rows of at most `room`: the place of each from the left end and its row, and the number of rows.
+fn rows(entries: &[Entry], room: f64) -> (Vec<(Entry, f64, usize)>, usize) {
+    let (mut x, mut row, mut places) = (0.0, 0, Vec::new());
+    for entry in entries {
+        if x > 0.0 && x + entry.2 > room {
+            (x, row) = (0.0, row + 1);
+        }
+        places.push((*entry, x, row));
+        x += entry.2 + 2.0 * GAP;
+    }
+    (places, if entries.is_empty() { 0 } else { row + 1 })
 }
 
 impl Layout {
-    /// Computes the layout of a figure under a title on a page of this width, in units.
-    pub fn new(figure: &Figure, title: &str, wide: f64) -> Self {
+    /// Computes the layout of a figure in this look. Frames get higher where a legend would take more than a sixth of the page, and as high
+    /// as the height of the look leaves them.
+    pub fn new(figure: &Figure, look: &Look) -> Self {
+        /// Passes after which heights are taken as they are; labels beside a frame change little with its height.
+        const PASSES: usize = 4;
+        let wide = look.across();
         // Letters keep their size in a narrow figure: its panels are relatively higher, to have room for ticks.
         let tall = wide * (WIDTH / wide).sqrt().clamp(1.0, 1.5);
         let height = |panel: &Panel| tall * if panel.height.is_nan() { 0.5 } else { panel.height.clamp(0.08, 2.0) };
-        let mut heights: Vec<f64> = figure.panels.iter().map(height).collect();
+        let mut heights: Vec<f64> = figure.panels.iter().map(|panel| height(panel).max(LEAST_HEIGHT)).collect();
+        let mut layout = Self::with_heights(figure, look, &heights);
+        for _ in 0..PASSES {
+            let extra = match look.height {
+                Some(height) => height * wide / look.points() - layout.height,
+                None => (LEGENDS_HIGH * layout.legend_height - layout.height).max(0.0),
+            };
+            let whole: f64 = heights.iter().sum();
+            if extra.abs() < 0.5 || whole == 0.0 {
+                break;
+            }
+            let scale = (whole + extra.ceil()) / whole;
+            heights.iter_mut().for_each(|height| *height = (*height * scale).max(LEAST_HEIGHT));
+            layout = Self::with_heights(figure, look, &heights);
+        }
+        layout
+    }
+
+    /// The layout with frames of these heights; a frame to scale has the height that its width gives it.
+    fn with_heights(figure: &Figure, look: &Look, heights: &[f64]) -> Self {
+        let (wide, title) = (look.across(), look.title(figure));
+        let mut heights = heights.to_vec();
         let ranges: Vec<_> = figure.panels.iter().map(vertical_range).collect();
-        let vertical: Vec<_> = figure
-            .panels
-            .iter()
-            .zip(&ranges)
-            .zip(&heights)
-            .map(|((panel, range), height)| vertical_ticks(panel, *range, *height))
-            .collect();
         let known = horizontal_range(figure);
         let range = known.unwrap_or(UNKNOWN);
+        let ratio = |index: usize| {
+            let ratio = ranges[index].map_or(f64::NAN, |[low, high]| (high - low) / (range[1] - range[0]));
+            (figure.panels[index].y.to_scale && ratio.is_finite()).then_some(ratio)
+        };
+        let to_scale = |across: f64, index: usize| Some((across * ratio(index)?).clamp(0.08 * wide, 2.0 * wide));
+        for (index, height) in heights.iter_mut().enumerate() {
+            // Nearly; the margins that the ticks need decide.
+            *height = to_scale(0.8 * wide, index).unwrap_or(*height);
+        }
+        let each = || figure.panels.iter().zip(&ranges).zip(&heights);
+        let vertical: Vec<_> = each().map(|((panel, range), height)| vertical_ticks(panel, *range, *height)).collect();
+        let names: Vec<Vec<String>> = figure
+            .panels
+            .iter()
+            .zip(&vertical)
+            .zip(&heights)
+            .map(|((panel, ticks), height)| lines(&name(&panel.y, ticks.exponent), TEXT, *height + BETWEEN))
+            .collect();
+        let shown: Vec<Entry> = match look.legend {
+            LegendPlace::None => Vec::new(),
+            _ => (figure.panels.iter().zip(&ranges).enumerate())
+                .flat_map(|(index, (panel, up))| entries(index, panel, [range, up.unwrap_or(UNKNOWN)]))
+                .collect(),
+        };
+        let together = distinct(figure, &shown);
         let widest = vertical.iter().flat_map(|ticks| &ticks.ticks).map(|tick| width(&tick.label, TEXT));
-        let left = EDGE + widest.fold(20.0, f64::max) + 9.0;
+        let deepest = names.iter().map(Vec::len).max().unwrap_or(0);
+        let left = EDGE + deepest as f64 * LINE + widest.fold(8.0, f64::max) + 9.0;
         let labels = figure.panels.iter().flat_map(|panel| &panel.marks).filter(|mark| !mark.label.is_empty());
-        let right = labels.map(|mark| LEADER + width(&mark.label, TEXT)).fold(12.0, f64::max);
+        let beside_frame = labels.map(|mark| LEADER + width(&mark.label, TEXT)).fold(12.0, f64::max);
+        let column = together.iter().map(|entry| entry.2 + GAP).fold(0.0, f64::max);
+        let beside_frame = beside_frame + if look.legend == LegendPlace::Right { column } else { 0.0 };
         let overhang = |across: f64| {
             let past = |mark: &Mark| GAP + width(&mark.label, TEXT) - across * (1.0 - share(mark.at, range));
             let labelled = figure.marks.iter().filter(|mark| !mark.label.is_empty() && share(mark.at, range) <= 1.0);
             labelled.map(past).fold(0.0, f64::max)
         };
-        let right = wide - EDGE - right.max(overhang(wide - left - right - EDGE));
+        let right = wide - EDGE - beside_frame.max(overhang(wide - left - beside_frame - EDGE));
         let across = (right - left).max(0.3 * wide);
-        for ((panel, height), range_y) in figure.panels.iter().zip(&mut heights).zip(&ranges) {
-            let ratio = range_y.map_or(f64::NAN, |[low, high]| (high - low) / (range[1] - range[0]));
-            if panel.y.to_scale && ratio.is_finite() {
-                *height = (across * ratio).clamp(0.08 * wide, 2.0 * wide);
-            }
+        for (index, height) in heights.iter_mut().enumerate() {
+            *height = to_scale(across, index).unwrap_or(*height);
         }
         let horizontal = horizontal_ticks(&figure.x, known, across);
 
@@ -352,52 +436,93 @@ impl Layout {
         let title = title.into_iter().map(|text| Text { at: [EDGE, down(TITLE + 4.0) - 4.0], text });
         let title: Vec<Text> = title.collect();
         down(if title.is_empty() { 0.0 } else { GAP });
+        let text = |(panel, series, _): Entry, at: [f64; 2]| {
+            let label = &figure.panels[panel].series[series].label;
+            (panel, (series, Text { at: [at[0] + SAMPLE + GAP, at[1]], text: label.clone() }))
+        };
+        let room = wide - 2.0 * EDGE;
+        let (mut legend, mut legend_height) = (Vec::new(), 0.0);
         let mut panels = Vec::new();
         let mut marks = Vec::new();
         for (index, panel) in figure.panels.iter().enumerate() {
             let (range_y, ticks) = (ranges[index].unwrap_or(UNKNOWN), &vertical[index]);
-            let name = name(&panel.y, ticks.exponent);
-            let (entries, rows) = legend(panel, &name, left, left + across);
-            let mut base = down(LINE + 4.0) - 4.0;
-            down((rows - 1) as f64 * LINE + GAP);
+            down(if index == 0 { 0.0 } else { BETWEEN });
+            if look.legend == LegendPlace::Above {
+                let of_panel: Vec<Entry> = shown.iter().copied().filter(|(owner, ..)| *owner == index).collect();
+                let (places, count) = rows(&of_panel, room);
+                let base = down(0.0) + 0.8 * LEGEND_LINE;
+                legend.extend(
+                    places.iter().map(|(entry, x, row)| text(*entry, [EDGE + x, base + *row as f64 * LEGEND_LINE])),
+                );
+                legend_height += count as f64 * LEGEND_LINE;
+                down(count as f64 * LEGEND_LINE + if count > 0 { GAP } else { 0.0 });
+            }
             if index == 0 {
                 let frame = Frame { left, top: 0.0, width: across, height: heights[0] };
-                let (lines, mut rows) = above(&figure.marks, range, &frame);
-                let first = lines.iter().filter_map(|line| line.label.as_ref()).map(|label| label.at[0]);
-                // The axis's name moves into the lowest row of labels where it has room.
-                if rows > 0 && entries.is_empty() && first.fold(wide, f64::min) > EDGE + width(&name, TEXT) + GAP {
-                    rows -= 1;
-                    base += rows as f64 * LINE;
-                }
-                let top = down(rows as f64 * LINE);
+                let rows = above(&figure.marks, range, &frame).1;
+                let top = down(rows as f64 * LINE + if rows > 0 { 3.0 } else { 0.0 });
                 marks = above(&figure.marks, range, &Frame { top, ..frame }).0;
             }
-            let name = Text { at: [EDGE, base], text: name };
-            let entry = |(series, [x, row]): (usize, [f64; 2])| {
-                let at = [x + SAMPLE + GAP, base + row * LINE];
-                (series, Text { at, text: panel.series[series].label.clone() })
-            };
-            let legend = entries.into_iter().map(entry).collect();
             let frame = Frame { left, top: down(0.0), width: across, height: heights[index] };
-            down(heights[index] + GAP);
+            down(heights[index]);
+            let middle = frame.top + 0.5 * frame.height;
+            // Lines of a shorter name stand at the frame, too.
+            let first = EDGE + (deepest - names[index].len()) as f64 * LINE + 0.75 * TEXT;
+            let line = |(line, words): (usize, &String)| Text {
+                at: [first + line as f64 * LINE, middle],
+                text: words.clone(),
+            };
             panels.push(PanelLayout {
                 frame,
                 range: range_y,
                 ticks: ticks.ticks.clone(),
-                name,
-                legend,
+                name: names[index].iter().enumerate().map(line).collect(),
+                legend: Vec::new(),
                 marks: beside(&panel.marks, range_y, &frame),
                 empty: extent(panel, 1).is_none(),
             });
         }
-        let below = down(LINE + 4.0);
-        let text = name(&figure.x, horizontal.exponent);
-        let middle = left + (across - width(&text, TEXT)).max(0.0) / 2.0;
-        let name = Text { at: [middle, down(LINE - 2.0).max(below)], text };
+        let below = down(LINE + 4.0 + GAP);
+        let words = name(&figure.x, horizontal.exponent);
+        let middle = left + (across - width(&words, TEXT)).max(0.0) / 2.0;
+        let middle = middle.min((wide - EDGE - width(&words, TEXT)).max(EDGE));
+        let name = Text { at: [middle, down(LINE - 2.0).max(below)], text: words };
+        match look.legend {
+            LegendPlace::Below if !together.is_empty() => {
+                let (places, count) = rows(&together, room);
+                let base = down(GAP) + 0.8 * LEGEND_LINE;
+                let place =
+                    |(entry, x, row): &(Entry, f64, usize)| text(*entry, [EDGE + x, base + *row as f64 * LEGEND_LINE]);
+                legend.extend(places.iter().map(place));
+                legend_height += count as f64 * LEGEND_LINE;
+                down(count as f64 * LEGEND_LINE);
+            }
+            LegendPlace::Right => {
+                let (x, top) = (wide - EDGE - column + GAP, panels.first().map_or(EDGE, |panel| panel.frame.top));
+                let at = |row: usize| [x, top + (row as f64 + 0.8) * LEGEND_LINE];
+                legend.extend(together.iter().enumerate().map(|(row, entry)| text(*entry, at(row))));
+                let missing = top + together.len() as f64 * LEGEND_LINE - down(0.0);
+                down(missing.max(0.0));
+            }
+            _ => {}
+        }
+        for (panel, entry) in legend {
+            panels[panel].legend.push(entry);
+        }
         let note = lines(&figure.note, TEXT, wide - 2.0 * EDGE);
         down(if note.is_empty() { 0.0 } else { GAP });
         let note = note.into_iter().map(|text| Text { at: [EDGE, down(LINE)], text }).collect();
         let height = down(EDGE).ceil();
-        Self { height, title, range, ticks: horizontal.ticks, name, marks, panels, note }
+        Self { height, title, range, ticks: horizontal.ticks, name, marks, panels, note, legend_height }
     }
+}
+
+/// Entries without those that say the same as one before, in the same colour and with the same sample.
+fn distinct(figure: &Figure, entries: &[Entry]) -> Vec<Entry> {
+    let look = |(panel, series, _): &Entry| {
+        let series = &figure.panels[*panel].series[*series];
+        (&series.label, series.colour, series.data.style())
+    };
+    let is_first = |index: &usize| !entries[..*index].iter().any(|before| look(before) == look(&entries[*index]));
+    (0..entries.len()).filter(is_first).map(|index| entries[index]).collect()
 }

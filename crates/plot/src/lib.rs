@@ -7,6 +7,7 @@ mod density;
 mod element;
 pub mod font;
 pub mod formula;
+mod framed;
 mod grid;
 pub mod layout;
 pub mod look;
@@ -22,7 +23,9 @@ mod words;
 use serde::Serialize;
 
 pub use density::{Cloud, Density};
-pub use look::{Look, Theme};
+pub use element::{dashes, stroke_width};
+pub use look::{LegendPlace, Look, Theme, TitleChoice};
+pub use series::dot_size;
 pub use ticks::TickSpacing;
 
 /// A drawing: panels below each other that share the horizontal axis.
@@ -186,6 +189,11 @@ impl Series {
         Self::new(label, colour, Data::Arrow { points: points.into_iter().collect(), stroke })
     }
 
+    /// A band between two values at each place: `[x, low, high]`; NaN breaks it.
+    pub fn band(label: &str, colour: Colour, edges: impl IntoIterator<Item = [f64; 3]>) -> Self {
+        Self::new(label, colour, Data::Band { edges: edges.into_iter().collect() })
+    }
+
     /// A marker at each point.
     pub fn points(label: &str, colour: Colour, marker: Marker, points: impl Points) -> Self {
         Self::new(label, colour, Data::Points { points: points.into_iter().collect(), marker })
@@ -200,6 +208,7 @@ impl Series {
     pub fn if_any(self) -> Option<Self> {
         let none = match &self.data {
             Data::Words(words) => words.is_empty(),
+            Data::Band { edges } => edges.is_empty(),
             data => data.points().is_some_and(<[_]>::is_empty),
         };
         (!none).then_some(self)
@@ -226,6 +235,10 @@ pub enum Data {
         points: Vec<[f64; 2]>,
         stroke: Stroke,
     },
+    /// Area between two lines: `[x, low, high]` at each place; NaN breaks it.
+    Band {
+        edges: Vec<[f64; 3]>,
+    },
     Points {
         points: Vec<[f64; 2]>,
         marker: Marker,
@@ -250,8 +263,21 @@ impl Data {
             | Self::Area { points, .. }
             | Self::Arrow { points, .. }
             | Self::Points { points, .. } => Some(points),
-            Self::Words(_) | Self::Density(_) | Self::Region { .. } => None,
+            Self::Band { .. } | Self::Words(_) | Self::Density(_) | Self::Region { .. } => None,
         }
+    }
+
+    /// Stroke, marker and strength, without the values: series of the same style have the same sample in a legend.
+    pub fn style(&self) -> (std::mem::Discriminant<Self>, Option<Stroke>, Option<Marker>, f64) {
+        let (stroke, marker, strength) = match self {
+            Self::Line { stroke, .. } | Self::Area { stroke, .. } | Self::Arrow { stroke, .. } => {
+                (Some(*stroke), None, 1.0)
+            }
+            Self::Points { marker, .. } => (None, Some(*marker), 1.0),
+            Self::Region { strength, .. } => (None, None, *strength),
+            Self::Band { .. } | Self::Words(_) | Self::Density(_) => (None, None, 1.0),
+        };
+        (std::mem::discriminant(self), stroke, marker, strength)
     }
 }
 
@@ -300,8 +326,18 @@ pub enum Stroke {
     Dashed,
     /// A dotted stroke.
     Dotted,
+    /// Dashes and dots in turn.
+    DashDotted,
+    /// Dashes, each with two dots after it.
+    DashDotDotted,
     /// A solid stroke, three times as wide.
     Thick,
+    /// A dashed stroke, three times as wide.
+    ThickDashed,
+    /// A dotted stroke, three times as wide.
+    ThickDotted,
+    /// Dashes and dots in turn, three times as wide.
+    ThickDashDotted,
 }
 
 /// Marker at a point.

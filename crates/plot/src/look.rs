@@ -1,17 +1,18 @@
 //! Appearance of a figure on paper or on a screen, whatever its data: its width, font, title and ranges of axes.
 
+use super::Figure;
 use super::font::Fonts;
-use super::layout::{TEXT, WIDTH};
-use super::{Data, Figure, Panel, extent};
 
+/// Default width of the page, in units.
+pub const WIDTH: f64 = 720.0;
+/// Height of most letters, in units.
+pub const TEXT: f64 = 12.5;
 /// Default width of a figure, points, 72 to the inch: that of a page between its margins.
 pub const PAGE: f64 = 480.0;
 /// Least and greatest width of the page, in units; a letter is [`TEXT`] high. A narrower page has no room beside its labels.
 const ACROSS: [f64; 2] = [240.0, 4000.0];
 /// Allowed widths of a figure, points: from a thumb to a poster.
 const WIDTHS: [f64; 2] = [30.0, 2400.0];
-/// Largest ratio of the drawn range to the displayed range: farther out, coordinates are clamped, and lines would change direction.
-const FARTHEST: f64 = 100.0;
 
 /// Medium on which a figure is viewed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -23,11 +24,80 @@ pub enum Theme {
     Print,
 }
 
+impl Theme {
+    /// Returns the theme of this name.
+    pub fn named(name: &str) -> Result<Self, String> {
+        match name {
+            "screen" => Ok(Self::Screen),
+            "print" => Ok(Self::Print),
+            _ => Err("must be screen or print".into()),
+        }
+    }
+}
+
+/// Place of the legend.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LegendPlace {
+    /// No legend.
+    None,
+    /// Above each frame, the series of that frame.
+    #[default]
+    Above,
+    /// Below the figure, all series.
+    Below,
+    /// Right of the frames, all series.
+    Right,
+}
+
+impl LegendPlace {
+    /// Returns the place of this name.
+    pub fn named(name: &str) -> Result<Self, String> {
+        match name {
+            "none" => Ok(Self::None),
+            "above" => Ok(Self::Above),
+            "below" => Ok(Self::Below),
+            "right" => Ok(Self::Right),
+            _ => Err("must be none, above, below or right".into()),
+        }
+    }
+}
+
+/// Title above a figure.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum TitleChoice {
+    /// The figure's own, unless the figure has a width on paper: there the caption says it.
+    #[default]
+    OffPaper,
+    /// The figure's own.
+    Shown,
+    /// No title.
+    Hidden,
+    /// These words.
+    Words(String),
+}
+
+/// Reads a length on paper, such as `85mm`, in points, 72 to the inch.
+pub fn length(text: &str) -> Result<f64, String> {
+    const UNITS: [(&str, f64); 4] = [("mm", 72.0 / 25.4), ("cm", 720.0 / 25.4), ("in", 72.0), ("pt", 1.0)];
+    let found = UNITS.iter().find_map(|(unit, points)| Some((text.trim().strip_suffix(unit)?, points)));
+    let (number, points) = found.ok_or("must be a number with its unit: 85mm, 8.5cm, 3.35in or 240pt")?;
+    let number = number.trim().parse::<f64>().ok().filter(|number| *number > 0.0 && number.is_finite());
+    Ok(number.ok_or("must be a finite number above 0 with its unit")? * points)
+}
+
+/// Checks the ends of an axis: finite numbers, the lower first.
+pub fn ends([low, high]: [f64; 2]) -> Result<[f64; 2], String> {
+    let is_range = low.is_finite() && high.is_finite() && low < high;
+    if is_range { Ok([low, high]) } else { Err("must be LO and HI, LO below HI".into()) }
+}
+
 /// Appearance of a figure.
 #[derive(Clone, Debug, Default)]
 pub struct Look {
     /// Width on paper, points. By default that of the surrounding page; in print, a page's width.
     pub width: Option<f64>,
+    /// Height on paper, points. By default the panels decide.
+    pub height: Option<f64>,
     /// Height of letters on paper, points. By default as in a figure as wide as a page.
     pub size: Option<f64>,
     /// Fonts, which an SVG then embeds. By default an SVG uses the fonts of the surrounding page; a PNG and a PDF use the built-in
@@ -35,8 +105,10 @@ pub struct Look {
     pub fonts: Option<Fonts>,
     /// Medium on which the figure is viewed.
     pub theme: Theme,
-    /// Whether the title is left out.
-    pub untitled: bool,
+    /// Title above the figure.
+    pub title: TitleChoice,
+    /// Place of the legend.
+    pub legend: LegendPlace,
     /// Ends of the horizontal axis, in place of the figure's.
     pub x: Option<[f64; 2]>,
     /// Ends of the first panel's vertical axis, in place of the panel's.
@@ -49,6 +121,13 @@ pub enum LookError {
     /// A width outside the allowed range.
     #[error("a figure {0:.1} pt wide cannot be made: {low} to {high} pt can", low = WIDTHS[0], high = WIDTHS[1])]
     Width(f64),
+    /// A height in which the panels and words have no room, or that panels to scale do not have.
+    #[error("this figure cannot be {height:.1} pt high at a width of {width:.1} pt: it takes {needed:.1} pt")]
+    #[expect(missing_docs, reason = "what the words say")]
+    Height { height: f64, width: f64, needed: f64 },
+    /// A legend that leaves the frames too little room.
+    #[error("the legend leaves no room for the figure in a width of {0:.1} pt: --legend below or above does")]
+    Legend(f64),
     /// Letters that leave no room, or that are too small to read.
     #[error("letters of {size:.2} pt do not fit into a figure {width:.1} pt wide: {low:.2} to {high:.1} pt do")]
     #[expect(missing_docs, reason = "what the words say")]
@@ -69,12 +148,17 @@ pub enum LookError {
 impl Look {
     /// Whether the look asks for a length on paper.
     pub(super) fn is_sized(&self) -> bool {
-        self.width.is_some() || self.size.is_some() || self.theme == Theme::Print
+        self.width.is_some() || self.height.is_some() || self.size.is_some() || self.theme == Theme::Print
     }
 
     /// Title above the figure.
-    pub(super) fn title<'a>(&self, figure: &'a Figure) -> &'a str {
-        if self.untitled { "" } else { &figure.title }
+    pub(super) fn title<'a>(&'a self, figure: &'a Figure) -> &'a str {
+        match &self.title {
+            TitleChoice::OffPaper if self.width.is_some() => "",
+            TitleChoice::OffPaper | TitleChoice::Shown => &figure.title,
+            TitleChoice::Hidden => "",
+            TitleChoice::Words(words) => words,
+        }
     }
 
     /// Width on paper, points.
@@ -95,6 +179,9 @@ impl Look {
         if !(WIDTHS[0]..=WIDTHS[1]).contains(&width) {
             return Err(LookError::Width(width));
         }
+        if let Some(height) = self.height.filter(|height| !(WIDTHS[0]..=WIDTHS[1]).contains(height)) {
+            return Err(LookError::Height { height, width, needed: height.clamp(WIDTHS[0], WIDTHS[1]) });
+        }
         let [high, low] = ACROSS.map(|across| TEXT * width / across);
         let size = TEXT * width / self.across();
         if !(ACROSS[0]..=ACROSS[1]).contains(&self.across()) {
@@ -102,38 +189,4 @@ impl Look {
         }
         Ok(self)
     }
-
-    /// Restricts the figure to the requested ranges; the vertical one applies to the first panel only.
-    pub fn framed(&self, mut figure: Figure) -> Result<Figure, LookError> {
-        if let Some(shown) = self.x {
-            let drawn = extent(figure.panels.iter().flat_map(|panel| reach(panel, 0)));
-            figure.x.range = Some(within("--x-range", shown, drawn)?);
-        }
-        if let Some((shown, panel)) = self.y.zip(figure.panels.first_mut()) {
-            panel.y.range = Some(within("--y-range", shown, extent(reach(panel, 1)))?);
-        }
-        Ok(figure)
-    }
-}
-
-/// Drawable data of a panel in one direction, from which its extent follows.
-fn reach(panel: &Panel, direction: usize) -> Vec<f64> {
-    let of = |data: &Data| match data {
-        Data::Density(cells) | Data::Region { cells, .. } => cells.ranges()[direction].to_vec(),
-        data => data.points().unwrap_or_default().iter().map(|point| point[direction]).collect(),
-    };
-    let all = panel.series.iter().flat_map(|series| of(&series.data));
-    all.filter(|value| value.abs() < super::layout::LARGEST).collect()
-}
-
-fn within(axis: &'static str, shown: [f64; 2], drawn: [f64; 2]) -> Result<[f64; 2], LookError> {
-    let [low, high] = drawn;
-    // Without data, any range will do.
-    if low <= high && (shown[1] < low || high < shown[0]) {
-        return Err(LookError::Aside { axis, shown, drawn });
-    }
-    if high - low > FARTHEST * (shown[1] - shown[0]) {
-        return Err(LookError::Narrow { axis, shown, drawn });
-    }
-    Ok(shown)
 }

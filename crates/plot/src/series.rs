@@ -3,7 +3,7 @@
 use std::fmt::{self, Write};
 
 use super::density::{Density, SHADES, Shades};
-use super::element::{FAR, fill, markers, number, stroked};
+use super::element::{FAR, fill, markers, number, rim, stroke_width, stroked};
 use super::grid::Grid;
 use super::layout::share;
 use super::sheet::Sheet;
@@ -16,12 +16,25 @@ const MOST_STEPS: usize = 100_000_000;
 /// Most occupied cells that are drawn as dots; with more, an image is embedded.
 const MOST_DOTS: usize = 25_000;
 
+/// Diameter of the dots for so many occupied cells. A machine with few motions has some hundred; smaller dots would vanish in print.
+pub fn dot_size(cells: usize) -> f64 {
+    match cells {
+        ..40 => 5.0,
+        40..400 => 3.4,
+        400..2500 => 2.4,
+        2500..6000 => 1.7,
+        _ => 1.25,
+    }
+}
+
 /// Inside of a frame, with its upper left corner at the origin.
 pub(super) struct Page {
     pub(super) width: f64,
     pub(super) height: f64,
     pub(super) x: [f64; 2],
     pub(super) y: [f64; 2],
+    /// Whether lines, and markers, have a rim in the colour of the paper: regions are behind them, or thick lines behind markers.
+    pub(super) is_rimmed: [bool; 2],
 }
 
 impl Page {
@@ -39,10 +52,11 @@ impl Page {
                 self.line(out, points, *stroke, colour, false)?;
                 self.heads(out, points, colour)
             }
+            Data::Band { edges } => self.band(out, edges, colour),
             Data::Points { points, marker } => self.points(out, points, *marker, colour),
-            Data::Words(words) => {
-                words.iter().try_for_each(|word| words::write(out, word, self.at(word.at), self.height, colour))
-            }
+            Data::Words(words) => words
+                .iter()
+                .try_for_each(|word| words::write(out, word, self.at(word.at), [self.width, self.height], colour)),
             Data::Density(density) => self.density(out, density, colour),
             Data::Region { cells, .. } if cells.occupied() == 0 => Ok(()),
             Data::Region { cells, strength } => {
@@ -80,7 +94,32 @@ impl Page {
         if !area.is_empty() {
             writeln!(out, r#"<path d="{area}" fill-opacity="0.22" {}/>"#, fill(colour))?;
         }
-        if edge.is_empty() { Ok(()) } else { stroked(out, &edge, how, colour) }
+        if edge.is_empty() {
+            return Ok(());
+        }
+        if self.is_rimmed[0] {
+            rim(out, &edge, stroke_width(how))?;
+        }
+        stroked(out, &edge, how, colour)
+    }
+
+    /// Draws the area between two lines, with a thin edge so that a narrow band is seen beside the line in its middle.
+    fn band(&self, out: &mut Sheet, edges: &[[f64; 3]], colour: Colour) -> fmt::Result {
+        let side = |index: usize| move |edge: &[f64; 3]| self.at([edge[0], edge[index]]);
+        let mut path = String::new();
+        for run in edges.split(|edge| edge.iter().any(|part| part.is_nan())).filter(|run| !run.is_empty()) {
+            let around = run.iter().map(side(1)).chain(run.iter().rev().map(side(2))).filter(|at| !at[0].is_nan());
+            for (index, [x, y]) in around.enumerate() {
+                write!(path, "{}{} {}", if index == 0 { 'M' } else { 'L' }, number(x), number(y))?;
+            }
+            path.push('z');
+        }
+        if path.len() < 2 {
+            return Ok(());
+        }
+        let (class, light, _) = colour.shades();
+        let look = format!(r#"class="f-{class} s-{class}" fill="{light}" stroke="{light}""#);
+        writeln!(out, r#"<path d="{path}" fill-opacity="0.35" stroke-opacity="0.6" stroke-width="0.8" {look}/>"#)
     }
 
     /// Draws an arrowhead at the end of each run of a line.
@@ -122,7 +161,7 @@ impl Page {
                 return self.density(out, &grid, colour);
             }
         }
-        if places.is_empty() { Ok(()) } else { markers(out, &places, marker, colour) }
+        if places.is_empty() { Ok(()) } else { markers(out, &places, (marker, colour), self.is_rimmed[1]) }
     }
 
     fn density(&self, out: &mut Sheet, density: &Density, colour: Colour) -> fmt::Result {
@@ -133,7 +172,7 @@ impl Page {
         }
     }
 
-    /// Few cells: a dot each, larger if there are fewer.
+    /// Few cells: a dot each.
     fn dots(&self, density: &Density, cells: usize) -> Grid {
         let [x, y] = density.ranges();
         let [columns, rows] = density.cells();
@@ -147,12 +186,7 @@ impl Page {
             let dot = self.at([middle(cell % columns, columns, x), middle(cell / columns, rows, y)]);
             at[usize::from(shade - 1)].push(dot.map(|part| (10.0 * part).round() as i64));
         }
-        let size = match cells {
-            ..40 => 5.0,
-            40..4000 => 1.7,
-            _ => 1.25,
-        };
-        Grid::Dots { at, size }
+        Grid::Dots { at, size: dot_size(cells) }
     }
 
     /// Many cells: the grid itself, stretched over the frame.

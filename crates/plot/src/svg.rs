@@ -8,7 +8,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use resvg::usvg::Tree;
 
-use super::element::{escaped, fill, markers, number, stroke, stroked};
+use super::element::{escaped, fill, markers, number, stroke, stroke_width, stroked};
 use super::font::{cut, used};
 use super::layout::{Frame, Layout, MarkLine, PanelLayout, SAMPLE, TEXT, TITLE, Text, share};
 use super::look::{Look, Theme};
@@ -16,6 +16,8 @@ use super::series::Page;
 use super::sheet::{Layer, Sheet};
 use super::{Colour, Data, Figure, Marker, Panel, Series};
 
+/// Width of strokes above which a marker on one would not be seen.
+const THICK: f64 = 3.0;
 /// Colour of the paper on a dark screen.
 const DARK_PAPER: &str = "#15171a";
 /// Filter for images, whose colours are fixed: on a dark screen, light and dark are exchanged, and hues stay.
@@ -71,7 +73,7 @@ pub(super) fn document(figure: &Figure, look: &Look) -> Result<String, fmt::Erro
 /// Writes the figure in layers, with dense grids among them if they are kept `apart`, else as one document.
 pub(super) fn write(figure: &Figure, look: &Look, apart: bool) -> Result<Vec<Layer>, fmt::Error> {
     let wide = look.across();
-    let layout = Layout::new(figure, look.title(figure), wide);
+    let layout = Layout::new(figure, look);
     let height = layout.height;
     // The renderer scales separate layers.
     let size = match look.is_sized() && !apart {
@@ -123,7 +125,10 @@ fn style(out: &mut Sheet) -> fmt::Result {
 
 fn panel(out: &mut Sheet, panel: &Panel, layout: &Layout, place: &PanelLayout) -> fmt::Result {
     let frame = &place.frame;
-    let page = Page { width: frame.width, height: frame.height, x: layout.range, y: place.range };
+    let over_regions = panel.series.iter().any(|series| matches!(series.data, Data::Region { .. }));
+    let is_thick = |series: &Series| series.data.style().1.is_some_and(|stroke| stroke_width(stroke) > THICK);
+    let is_rimmed = [over_regions, over_regions || panel.series.iter().any(is_thick)];
+    let page = Page { width: frame.width, height: frame.height, x: layout.range, y: place.range, is_rimmed };
     let Frame { left, top, width, height } = *frame;
     out.open_frame([left, top, width, height]);
     let [left, top, width, height] = [left, top, width, height].map(number);
@@ -162,7 +167,10 @@ fn panel(out: &mut Sheet, panel: &Panel, layout: &Layout, place: &PanelLayout) -
         }
     }
     line(out, &path, false, Colour::Ink)?;
-    label(out, &place.name)?;
+    for Text { at: [x, y], text: words } in &place.name {
+        let turned = format!(r#" text-anchor="middle" transform="rotate(-90 {} {})""#, number(*x), number(*y));
+        text(out, [*x, *y], &turned, words)?;
+    }
     for (index, words) in &place.legend {
         sample(out, &panel.series[*index], [words.at[0] - SAMPLE - 6.0, words.at[1] - 0.35 * TEXT])?;
         label(out, words)?;
@@ -212,13 +220,17 @@ fn sample(out: &mut Sheet, series: &Series, [x, y]: [f64; 2]) -> fmt::Result {
             writeln!(out, r#"<path d="{block}" fill-opacity="0.22" {}/>"#, fill(colour))?;
             stroked(out, &format!("M{} {}h{SAMPLE}", number(x), number(y - 1.5)), *stroke, colour)
         }
+        Data::Band { .. } => {
+            let block = format!("M{} {}h{SAMPLE}v8h-{SAMPLE}z", number(x), number(y - 4.0));
+            writeln!(out, r#"<path d="{block}" fill-opacity="0.35" {}/>"#, fill(colour))
+        }
         Data::Points { marker, .. } => {
             let tip = if *marker == Marker::Below { y - 3.0 } else { y };
-            markers(out, &[[x + SAMPLE / 2.0, tip]], *marker, colour)
+            markers(out, &[[x + SAMPLE / 2.0, tip]], (*marker, colour), false)
         }
         Data::Density(_) => {
             let dots = [0.2, 0.5, 0.8].map(|share| [x + share * SAMPLE, y]);
-            markers(out, &dots, Marker::Dot, colour)
+            markers(out, &dots, (Marker::Dot, colour), false)
         }
     }
 }

@@ -22,6 +22,11 @@ const PARTS_OF_A_CIRCLE: [f64; 8] = [10.0, 15.0, 30.0, 45.0, 60.0, 90.0, 180.0, 
 /// Tolerance for ticks outside the range, as a share of a step; it allows for rounding.
 const ROUNDING: f64 = 1e-6;
 
+/// Labels that an axis has at least: two do not show whether a scale is even.
+pub const LEAST_LABELS: usize = 3;
+/// Steps between 1 and 10 that are tried in turn where the usual steps give too few labels.
+const CLOSER: [&[f64]; 3] = [&[1.0, 2.0, 5.0], &[2.5, 4.0], &[1.5, 3.0, 6.0, 8.0]];
+
 /// Values above this, or all below [`SMALL`], are shown with a power of ten beside the unit.
 const LARGE: f64 = 1e5;
 const SMALL: f64 = 1e-2;
@@ -66,9 +71,51 @@ pub fn ticks(range: [f64; 2], spacing: TickSpacing, most: usize, fits: impl Fn(&
     }
 }
 
-/// The finest powers of ten and their multiples that fit, in a range of exponents.
-fn powers([low, high]: [f64; 2], most: usize, fits: impl Fn(&[Tick]) -> bool) -> Vec<Tick> {
-    const MULTIPLES: [&[i32]; 3] = [&[1, 2, 3, 4, 5, 6, 7, 8, 9], &[1, 2, 5], &[1]];
+/// Computes the [`ticks`] of an axis with at least [`LEAST_LABELS`] labels, if it has room for them. Where the usual ticks are fewer, the
+/// coarsest ticks are taken that are enough and for which `closer` says that the labels do not touch.
+pub fn enough_ticks(
+    range: [f64; 2],
+    spacing: TickSpacing,
+    most: usize,
+    fits: impl Fn(&[Tick]) -> bool,
+    closer: impl Fn(&[Tick]) -> bool,
+) -> Ticks {
+    let few = ticks(range, spacing, most, fits);
+    if few.ticks.len() >= LEAST_LABELS || spacing == TickSpacing::Nothing {
+        return few;
+    }
+    let is_logarithmic = spacing == TickSpacing::Logarithmic;
+    if is_logarithmic {
+        let mut ticks: Vec<Tick> = Vec::new();
+        for tick in multiples_of_powers(range, &[1, 2, 3, 4, 5, 6, 7, 8, 9], 1) {
+            let is_apart = ticks.last().is_none_or(|last| closer(&[last.clone(), tick.clone()]));
+            ticks.extend(is_apart.then_some(tick));
+        }
+        if ticks.len() >= LEAST_LABELS {
+            return Ticks { ticks, exponent: 0 };
+        }
+    }
+    let [low, high] = if is_logarithmic { range.map(|end| libm::pow(10.0, end)) } else { range };
+    let span = high - low;
+    if !(span > 0.0 && span.is_finite()) {
+        return few;
+    }
+    let power = libm::log10(span).floor() as i32;
+    let exponent = exponent(low.abs().max(high.abs()));
+    let parts = |spacing| if spacing == TickSpacing::Degrees { &PARTS_OF_A_CIRCLE[..] } else { &[] };
+    let circle = parts(spacing).iter().rev().copied();
+    let decimal = CLOSER.iter().flat_map(|steps| {
+        let of = move |power: i32| steps.iter().rev().map(move |step| step * libm::pow(10.0, f64::from(power)));
+        (power - 2..=power).rev().flat_map(of)
+    });
+    let place = |tick: Tick| Tick { at: if is_logarithmic { libm::log10(tick.at) } else { tick.at }, ..tick };
+    let at = |step: f64| multiples(low, high, step, exponent).into_iter().map(place).collect::<Vec<_>>();
+    let found = circle.chain(decimal).map(at).find(|ticks| ticks.len() >= LEAST_LABELS && closer(ticks));
+    found.map_or(few, |ticks| Ticks { ticks, exponent })
+}
+
+/// Multiples of every so many powers of ten, in a range of exponents.
+fn multiples_of_powers([low, high]: [f64; 2], multiples: &[i32], every: usize) -> Vec<Tick> {
     /// Exponents of powers of ten that are written in full.
     const PLAIN: std::ops::Range<i32> = -4..5;
     let decades = (low.floor() as i32)..=(high.ceil() as i32);
@@ -77,21 +124,19 @@ fn powers([low, high]: [f64; 2], most: usize, fits: impl Fn(&[Tick]) -> bool) ->
         1 => unit("", power),
         digit => format!("{digit}·{}", unit("", power)),
     };
-    let of = |multiples: &[i32], every: usize| -> Vec<Tick> {
-        let powers = decades.clone().filter(|power| power.rem_euclid(every as i32) == 0);
-        let all = powers.flat_map(|power| multiples.iter().map(move |digit| (*digit, power)));
-        let tick = |(digit, power): (i32, i32)| {
-            let at = f64::from(power) + libm::log10(f64::from(digit));
-            Tick { at: at.clamp(low, high), label: label(digit, power) }
-        };
-        let is_inside = |(digit, power): &(i32, i32)| {
-            let at = f64::from(*power) + libm::log10(f64::from(*digit));
-            (low - ROUNDING..=high + ROUNDING).contains(&at)
-        };
-        all.filter(is_inside).map(tick).collect()
-    };
-    let finest = MULTIPLES.iter().map(|multiples| of(multiples, 1));
-    let coarser = (2..=decades.clone().count().max(2)).map(|every| of(&[1], every));
+    let powers = decades.filter(|power| power.rem_euclid(every as i32) == 0);
+    let all = powers.flat_map(|power| multiples.iter().map(move |digit| (*digit, power)));
+    let place = |(digit, power): (i32, i32)| f64::from(power) + libm::log10(f64::from(digit));
+    let inside = all.filter(|of| (low - ROUNDING..=high + ROUNDING).contains(&place(*of)));
+    inside.map(|of| Tick { at: place(of).clamp(low, high), label: label(of.0, of.1) }).collect()
+}
+
+/// The finest powers of ten and their multiples that fit, in a range of exponents.
+fn powers([low, high]: [f64; 2], most: usize, fits: impl Fn(&[Tick]) -> bool) -> Vec<Tick> {
+    const MULTIPLES: [&[i32]; 3] = [&[1, 2, 3, 4, 5, 6, 7, 8, 9], &[1, 2, 5], &[1]];
+    let decades = (high.ceil() - low.floor()) as usize + 1;
+    let finest = MULTIPLES.iter().map(|multiples| multiples_of_powers([low, high], multiples, 1));
+    let coarser = (2..=decades.max(2)).map(|every| multiples_of_powers([low, high], &[1], every));
     finest.chain(coarser).find(|ticks| ticks.len() <= most && fits(ticks)).unwrap_or_default()
 }
 
@@ -133,9 +178,11 @@ fn multiples(low: f64, high: f64, step: f64, exponent: i32) -> Vec<Tick> {
     (0..count).map(tick).collect()
 }
 
-/// Decimals that show a step of 1, 2 or 5 times a power of ten, or of whole degrees.
+/// Decimals that show a step of one or two digits, or of whole degrees.
 fn decimals(step: f64) -> usize {
-    (-(libm::log10(step) + ROUNDING).floor()).clamp(0.0, 17.0) as usize
+    let first = (-(libm::log10(step) + ROUNDING).floor()).clamp(0.0, 17.0) as usize;
+    let shown = step * libm::pow(10.0, first as f64);
+    if step < 10.0 && (shown - libm::round(shown)).abs() > ROUNDING { first + 1 } else { first }
 }
 
 /// Text in brackets beside an axis name: ten with `exponent` in raised digits, and the unit.

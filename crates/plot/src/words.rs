@@ -4,7 +4,7 @@ use std::fmt::{self, Write};
 
 use super::element::{escaped, fill, number};
 use super::formula::{Part, sentence};
-use super::layout::TEXT;
+use super::layout::{TEXT, width};
 use super::{Beside, Colour, Label};
 
 /// Distance from a point to the word beside it.
@@ -12,11 +12,18 @@ const AWAY: f64 = 7.0;
 /// Vertical shift of lowered and raised letters.
 const SHIFT: f64 = 4.0;
 
-/// Writes a word beside a point within the height of a frame; writes nothing if the point is NaN.
-pub(super) fn write(out: &mut impl Write, word: &Label, [x, y]: [f64; 2], height: f64, colour: Colour) -> fmt::Result {
+/// Writes a word beside a point within a frame of this width and height; writes nothing if the point is NaN.
+pub(super) fn write(
+    out: &mut impl Write,
+    word: &Label,
+    [x, y]: [f64; 2],
+    [across, height]: [f64; 2],
+    colour: Colour,
+) -> fmt::Result {
     if x.is_nan() || y.is_nan() {
         return Ok(());
     }
+    let is_across = (0.0..=across).contains(&x);
     let (x, y, anchor) = match within(word.beside, y, height) {
         Beside::Right => (x + AWAY, y + 0.35 * TEXT, "start"),
         Beside::Left => (x - AWAY, y + 0.35 * TEXT, "end"),
@@ -27,6 +34,14 @@ pub(super) fn write(out: &mut impl Write, word: &Label, [x, y]: [f64; 2], height
         Beside::BelowRight => (x + 0.7 * AWAY, y + 0.7 * AWAY + 0.75 * TEXT, "start"),
         Beside::BelowLeft => (x - 0.7 * AWAY, y + 0.7 * AWAY + 0.75 * TEXT, "end"),
     };
+    // A word that the frame would cut is pushed inside, where the point itself is.
+    let wide = width(&word.text, TEXT).min(across);
+    let inside = match anchor {
+        "start" => x.min(across - wide),
+        "end" => x.max(wide),
+        _ => x.clamp(0.5 * wide, across - 0.5 * wide),
+    };
+    let x = if is_across { inside } else { x };
     let (x, y, text) = (number(x), number(y), marked_up(&word.text));
     let place = format!(r#"x="{x}" y="{y}" text-anchor="{anchor}""#);
     // The rim is a separate text, because not every reader supports paint-order.

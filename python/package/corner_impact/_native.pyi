@@ -129,6 +129,19 @@ class Model:
         orbits: bool = False,
     ) -> _Document: ...
     def _repr_svg_(self) -> str: ...
+    def cam_picture(
+        self,
+        *,
+        width: str | None = None,
+        height: str | None = None,
+        size: str | None = None,
+        font: str | None = None,
+        title: bool | str | None = None,
+        legend: str | None = None,
+        theme: str | None = None,
+        x_range: tuple[float, float] | None = None,
+        y_range: tuple[float, float] | None = None,
+    ) -> str: ...
     def __eq__(self, other: object, /) -> bool: ...
     def __hash__(self, /) -> int: ...
     def __reduce__(self) -> tuple[Any, tuple[str, str]]: ...

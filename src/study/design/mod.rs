@@ -2,6 +2,7 @@
 //! beyond, and what must be changed.
 
 pub mod contact;
+pub mod denser;
 pub mod loads;
 pub mod needs;
 
@@ -46,6 +47,8 @@ pub struct Design {
     pub round: Vec<[f64; 2]>,
     /// Loads of the attractors at values where the follower leaves the cam.
     pub loads: Vec<Loads>,
+    /// Forces and loads for a picture, at more values than the table's; none if no picture is asked for.
+    pub curves: Option<LoadCurves>,
     /// The attractors that these loads belong to.
     pub attractors: Vec<AttractorsAt>,
     /// Budget of the runs.
@@ -71,6 +74,30 @@ pub struct ForceAt {
     pub error: Option<f64>,
     /// Largest force round the cam.
     pub largest: f64,
+}
+
+/// Forces and loads at the values of a picture.
+#[derive(Clone, Debug, Default)]
+pub struct LoadCurves {
+    /// Least force at each value.
+    pub forces: Vec<ForceAt>,
+    /// Loads at values where the follower leaves the cam. Uncertainties between the values of the table are interpolated.
+    pub loads: Vec<Loads>,
+    /// Uncertainty of the largest force on the cam at each value of the table.
+    pub largest_errors: Vec<(f64, Option<[f64; 1]>)>,
+}
+
+impl LoadCurves {
+    /// Returns the largest contact force at each value, with its uncertainty: of the cam as long as the follower stays on it, else of the
+    /// motions, without impacts.
+    pub fn greatest_forces(&self) -> Vec<(Place, f64, Option<f64>)> {
+        let parted = |place: Place| self.loads.iter().any(|loads| loads.place == place);
+        let error = |at: &ForceAt| denser::errors(&self.largest_errors, at.place.across()).map(|[error]| error);
+        let on_cam = self.forces.iter().filter(|at| !parted(at.place));
+        let on_cam = on_cam.map(|at| (at.place, at.largest, error(at)));
+        let off_cam = self.loads.iter().map(|loads| (loads.place, loads.force, loads.errors.map(|errors| errors[4])));
+        on_cam.chain(off_cam).collect()
+    }
 }
 
 document!(ForceAt as it {
@@ -238,6 +265,8 @@ pub struct Asked {
     pub starts: Option<Vec<Start>>,
     /// Budget of the runs; none for the usual one.
     pub budget: Option<Budget>,
+    /// Number of values of the curves in a picture; none if there is no picture.
+    pub drawn: Option<usize>,
 }
 
 /// A place where the follower may leave a measured cam first.
@@ -279,6 +308,13 @@ impl Design {
 
     fn told_round(&self) -> Vec<RoundEntry> {
         self.round.iter().map(|[angle, force]| RoundEntry { cam_angle_rad: *angle, force_n: *force }).collect()
+    }
+
+    /// Returns what a picture of forces and loads shows.
+    pub fn load_curves(&self) -> LoadCurves {
+        let table =
+            || LoadCurves { forces: self.forces.clone(), loads: self.loads.clone(), largest_errors: Vec::new() };
+        self.curves.clone().unwrap_or_else(table)
     }
 
     /// Converts a force to the displayed unit.
@@ -366,7 +402,7 @@ pub fn design(model: &Model, asked: &Asked, watch: &dyn Watch) -> Result<Design,
     // If another number varies, the cam changes with it, and the uncertainty of the loads is not known.
     let noisy = likely.as_ref().filter(|likely| likely.best.is_some() && over.is_speed());
     let parts_at = |contact: &Contact<'_>| if over.is_speed() { separation } else { contact.separation() };
-    let force_at = |value: &f64| -> Result<Option<(ForceAt, bool)>, StudyError> {
+    let force_at = |value: &f64, noisy: Option<&PlausibleCams>| -> Result<Option<(ForceAt, bool)>, StudyError> {
         let (model, cam) = over.model(*value)?;
         let (contact, place) = (Contact::new(&cam, model.follower), over.place(*value));
         let parts = parts_at(&contact);
@@ -382,7 +418,7 @@ pub fn design(model: &Model, asked: &Asked, watch: &dyn Watch) -> Result<Design,
         let error = error.map(|[error]| error).filter(|error| *error > rounding);
         Ok(Some((ForceAt { place, least, error, largest }, is_parted)))
     };
-    let at_each = values.iter().map(force_at).collect::<Result<Vec<_>, _>>()?;
+    let at_each = values.iter().map(|value| force_at(value, noisy)).collect::<Result<Vec<_>, _>>()?;
     // Where the cam's velocity jumps there is no contact force, and the follower leaves the cam at any speed.
     let parted = values.iter().zip(&at_each).filter(|(_, at)| at.is_none_or(|(_, is_parted)| is_parted));
     let parted: Vec<f64> = parted.map(|(value, _)| *value).collect();
@@ -413,6 +449,39 @@ pub fn design(model: &Model, asked: &Asked, watch: &dyn Watch) -> Result<Design,
     let found = parted.par_iter().map(|value| pieces.each(|| with_errors(value))).collect::<Result<Vec<_>, _>>()?;
     let (loads, attractors): (Vec<Loads>, Vec<AttractorsAt>) = found.into_iter().unzip();
     let forces: Vec<ForceAt> = at_each.iter().flatten().map(|(at, _)| *at).collect();
+    let spacing = asked.over.as_ref().map_or(Spacing::Linear, |axis| axis.spacing);
+    let curves = |count: usize| -> Result<LoadCurves, StudyError> {
+        let more = denser::between(&values, spacing, count);
+        let known: Vec<_> = forces.iter().map(|at| (at.place.across(), at.error.map(|error| [error]))).collect();
+        let known_loads: Vec<_> = loads.iter().map(|loads| (loads.place.across(), loads.errors)).collect();
+        let pieces = Pieces::new(watch, "loads between the values of the table", more.len());
+        let at = |value: &f64| -> Result<(Option<ForceAt>, Option<Loads>), StudyError> {
+            let found = force_at(value, None)?;
+            let force = found.map(|(at, _)| ForceAt { error: denser::errors(&known, *value).map(|[it]| it), ..at });
+            if found.is_some_and(|(_, is_parted)| !is_parted) {
+                return Ok((force, None));
+            }
+            let loads = loads_at(*value, unjudged)?.0;
+            Ok((force, Some(Loads { errors: denser::errors(&known_loads, *value), ..loads })))
+        };
+        let found: Vec<_> =
+            more.par_iter().map(|value| pieces.each(|| at(value))).collect::<Result<Vec<_>, StudyError>>()?;
+        let largest_error = |at: &ForceAt| {
+            let rpm = at.place.rpm;
+            let of = |model: &Model, cam: &Cam| Some([Contact::new(cam, model.follower).largest(rpm)]);
+            (at.place.across(), noisy.and_then(|likely| likely.error([at.largest], of)))
+        };
+        let largest_errors = forces.iter().map(largest_error).collect();
+        let mut curves = LoadCurves { forces: forces.clone(), loads: loads.clone(), largest_errors };
+        for (force, loads) in found {
+            curves.forces.extend(force);
+            curves.loads.extend(loads);
+        }
+        curves.forces.sort_by(|one, other| one.place.across().total_cmp(&other.place.across()));
+        curves.loads.sort_by(|one, other| one.place.across().total_cmp(&other.place.across()));
+        Ok(curves)
+    };
+    let curves = asked.drawn.filter(|_| values.len() > 1).map(curves).transpose()?;
     let passed = |(limit, value): &(Load, f64)| -> Result<Passed, StudyError> {
         let most = limit.inside(&model.units, *value);
         // Up to the separation, the load is the contact force of the cam.
@@ -489,10 +558,11 @@ pub fn design(model: &Model, asked: &Asked, watch: &dyn Watch) -> Result<Design,
         separation,
         places,
         measured: likely.map(|likely| likely.measured),
-        over: over.varied(asked.over.as_ref().map_or(Spacing::Linear, |axis| axis.spacing)),
+        over: over.varied(spacing),
         forces,
         round,
         loads,
+        curves,
         attractors,
         budget,
         limits,

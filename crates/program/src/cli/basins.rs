@@ -117,7 +117,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
             let grid = grid.ok_or_else(|| CommandError::Words("a picture is of a grid".into()))?;
             Ok(basins_figure(&title, &grid, &basins, &section.border(&grid, &basins)))
         };
-        Target::create(path, &mut *session.out, arguments.picture.look()?)?.fill(&model.units, table, picture)?;
+        Target::create(path, &mut *session.out, arguments.picture.request()?)?.fill(&model.units, table, picture)?;
     }
     let summary = Summary::new(&model, rpm, basins, wall_s);
     if !to_standard {
@@ -155,7 +155,7 @@ fn shares(
     });
     if let Some(path) = &arguments.out {
         let table = || csv::basins_over(&found);
-        Target::create(path, &mut *session.out, arguments.picture.look()?)?
+        Target::create(path, &mut *session.out, arguments.picture.request()?)?
             .fill(&model.units, table, || Ok(shares_figure(&found)))?;
     }
     let failed = || found.at.iter().filter_map(|at| Some((at, at.failure()?)));

@@ -35,8 +35,8 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let cam = Cam::new(&model)?;
     let sheet = CamSheet::new(&model, &cam, arguments.order)?;
     if let Some(path) = &arguments.out {
-        let canvas = picture::Canvas::create(path, arguments.picture.look()?)?;
-        canvas.draw(cam_figure(&cam, &model.name), &model.units)?.commit()?;
+        let canvas = picture::Canvas::create(path, arguments.picture.request()?)?;
+        canvas.write(cam_figure(&cam, &model.name), &model.units)?;
     }
     drop(progress);
     session.answer(&sheet, &arguments.answer)

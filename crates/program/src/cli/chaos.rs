@@ -36,14 +36,14 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
     let model = arguments.model.read_as_drawn(session)?;
-    let canvas = arguments.out.as_ref().map(|path| Canvas::create(path, arguments.picture.look()?)).transpose()?;
+    let canvas = arguments.out.as_ref().map(|path| Canvas::create(path, arguments.picture.request()?)).transpose()?;
     let found = watched("looking for h-sets", |watch| chaos(&model, arguments.rpm, arguments.trapping, watch))?;
     match (canvas, found.theorems.first()) {
         (Some(canvas), Some(theorem)) => {
             let rpm = theorem.set.rpm[0];
             let title = format!("{} at {rpm} rpm: strips of N, and where so many impacts carry them", model.name);
             let figure = chaos_figure(&title, &theorem.set, &portrait(&model, &theorem.set)?);
-            canvas.draw(figure, &model.units)?.commit()?;
+            canvas.write(figure, &model.units)?;
         }
         (Some(_), None) => session.note("nothing is proved, so nothing is drawn"),
         (None, _) => {}

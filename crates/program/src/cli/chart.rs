@@ -164,7 +164,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         None => run()?,
         Some(path) => {
             // Begun before the work: a name that cannot be is told at once.
-            let target = Target::create(path, &mut *session.out, arguments.picture.look()?)?;
+            let target = Target::create(path, &mut *session.out, arguments.picture.request()?)?;
             let found = run()?;
             let model = &found.chart.model;
             let wanted = Search { revolutions: 1, impacts: None };

@@ -75,9 +75,9 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         longest_step: arguments.step,
         most_points: arguments.points as usize,
     };
-    let (look, columns) = (arguments.picture.look()?, session.columns_err());
+    let (request, columns) = (arguments.picture.request()?, session.columns_err());
     let out = table(arguments.out.as_ref(), arguments.json)?;
-    let target = out.map(|path| Target::create(path, &mut *session.out, look)).transpose()?;
+    let target = out.map(|path| Target::create(path, &mut *session.out, request)).transpose()?;
     let wanted = Search { revolutions: arguments.revolutions, impacts: arguments.impacts };
     let found = watched("following branches", |watch| {
         branches(&model, arguments.rpm, &wanted, following, arguments.all, watch)

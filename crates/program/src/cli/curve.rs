@@ -70,9 +70,9 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let model = arguments.model.read_as_drawn(session)?;
     let (name, range) = &arguments.over;
     let parameter = Parameter::named(&model, name)?;
-    let (look, columns) = (arguments.picture.look()?, session.columns_err());
+    let (request, columns) = (arguments.picture.request()?, session.columns_err());
     let out = table(arguments.out.as_ref(), arguments.json)?;
-    let target = out.map(|path| Target::create(path, &mut *session.out, look)).transpose()?;
+    let target = out.map(|path| Target::create(path, &mut *session.out, request)).transpose()?;
     let wanted = Search { revolutions: arguments.revolutions, impacts: arguments.impacts };
     let following = Following { parameter, range: *range, longest_step: arguments.step, most_points: MOST_POINTS };
     let events = if arguments.events.is_empty() { &Bifurcation::ALL } else { arguments.events.as_slice() };

@@ -11,6 +11,7 @@ use super::{AnswerArguments, CommandError, Exit, ModelArgument, Session, progres
 use crate::figures::design_figure;
 use corner_impact::model::{finite, parted};
 use corner_impact::orbit::long_run::Budget;
+use corner_impact::study::design::denser::DRAWN;
 use corner_impact::study::design::loads::Load;
 use corner_impact::study::design::needs::{Lever, Need, in_si};
 use corner_impact::study::design::{Asked, design};
@@ -91,7 +92,7 @@ fn against((name, span): &NamedSpan, usual: usize) -> Result<Option<(Lever, [f64
 
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
     let model = arguments.model.read(session)?;
-    let canvas = arguments.out.as_ref().map(|path| Canvas::create(path, arguments.picture.look()?)).transpose()?;
+    let canvas = arguments.out.as_ref().map(|path| Canvas::create(path, arguments.picture.request()?)).transpose()?;
     arguments.start.doubt(session);
     let (rpm, count) = match arguments.rpm {
         None => (None, None),
@@ -119,10 +120,11 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         against: trade,
         starts: arguments.start.given(),
         budget: Some(arguments.budget.budget(Budget::DESIGN)?),
+        drawn: canvas.is_some().then_some(DRAWN),
     };
     let found = watched("loads of the cam", |watch| design(&model, &asked, watch))?;
     if let Some(canvas) = canvas {
-        canvas.draw(design_figure(&found), &model.units)?.commit()?;
+        canvas.write(design_figure(&found), &model.units)?;
     }
     session.answer(&found, &arguments.answer)
 }

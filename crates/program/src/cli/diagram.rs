@@ -144,7 +144,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let (threads, target) = (session.threads, arguments.out.as_deref());
     let (name, progress) = (model.name.as_str(), Progress::spinner("runs of each value"));
     let swept =
-        match target.map(|path| Target::create(path, &mut *session.out, arguments.picture.look()?)).transpose()? {
+        match target.map(|path| Target::create(path, &mut *session.out, arguments.picture.request()?)).transpose()? {
             None => Swept::new(name, &sweep, threads, &progress, |_: Counted| Ok::<(), CommandError>(()))?,
             Some(Target::Table(mut file)) => {
                 file.write_all(csv::diagram(&sweep).as_bytes())?;
@@ -166,7 +166,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
                     Section::Impacts => impact_diagram(&title, places, &corners, exponents),
                     Section::Strobe(_) => strobe_diagram(&title, places, exponents),
                 };
-                canvas.draw(across.under(figure), &model.units)?.commit()?;
+                canvas.write(across.under(figure), &model.units)?;
                 swept
             }
         };
@@ -195,7 +195,7 @@ fn loads(
     session: &mut Session<'_>,
 ) -> Result<Exit, CommandError> {
     let Some(path) = arguments.out.as_deref() else { return Ok(Exit::BadInput) };
-    let target = Target::create(path, &mut *session.out, arguments.picture.look()?)?;
+    let target = Target::create(path, &mut *session.out, arguments.picture.request()?)?;
     let (start, threads) = (arguments.start.start()?, session.threads);
     let budget = arguments.budget.lengths(Budget::CHART)?;
     let found = watched("runs of each value", |watch| swept::loads(survey, start, budget, threads, watch))?;
@@ -215,7 +215,7 @@ fn one_row(arguments: &Arguments, survey: &Survey, session: &mut Session<'_>) ->
     let Some(Target::Table(mut file)) = arguments
         .out
         .as_deref()
-        .map(|path| Target::create(path, &mut *session.out, arguments.picture.look()?))
+        .map(|path| Target::create(path, &mut *session.out, arguments.picture.request()?))
         .transpose()?
     else {
         return Err(CommandError::Words("--one-row is a table: --out must end in .csv or be -".into()));

@@ -102,13 +102,13 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
             let canvas = arguments
                 .out
                 .as_deref()
-                .map(|path| picture::Canvas::create(path, arguments.picture.look()?))
+                .map(|path| picture::Canvas::create(path, arguments.picture.request()?))
                 .transpose()?;
             let progress = Progress::spinner("computing the figure");
             let plate = entry.plate(&subject);
             drop(progress);
             match (&plate.drawn, canvas) {
-                (Ok(drawn), Some(canvas)) => canvas.draw(drawn.figure.clone(), &model.units)?.commit()?,
+                (Ok(drawn), Some(canvas)) => canvas.write(drawn.figure.clone(), &model.units)?,
                 // A document says why there is none; a file cannot.
                 (Err(_), None) if arguments.json => {}
                 (Err(why), _) => {

@@ -6,17 +6,21 @@ use std::path::{Path, PathBuf};
 use clap::ValueEnum;
 
 use super::CommandError;
-use super::numbers::{positive, range};
+use super::numbers::range;
+use crate::show::csv;
+use crate::show::matplotlib::matplotlib;
 use corner_impact::file::{self, Output};
 use corner_impact::model::Units;
 use corner_impact::untrusted;
 use corner_impact_plot::font::Fonts;
-use corner_impact_plot::{Figure, Look, Theme, pdf, png, svg};
+use corner_impact_plot::layout::WIDTH;
+use corner_impact_plot::look::length;
+use corner_impact_plot::{Figure, LegendPlace, Look, Theme, TitleChoice, pdf, png, svg};
 
 /// The heading of these options in `--help`.
 const LOOKS: &str = "How a picture looks";
 
-/// How a picture stands on paper.
+/// How pictures stand on paper.
 #[derive(clap::Args)]
 pub(super) struct LookArguments {
     /// Width on paper, such as 85mm, 8.5cm, 3.35in or 240pt [default: that of what an SVG stands in, 169mm on paper].
@@ -28,12 +32,15 @@ pub(super) struct LookArguments {
     /// The letters: a font that is installed, or the file of one (.ttf, .otf); they come with the picture [default: the program's own].
     #[arg(long, value_name = "FONT", requires = "picture", help_heading = LOOKS)]
     font: Option<String>,
+    /// Write the figure's own title above it, or TEXT [default: the figure's own, and none where --width is given].
+    #[arg(long, value_name = "TEXT", num_args = 0..=1, require_equals = true, default_missing_value = "", requires = "picture", help_heading = LOOKS)]
+    title: Option<String>,
     /// Leave out the title.
-    #[arg(long, requires = "picture", help_heading = LOOKS)]
+    #[arg(long, conflicts_with = "title", requires = "picture", help_heading = LOOKS)]
     no_title: bool,
-    /// Open the file once it is written.
-    #[arg(long, requires = "picture", help_heading = LOOKS)]
-    open: bool,
+    /// Place of the legend: none, above each frame, below the figure, or right of it [default: above].
+    #[arg(long, value_name = "PLACE", value_parser = LegendPlace::named, requires = "picture", help_heading = LOOKS)]
+    legend: Option<LegendPlace>,
     /// A screen that may be dark, or white paper; PNG and PDF are white on both.
     #[arg(long, value_enum, value_name = "THEME", requires = "picture", help_heading = LOOKS)]
     theme: Option<ThemeName>,
@@ -45,24 +52,54 @@ enum ThemeName {
     Print,
 }
 
-/// How a picture stands on paper, and which part of it is shown.
+/// How a picture stands on paper, which part of it is shown, and what is written beside it.
 #[derive(clap::Args)]
 pub(super) struct PictureArguments {
     #[command(flatten)]
     look: LookArguments,
+    /// Height on paper, such as 60mm [default: what the panels take].
+    #[arg(long, value_name = "HEIGHT", value_parser = length, requires = "picture", help_heading = LOOKS)]
+    height: Option<f64>,
     /// Ends of the horizontal axis, in its unit.
     #[arg(long, value_name = "LO:HI", value_parser = range, allow_hyphen_values = true, requires = "picture", help_heading = LOOKS)]
     x_range: Option<[f64; 2]>,
     /// Ends of the vertical axis, in its unit: of the first panel, where there are more; the others keep theirs.
     #[arg(long, value_name = "LO:HI", value_parser = range, allow_hyphen_values = true, requires = "picture", help_heading = LOOKS)]
     y_range: Option<[f64; 2]>,
+    /// Write a Python script that draws the same figure with matplotlib, and its data beside it: a file of the same name that ends in .csv.
+    #[arg(long, value_name = "FILE", value_parser = script, requires = "picture", help_heading = LOOKS)]
+    script: Option<PathBuf>,
+    /// Open the file once it is written.
+    #[arg(long, requires = "picture", help_heading = LOOKS)]
+    open: bool,
+}
+
+/// A look and what is written beside the picture, as asked for.
+#[derive(Clone, Default)]
+pub(super) struct PictureRequest {
+    look: Option<Look>,
+    script: Option<PathBuf>,
+}
+
+impl PictureRequest {
+    /// Width of the page in units of the letters.
+    pub(super) fn across(&self) -> f64 {
+        self.look.as_ref().map_or(WIDTH, Look::across)
+    }
+
+    /// Names of the files beside the picture, with the option that each is of.
+    pub(super) fn files(&self) -> Option<[(&'static str, PathBuf); 2]> {
+        let script = self.script.as_ref()?;
+        Some([("--script", script.clone()), ("the data of --script", data(script))])
+    }
 }
 
 impl LookArguments {
     /// The look, found before the work that the picture shows; none where nothing is asked for.
     pub(super) fn look(&self) -> Result<Option<Look>, CommandError> {
-        let Self { width, size, font, no_title, theme, .. } = self;
-        if width.is_none() && size.is_none() && font.is_none() && !no_title && theme.is_none() {
+        let Self { width, size, font, title, no_title, legend, theme } = self;
+        let is_plain = width.is_none() && size.is_none() && font.is_none() && legend.is_none() && theme.is_none();
+        if is_plain && title.is_none() && !no_title {
             return Ok(None);
         }
         let fonts = font.as_deref().map(fonts).transpose()?;
@@ -70,19 +107,27 @@ impl LookArguments {
             Some(ThemeName::Print) => Theme::Print,
             Some(ThemeName::Screen) | None => Theme::Screen,
         };
-        let look = Look { width: *width, size: *size, fonts, theme, untitled: *no_title, ..Look::default() };
+        let title = match title.as_deref() {
+            None if *no_title => TitleChoice::Hidden,
+            None => TitleChoice::OffPaper,
+            Some("") => TitleChoice::Shown,
+            Some(words) => TitleChoice::Words(words.into()),
+        };
+        let legend = legend.unwrap_or_default();
+        let look = Look { width: *width, size: *size, fonts, theme, title, legend, ..Look::default() };
         Ok(Some(look.checked()?))
     }
 }
 
 impl PictureArguments {
-    /// The look, with the part that is shown; none where nothing is asked for.
-    pub(super) fn look(&self) -> Result<Option<Look>, CommandError> {
-        let look = self.look.look()?;
-        if self.x_range.is_none() && self.y_range.is_none() {
-            return Ok(look);
+    /// The look with the part that is shown, and the files beside the picture.
+    pub(super) fn request(&self) -> Result<PictureRequest, CommandError> {
+        let (look, script) = (self.look.look()?, self.script.clone());
+        if self.x_range.is_none() && self.y_range.is_none() && self.height.is_none() {
+            return Ok(PictureRequest { look, script });
         }
-        Ok(Some(Look { x: self.x_range, y: self.y_range, ..look.unwrap_or_default() }))
+        let look = Look { x: self.x_range, y: self.y_range, height: self.height, ..look.unwrap_or_default() };
+        Ok(PictureRequest { look: Some(look.checked()?), script })
     }
 }
 
@@ -99,12 +144,15 @@ fn fonts(name: &str) -> Result<Fonts, CommandError> {
     Ok(Fonts::of_file(name, data)?)
 }
 
-/// A length on paper as points, 72 to the inch.
-fn length(text: &str) -> Result<f64, String> {
-    const UNITS: [(&str, f64); 4] = [("mm", 72.0 / 25.4), ("cm", 720.0 / 25.4), ("in", 72.0), ("pt", 1.0)];
-    let found = UNITS.iter().find_map(|(unit, points)| Some((text.trim().strip_suffix(unit)?, points)));
-    let (number, points) = found.ok_or("must be a number with its unit: 85mm, 8.5cm, 3.35in or 240pt")?;
-    Ok(positive(number)? * points)
+/// A file name of a script, for clap.
+fn script(text: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    if ends_in(&path, &["py"]) { Ok(path) } else { Err("must end in .py".into()) }
+}
+
+/// Name of the data of a script.
+fn data(script: &Path) -> PathBuf {
+    script.with_extension("csv")
 }
 
 /// The kinds of picture.
@@ -144,71 +192,97 @@ pub(super) fn picture_or_table(text: &str) -> Result<PathBuf, String> {
     }
 }
 
-/// A file that a figure goes to, whole or not at all; opened before the work that the figure shows.
+/// Files that a figure goes to, all of them or none; opened before the work that the figure shows.
 pub(super) struct Canvas {
     file: Output<'static>,
     kind: Kind,
     look: Look,
+    /// The script and its data, and the name of the data.
+    script: Option<([Output<'static>; 2], String)>,
 }
 
 impl Canvas {
-    /// Begins to write `path`, which names a kind of picture.
-    pub(super) fn create(path: &Path, look: Option<Look>) -> Result<Self, CommandError> {
-        let mut look = look.unwrap_or_default();
+    /// Begins to write `path`, which names a kind of picture, and what is asked for beside it.
+    pub(super) fn create(path: &Path, request: PictureRequest) -> Result<Self, CommandError> {
+        let beside = request.files();
+        let all = [("--out", path)].into_iter();
+        file::distinct(all.chain(beside.iter().flatten().map(|(option, path)| (*option, path.as_path()))))?;
+        let mut look = request.look.unwrap_or_default();
         // A file is to have the same letters wherever it is looked at.
         look.fonts.get_or_insert_default();
-        Ok(Self { file: Output::file(path)?, kind: kind(path).unwrap_or(Kind::Svg), look })
+        let script = beside.map(|[(_, script), (_, data)]| -> Result<_, CommandError> {
+            let name = data.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            Ok(([Output::file(&script)?, Output::file(&data)?], name))
+        });
+        Ok(Self { file: Output::file(path)?, kind: kind(path).unwrap_or(Kind::Svg), look, script: script.transpose()? })
     }
 
-    /// The figure with the units of a model, written but not yet a file of that name.
-    pub(super) fn draw(mut self, figure: Figure, units: &Units) -> Result<Output<'static>, CommandError> {
+    /// The figure with the units of a model, written but not yet files of those names.
+    pub(super) fn draw(mut self, figure: Figure, units: &Units) -> Result<Vec<Output<'static>>, CommandError> {
         let mut figure = figure.in_units(|unit| units.spelled(unit));
         figure.title = untrusted::visible(&figure.title).into_owned();
         let (look, figure) = (&self.look, self.look.framed(figure)?);
+        let mut files = Vec::new();
+        if let Some(([mut script, mut data], name)) = self.script {
+            script.write_all(matplotlib(&figure, look, &name).as_bytes())?;
+            data.write_all(csv::figure(&figure, csv::OF_SCRIPT).as_bytes())?;
+            files.extend([script, data]);
+        }
         let bytes = match self.kind {
             Kind::Png => png::render(figure, look, look.pixels())?,
             Kind::Svg => untrusted::visible(&svg::render(&figure, look)?).as_bytes().to_vec(),
             Kind::Pdf => pdf::render(&figure, look)?,
         };
         self.file.write_all(&bytes)?;
-        Ok(self.file)
+        files.push(self.file);
+        Ok(files)
+    }
+
+    /// Writes the figure with the units of a model, and gives the files their names.
+    pub(super) fn write(self, figure: Figure, units: &Units) -> Result<(), CommandError> {
+        Ok(Output::commit_all(self.draw(figure, units)?)?)
     }
 }
 
 /// Where a table or a picture goes, as its name says; opened before the work.
 pub(super) enum Target<'a> {
     Table(Output<'a>),
-    Picture(Canvas),
+    Picture(Box<Canvas>),
 }
 
 impl<'a> Target<'a> {
     /// Begins to write `path`; `-` is a table on `standard`.
-    pub(super) fn create(path: &Path, standard: &'a mut dyn Write, look: Option<Look>) -> Result<Self, CommandError> {
+    pub(super) fn create(
+        path: &Path,
+        standard: &'a mut dyn Write,
+        request: PictureRequest,
+    ) -> Result<Self, CommandError> {
         Ok(match kind(path) {
-            Some(_) => Self::Picture(Canvas::create(path, look)?),
-            None if look.is_some() => {
-                let words = "--width, --size, --font, --no-title, --theme, --x-range and --y-range are of pictures: the name must end in .svg, .png or .pdf";
+            Some(_) => Self::Picture(Box::new(Canvas::create(path, request)?)),
+            None if request.look.is_some() || request.script.is_some() => {
+                let words = "--width, --height, --size, --font, --title, --no-title, --legend, --theme, --x-range, --y-range and --script are of \
+                             pictures: the name must end in .svg, .png or .pdf";
                 return Err(CommandError::Words(words.into()));
             }
             None => Self::Table(Output::create(path, standard)?),
         })
     }
 
-    /// Writes the one or the other in the units of a model, and gives the file its name.
+    /// Writes the one or the other in the units of a model, and gives the files their names.
     pub(super) fn fill(
         self,
         units: &Units,
         table: impl FnOnce() -> String,
         figure: impl FnOnce() -> Result<Figure, CommandError>,
     ) -> Result<(), CommandError> {
-        let file = match self {
+        let files = match self {
             Self::Table(mut file) => {
                 file.write_all(table().as_bytes())?;
-                file
+                vec![file]
             }
             Self::Picture(canvas) => canvas.draw(figure()?, units)?,
         };
-        Ok(file.commit()?)
+        Ok(Output::commit_all(files)?)
     }
 }
 

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::external::ExternalArguments;
 use super::numbers::rpm_range;
-use super::picture::ends_in;
+use super::picture::{LookArguments, ends_in};
 use super::progress::watched;
 use super::{CommandError, Exit, ModelArgument, Session};
 use crate::pages::report::html;
@@ -29,8 +29,10 @@ pub(super) struct Arguments {
     #[command(flatten)]
     model: ModelArgument,
     /// The page [default: the model file's name with -report.html, in this folder]; - for standard output.
-    #[arg(long, value_name = "FILE", value_parser = page)]
+    #[arg(long, value_name = "FILE", value_parser = page, group = "picture")]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    look: LookArguments,
     /// Print one JSON document instead; the page only where --out names it.
     #[arg(long)]
     json: bool,
@@ -63,15 +65,17 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         (None, false) => Some(default_name(&model)?),
     };
     session.wishes.file = path.clone();
+    let look = arguments.look.look()?;
     // The file is begun before the work: a name that cannot be is told at once.
     let file = match &path {
         Some(path) => Some(Output::create(path, &mut *session.out)?),
         None => None,
     };
-    let report = watched("looking for the corner impact", |watch| {
+    let mut report = watched("looking for the corner impact", |watch| {
         Report::of(&model, arguments.external.routes(), arguments.rpm, watch)
     })?;
     let document = arguments.json.then(|| json::render(&report, &model.units)).transpose()?;
+    report.look = look.unwrap_or_default();
     let write = |mut file: Output<'_>| {
         let page = html::render(&report)?;
         file.write_all(page.as_bytes())?;

@@ -86,8 +86,15 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let Arguments { events, strobe_out, out: trace, phase_plane, .. } = arguments;
     let results =
         [("--events", events), ("--strobe-out", strobe_out), ("--out", trace), ("--phase-plane", phase_plane)];
+    let request = arguments.picture.request()?;
+    let beside = request.files();
+    let drawings = [trace, phase_plane].into_iter().flatten().filter(|path| picture::kind(path).is_some()).count();
+    if beside.is_some() && drawings > 1 {
+        return Err(CommandError::Words("--script draws one picture, and --out and --phase-plane are two".into()));
+    }
     let files = results.iter().filter_map(|(option, path)| Some((*option, path.as_deref()?)));
-    file::distinct(files.filter(|(_, path)| path.as_os_str() != "-"))?;
+    let beside = beside.iter().flatten().map(|(option, path)| (*option, path.as_path()));
+    file::distinct(files.chain(beside).filter(|(_, path)| path.as_os_str() != "-"))?;
     if arguments.drawn.is_some() && trace.is_none() && phase_plane.is_none() {
         return Err(CommandError::Words("--drawn says how much --out and --phase-plane draw: neither is there".into()));
     }
@@ -105,9 +112,8 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         long_run: arguments.lyapunov.then(|| arguments.budget.budget(Budget::SURVEY)).transpose()?,
     };
 
-    let look = arguments.picture.look()?;
     // Every file is begun before the run: a name that cannot be is told at once.
-    let plane = phase_plane.as_deref().map(|path| Canvas::create(path, look.clone())).transpose()?;
+    let plane = phase_plane.as_deref().map(|path| Canvas::create(path, request.clone())).transpose()?;
     // At most one of the tables is standard output.
     let mut out = Some(&mut *session.out);
     let mut open = |path: &Path, columns: &str| -> Result<Output<'_>, CommandError> {
@@ -122,7 +128,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let trace = trace.as_deref();
     let written =
         trace.filter(|path| !is_drawn(path)).map(|path| open(path, &model.units.columns(csv::TRACE))).transpose()?;
-    let trace = trace.filter(is_drawn).map(|path| Canvas::create(path, look)).transpose()?;
+    let trace = trace.filter(is_drawn).map(|path| Canvas::create(path, request)).transpose()?;
     let mut lines = String::new();
     let see = |sight: Sight<'_>| -> Result<(), CommandError> {
         lines.clear();
@@ -158,10 +164,10 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     if let Some(canvas) = trace {
         let run = seen(figures::TracedRun::DRAWN)?;
         let figure = with_force(time_trace(&title, &run), &run, model.follower.mass, &model.units.force);
-        files.push(canvas.draw(figure, &model.units)?);
+        files.extend(canvas.draw(figure, &model.units)?);
     }
     if let Some(canvas) = plane {
-        files.push(canvas.draw(phase_plane_figure(&title, &seen(figures::TracedRun::DRAWN)?), &model.units)?);
+        files.extend(canvas.draw(phase_plane_figure(&title, &seen(figures::TracedRun::DRAWN)?), &model.units)?);
     }
     Output::commit_all(files)?;
     if arguments.answer.json || streams == 0 {

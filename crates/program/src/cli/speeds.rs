@@ -15,8 +15,6 @@ use corner_impact::orbit::long_run::Budget;
 use corner_impact::study::attractors::{Resolution, Step};
 use corner_impact::study::speeds::{speeds, usual_range};
 use corner_impact::study::survey::{Over, Spacing};
-use corner_impact_plot::Look;
-use corner_impact_plot::layout::WIDTH;
 
 /// Tells which motions a machine ends on at which speeds.
 ///
@@ -91,9 +89,9 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let found = watched("what runs end on", |watch| speeds(&over, range, &resolution, watch))?;
     if let Some(path) = &arguments.out {
         let table = || csv::speeds(&found);
-        let look = arguments.picture.look()?;
-        let across = look.as_ref().map_or(WIDTH, Look::across);
-        Target::create(path, &mut *session.out, look)?
+        let request = arguments.picture.request()?;
+        let across = request.across();
+        Target::create(path, &mut *session.out, request)?
             .fill(&model.units, table, || Ok(speeds_figure(&found, &corners, across)))?;
     }
     if is_standard(arguments.out.as_ref()) { Ok(Exit::Agrees) } else { session.answer(&found, &arguments.answer) }

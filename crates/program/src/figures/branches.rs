@@ -2,14 +2,15 @@
 //! own shape; attractors of runs lie behind them. No distinction needs colour.
 
 use crate::figures::cam::{CornerMark, corner_marks};
-use crate::figures::impacts::{WHOLE_CAM, cloud, impact_angles, shown_impacts};
+use crate::figures::impacts::{WHOLE_CAM, at_most_the_cam, cloud, impact_angles, shown_impacts};
 use crate::figures::{Entry, Fast, FigureContext, SPEED, by_stability, drawn};
 use crate::show::words;
 use corner_impact::border_collision::feigin::Scenario;
 use corner_impact::orbit::branch::{Branch, BranchPoint, SpecialKind, find_branches};
 use corner_impact::orbit::{Course, Search, Stability};
 use corner_impact::study::survey::recurrence;
-use corner_impact_plot::{BREAK, Colour, Data, Figure, FigureAxis, Marker, Panel, Series};
+use corner_impact_plot::layout::widened;
+use corner_impact_plot::{BREAK, Colour, Data, Figure, FigureAxis, Marker, Panel, Series, extent};
 
 /// Branches and impacts around the corner impact.
 pub(crate) const FAST_IMPACTS: Entry = Entry {
@@ -74,7 +75,7 @@ fn mark(kind: &SpecialKind) -> usize {
 }
 
 /// Impact phases, degrees, along branches against the named parameter over its range, drawn over the impacts on which runs settle; those
-/// are sorted by the parameter. The parameter is drawn across, phases up.
+/// are sorted by the parameter. The parameter is drawn across; phases are drawn up, over the range of the branches.
 pub fn branches_figure(
     title: &str,
     (name, unit, range): (&str, &str, [f64; 2]),
@@ -99,7 +100,10 @@ pub fn branches_figure(
         series.extend(Series::points(label, colour, marker, points).if_any());
     }
     let label = if name == "rpm" { SPEED[0] } else { name };
-    let panel = Panel::new(impact_angles().over(WHOLE_CAM), 0.52, series);
+    let points = branches.iter().flat_map(|branch| &branch.points).flat_map(|point| point.orbit.impacts());
+    let reach = extent(points.map(|impact| impact.cam_angle.to_degrees()));
+    let up = if reach[0] <= reach[1] { at_most_the_cam(widened(reach, 0.07)) } else { WHOLE_CAM };
+    let panel = Panel::new(impact_angles().over(up), 0.52, series);
     let panel = Panel { marks: corners.iter().map(CornerMark::mark).collect(), ..panel };
     Figure::new(title, FigureAxis::new(label, unit).over(range), vec![panel])
 }

@@ -6,22 +6,23 @@ use corner_impact::border_collision::feigin::Scenario;
 use corner_impact::orbit::branch::Bifurcation;
 use corner_impact_plot::{BREAK, Colour, Figure, FigureAxis, Mark, Marker, Panel, Series, Stroke};
 
-/// Kinds of corner impact, with their names, colours and strokes.
-const KINDS: [(Happening, Colour, Stroke); 5] = [
-    (Happening::BorderCollision(Scenario::NonsmoothFold), Colour::Vermilion, Stroke::Thick),
-    (Happening::BorderCollision(Scenario::NonsmoothFlip), Colour::Purple, Stroke::Dashed),
-    (Happening::BorderCollision(Scenario::Persistence), Colour::Blue, Stroke::Thin),
-    (Happening::NotPiecewiseLinear, Colour::Green, Stroke::Dashed),
-    (Happening::Degenerate, Colour::Grey, Stroke::Thin),
+/// Kinds of corner impact with their strokes. Curves are in ink, which no class of motion behind them has at full strength: corner
+/// impacts are thick, other events thin, and strokes distinguish kinds.
+const KINDS: [(Happening, Stroke); 5] = [
+    (Happening::BorderCollision(Scenario::NonsmoothFold), Stroke::Thick),
+    (Happening::BorderCollision(Scenario::NonsmoothFlip), Stroke::ThickDashed),
+    (Happening::BorderCollision(Scenario::Persistence), Stroke::ThickDotted),
+    (Happening::NotPiecewiseLinear, Stroke::ThickDashDotted),
+    (Happening::Degenerate, Stroke::Thin),
 ];
 
-/// Other events, with their names, colours and strokes.
-const EVENTS: [(Bifurcation, &str, Colour, Stroke); 5] = [
-    (Bifurcation::Fold, "fold", Colour::Ink, Stroke::Solid),
-    (Bifurcation::Flip, "flip", Colour::Ink, Stroke::Dashed),
-    (Bifurcation::Graze, "graze", Colour::Green, Stroke::Dotted),
-    (Bifurcation::Detachment, "detachment", Colour::Grey, Stroke::Dashed),
-    (Bifurcation::Resting, "onset of resting", Colour::Blue, Stroke::Dotted),
+/// Other events, with their names and strokes.
+const EVENTS: [(Bifurcation, &str, Stroke); 5] = [
+    (Bifurcation::Fold, "fold", Stroke::Solid),
+    (Bifurcation::Flip, "flip", Stroke::Dashed),
+    (Bifurcation::Graze, "graze", Stroke::Dotted),
+    (Bifurcation::Detachment, "detachment", Stroke::DashDotted),
+    (Bifurcation::Resting, "onset of resting", Stroke::DashDotDotted),
 ];
 
 /// Points where a curve changes its type, by the name of the quantity that changes.
@@ -50,16 +51,17 @@ pub fn curve_figure(
 pub(super) fn lines(curves: &[EventCurve], place: impl Fn(f64, f64) -> [f64; 2]) -> Vec<Series> {
     let place = |point: &EventPoint| place(point.rpm, point.value);
     let mut series = Vec::new();
-    for (kind, colour, stroke) in KINDS {
+    for (kind, stroke) in KINDS {
         let pieces = curves.iter().flat_map(EventCurve::pieces).filter(|(_, happening)| *happening == Some(kind));
         series.extend(
-            Series::line(&kind.to_string(), colour, stroke, joined(pieces.map(|(ends, _)| ends.map(place)))).if_any(),
+            Series::line(&kind.to_string(), Colour::Ink, stroke, joined(pieces.map(|(ends, _)| ends.map(place))))
+                .if_any(),
         );
     }
-    for (event, name, colour, stroke) in EVENTS {
+    for (event, name, stroke) in EVENTS {
         let of_event = curves.iter().filter(|curve| curve.kind.bifurcation() == Some(event));
         let pieces = of_event.flat_map(EventCurve::pieces).map(|(ends, _)| ends.map(place));
-        series.extend(Series::line(name, colour, stroke, joined(pieces)).if_any());
+        series.extend(Series::line(name, Colour::Ink, stroke, joined(pieces)).if_any());
     }
     for (kind, name, marker) in MARKED {
         let all = curves.iter().flat_map(|curve| &curve.points);

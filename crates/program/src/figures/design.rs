@@ -9,7 +9,7 @@ use corner_impact::study::design::contact::Separation;
 use corner_impact::study::design::loads::{Load, Loads};
 use corner_impact::study::design::{Design, RequiredPair, Trade};
 use corner_impact::study::survey::Place;
-use corner_impact_plot::{BREAK, Colour, Figure, FigureAxis, Mark, Marker, Panel, Series, Stroke, extent};
+use corner_impact_plot::{Beside, Colour, Figure, FigureAxis, Label, Mark, Marker, Panel, Series, Stroke, extent};
 
 /// Draws trades if there are any, else the force round the cam at one speed, else forces and loads against the speed.
 pub fn design_figure(found: &Design) -> Figure {
@@ -38,39 +38,49 @@ fn round(found: &Design) -> Figure {
     }
 }
 
+/// A quantity over the varied number: its place, value and uncertainty.
+type Known = (f64, f64, Option<f64>);
+
 fn speeds(found: &Design) -> Figure {
-    type Quantity = (&'static str, &'static str, f64);
-    let all = found.forces.iter().map(|at| at.place).chain(found.loads.iter().map(|loads| loads.place));
+    type Quantity = (&'static str, &'static str, f64, Option<Load>);
+    let curves = found.load_curves();
+    let all = curves.forces.iter().map(|at| at.place).chain(curves.loads.iter().map(|loads| loads.place));
     let range = extent(all.map(|place| place.across()));
     let across = Across::named(&found.over.name, &found.over.unit, found.over.spacing, range);
     let x = |place: Place| across.place(place.across());
-    let forces = found.forces.iter().map(|at| [x(at.place), found.force(at.least.value)]);
+    let known = |(place, value, error): (Place, f64, Option<f64>)| {
+        (x(place), found.force(value), error.map(|error| found.force(error)))
+    };
     let mut panels = Vec::new();
-    if !found.forces.is_empty() {
-        let line = Series::line("", Colour::Blue, Stroke::Solid, forces);
-        let open = found
-            .forces
-            .iter()
-            .map(|at| (x(at.place), found.force(at.least.value), at.error.map(|error| found.force(error))));
-        let series = open_by_cam(OPEN, open.collect()).into_iter().chain([line]).collect();
-        panels.push(Panel::new(force_axis(found, "least contact force"), 0.24, series).with_zero());
+    let least: Vec<Known> = curves.forces.iter().map(|at| known((at.place, at.least.value, at.error))).collect();
+    let greatest: Vec<Known> = curves.greatest_forces().into_iter().map(known).collect();
+    let first = band(OPEN, &least);
+    let second = band(if first.is_some() { "" } else { OPEN }, &greatest);
+    let mut series: Vec<Series> = first.into_iter().chain(second).collect();
+    series.extend(Series::line("greatest", Colour::Vermilion, Stroke::Dashed, plain(&greatest)).if_any());
+    series.extend(Series::line("least", Colour::Blue, Stroke::Solid, plain(&least)).if_any());
+    if !series.is_empty() {
+        series.extend(limit(found, &across, range, Load::Force));
+        panels.push(Panel::new(force_axis(found, "contact force"), 0.24, series).with_zero());
     }
     let quantities: [Quantity; 4] = [
-        ("impact speed", "m/s", 1.0),
-        ("largest gap", "m", 1.0),
-        ("time off the cam", "%", 100.0),
-        ("energy lost a revolution", "J", 1.0),
+        ("impact speed", "m/s", 1.0, Some(Load::ImpactSpeed)),
+        ("largest gap", "m", 1.0, Some(Load::Gap)),
+        ("time off the cam", "%", 100.0, None),
+        ("energy lost", "J/rev", 1.0, Some(Load::Energy)),
     ];
-    if !found.loads.is_empty() {
+    if !curves.loads.is_empty() {
         // In the order of `Loads::numbers`.
-        panels.extend(quantities.into_iter().enumerate().map(|(index, (name, unit, scale))| {
-            let value = |loads: &Loads| scale * loads.numbers()[index];
-            let points = found.loads.iter().map(|loads| [x(loads.place), value(loads)]);
-            let line = Series::line("", Colour::Vermilion, Stroke::Solid, points);
-            let error = |loads: &Loads| loads.errors.map(|errors| scale * errors[index]);
-            let open =
-                open_by_cam("", found.loads.iter().map(|loads| (x(loads.place), value(loads), error(loads))).collect());
-            Panel::new(FigureAxis::new(name, unit), 0.15, open.into_iter().chain([line]).collect()).with_zero()
+        panels.extend(quantities.into_iter().enumerate().map(|(index, (name, unit, scale, load))| {
+            let value = |loads: &Loads| {
+                let error = loads.errors.map(|errors| scale * errors[index]);
+                (x(loads.place), scale * loads.numbers()[index], error)
+            };
+            let values: Vec<Known> = curves.loads.iter().map(value).collect();
+            let line = Series::line("", Colour::Vermilion, Stroke::Solid, plain(&values));
+            let limits = load.map(|load| limit(found, &across, range, load)).unwrap_or_default();
+            let series = band("", &values).into_iter().chain([line]).chain(limits).collect();
+            Panel::new(FigureAxis::new(name, unit), 0.15, series).with_zero()
         }));
     }
     let at = found.separation.speed();
@@ -85,6 +95,35 @@ fn speeds(found: &Design) -> Figure {
     let at = found.over.rpm.map_or(String::new(), |rpm| format!(" at {rpm} rpm"));
     let title = format!("{}: contact force and loads{at}", found.model.name);
     Figure { marks: marks.into_iter().collect(), ..Figure::new(&title, across.axis(), panels) }
+}
+
+/// Limits of a load: a line across the frame with its value, and a ring where the load first exceeds it.
+fn limit(found: &Design, across: &Across, range: [f64; 2], load: Load) -> Vec<Series> {
+    let ends = range.map(|end| across.place(end));
+    let of_load = found.limits.iter().filter(|passed| passed.limit == load);
+    let series = of_load.flat_map(|passed| {
+        let line = Series::line("", Colour::Ink, Stroke::Dashed, ends.map(|end| [end, passed.value]));
+        let text = format!("limit {} {}", passed.value, passed.unit);
+        let words = Series::words([Label::new([ends[0], passed.value], &text, Beside::AboveRight)]);
+        let at = passed.at.map(|at| [across.place(at.across()), passed.value]);
+        let ring = Series::points("", Colour::Ink, Marker::Ring, at).if_any();
+        [line, words].into_iter().chain(ring)
+    });
+    series.collect()
+}
+
+fn plain(values: &[Known]) -> impl Iterator<Item = [f64; 2]> {
+    values.iter().map(|(x, y, _)| [*x, *y])
+}
+
+/// The band that the uncertainty due to a measured cam leaves around values; `None` where there is no uncertainty.
+fn band(label: &str, values: &[Known]) -> Option<Series> {
+    let is_open = values.iter().any(|(.., error)| error.is_some_and(|error| error > 0.0));
+    let edges = values.iter().map(|(x, y, error)| {
+        let error = error.unwrap_or(f64::NAN);
+        [*x, y - error, y + error]
+    });
+    is_open.then(|| Series::band(label, Colour::Grey, edges))
 }
 
 /// One load in each revolution of a sweep against the varied number.
@@ -117,12 +156,12 @@ fn trades(found: &Design) -> Figure {
         let is_range = trade.pairs.iter().any(|pair| pair.other.is_some());
         let [bound, beyond] = if trade.parameter.is_upper_bound() { ["most", "least"] } else { ["least", "most"] };
         let error = |pair: &RequiredPair| Some((pair.given, pair.found?, pair.error));
-        let mut series: Vec<Series> =
-            open_by_cam(OPEN, trade.pairs.iter().filter_map(error).collect()).into_iter().collect();
+        let known: Vec<Known> = trade.pairs.iter().filter_map(error).collect();
+        let mut series: Vec<Series> = band(OPEN, &known).into_iter().collect();
         series.push(line(if is_range { bound } else { "" }, Stroke::Solid, |pair| pair.found));
         if is_range {
             let error = |pair: &RequiredPair| Some((pair.given, pair.other?, pair.other_error));
-            series.extend(open_by_cam("", trade.pairs.iter().filter_map(error).collect()));
+            series.extend(band("", &trade.pairs.iter().filter_map(error).collect::<Vec<_>>()));
             series.push(line(beyond, Stroke::Dashed, |pair| pair.other));
         }
         let name = if is_range { trade.parameter.to_string() } else { format!("{bound} {}", trade.parameter) };
@@ -138,13 +177,5 @@ fn trades(found: &Design) -> Figure {
     Figure::new(&title, FigureAxis::new(&against, unit).over(range), panels.collect())
 }
 
-/// Label, once in a panel, of the lines that show the uncertainty due to a measured cam.
-const OPEN: &str = "what the cam leaves open";
-
-/// Lines on both sides of values `(x, y, error)` at the uncertainty due to the cam; `None` where there is no uncertainty.
-fn open_by_cam(label: &str, values: Vec<(f64, f64, Option<f64>)>) -> Option<Series> {
-    let side = |sign: f64| values.iter().map(move |(x, y, error)| [*x, y + sign * error.unwrap_or(0.0)]);
-    let points = side(-1.0).chain([BREAK]).chain(side(1.0));
-    let is_open = values.iter().any(|(.., error)| error.is_some_and(|error| error > 0.0));
-    is_open.then(|| Series::line(label, Colour::Grey, Stroke::Thin, points))
-}
+/// Label, once in a panel, of the band that shows the uncertainty due to a measured cam.
+const OPEN: &str = "± what the cam leaves open";

@@ -110,8 +110,12 @@ pub(crate) fn impact_angles() -> FigureAxis {
 
 /// Range of impact phases, degrees, of the points, slightly widened, and at most the whole cam.
 pub(crate) fn shown_impacts(points: &Density) -> Option<[f64; 2]> {
-    let [low, high] = widened(points.extent()?, 0.02);
-    Some([low.max(0.0), high.min(360.0)])
+    Some(at_most_the_cam(widened(points.extent()?, 0.02)))
+}
+
+/// A range of angles, degrees, without what is beyond a revolution.
+pub(crate) fn at_most_the_cam([low, high]: [f64; 2]) -> [f64; 2] {
+    [low.max(WHOLE_CAM[0]), high.min(WHOLE_CAM[1])]
 }
 
 fn figure(

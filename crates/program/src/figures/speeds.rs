@@ -5,7 +5,7 @@ use crate::figures::cam::CornerMark;
 use crate::figures::impacts::{WHOLE_CAM, impact_angles};
 use crate::show::words;
 use corner_impact::orbit::long_run::Kind;
-use corner_impact::study::speeds::{AttractorRow, SpeedSurvey};
+use corner_impact::study::speeds::{At, AttractorRow, SpeedSurvey};
 use corner_impact_plot::layout::{TEXT, WIDTH, width};
 use corner_impact_plot::{
     BREAK, Beside, Colour, Data, Density, Figure, FigureAxis, Label, Marker, Panel, Series, Stroke, TickSpacing,
@@ -52,6 +52,11 @@ const BARS: [(Kind, Stroke); 5] = [
 ///
 /// The page is `across` units wide; a letter is [`TEXT`] high. Attractors whose names would touch are placed in separate lanes.
 pub fn speeds_figure(found: &SpeedSurvey, corners: &[CornerMark], across: f64) -> Figure {
+    with_folded(found, corners, across).0
+}
+
+/// The figure, and the note on what is folded into one line in it.
+fn with_folded(found: &SpeedSurvey, corners: &[CornerMark], across: f64) -> (Figure, Option<String>) {
     let over = over(found);
     let colours = colours(found);
     let colour = |index: usize| colours[index];
@@ -62,13 +67,15 @@ pub fn speeds_figure(found: &SpeedSurvey, corners: &[CornerMark], across: f64) -
         Series::area("", Colour::Grey, Stroke::Thin, corners).if_any()
     };
     let mut impacts: Vec<Series> = shade(WHOLE_CAM[1]).into_iter().collect();
+    let folding = Folding::of(found, &colours, across);
+    let (short, long): (Vec<_>, Vec<_>) = each().partition(|(_, attractor)| folding.folds(found, attractor));
+    // What lives briefly is folded into one series.
+    let brief = short.iter().flat_map(|(_, attractor)| places(&over, attractor));
+    impacts.extend(Series::points("", Colour::Grey, Marker::Dot, brief).called(BRIEF).if_any());
     impacts.extend(
-        each()
+        long.iter()
             .flat_map(|(index, attractor)| {
-                let places = attractor
-                    .at
-                    .iter()
-                    .flat_map(|at| at.impact_angles.iter().map(|phase| [over.place(at.value()), phase.to_degrees()]));
+                let (index, places) = (*index, places(&over, attractor));
                 let marked = |places| {
                     let points = Series::points("", colour(index), marker(attractor, colour(index)), places);
                     points.called(&attractor.id).if_any()
@@ -85,30 +92,72 @@ pub fn speeds_figure(found: &SpeedSurvey, corners: &[CornerMark], across: f64) -
     );
     let impacts = Panel::new(impact_angles().over(WHOLE_CAM), 0.42, impacts);
     let impacts = Panel { marks: corners.iter().map(CornerMark::mark).collect(), ..impacts };
-    let shares = each().map(|(index, attractor)| {
+    let shares = long.iter().map(|(index, attractor)| {
         let stroke = BARS.iter().find(|(kind, _)| *kind == attractor.kind).map_or(Stroke::Thin, |(_, stroke)| *stroke);
         let points = attractor.at.iter().map(|at| [over.place(at.value()), 100.0 * at.share.value]);
-        Series::line("", colour(index), stroke, points).called(&attractor.id)
+        Series::line("", colour(*index), stroke, points).called(&attractor.id)
     });
     let shares = shade(SHARES[1]).into_iter().chain(shares).collect();
     let shares = Panel::new(FigureAxis::new("share of starts", "%").over(SHARES), 0.14, shares);
     let title = format!("{}: attractors from {}", found.model, found.over.range(found.range));
     let axis = over.axis();
-    let placed = placed(found, &colours, across);
-    let unnamed = placed.0.iter().filter(|(.., beside)| beside.is_none()).count();
+    let placed = placed(found, &colours, across, folding);
+    let folded = (!short.is_empty()).then(|| {
+        format!("small grey dots: {} more, each over less than {} of the range", short.len(), folding.words())
+    });
     let mut figure = Figure::new(&title, axis, vec![impacts, bars(&over, placed), shares]);
     let several = (!found.coexistence.is_empty()).then(|| "grey: several attractors, each reached by runs".to_owned());
-    let short = (unnamed > 0).then(|| format!("lowest lane: {unnamed} over short ranges, without names"));
-    figure.note = several.into_iter().chain(short).collect::<Vec<_>>().join("; ");
-    figure
+    figure.note = several.into_iter().chain(folded.clone()).collect::<Vec<_>>().join("; ");
+    (figure, folded)
+}
+
+/// Name of the series of folded attractors in tables.
+const BRIEF: &str = "brief";
+
+/// Impacts of an attractor: its place on the axis and the cam angle, degrees.
+fn places(over: &Across, attractor: &AttractorRow) -> impl Iterator<Item = [f64; 2]> {
+    let of = |at: &At| {
+        let place = over.place(at.value());
+        at.impact_angles.iter().map(move |phase| [place, phase.to_degrees()]).collect::<Vec<_>>()
+    };
+    attractor.at.iter().flat_map(of)
+}
+
+/// Which attractors are folded into one line: those that live for less than a share of the range.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Folding {
+    Thousandth,
+    /// Where there are more lanes than can be looked through.
+    Hundredth,
+}
+
+impl Folding {
+    fn of(found: &SpeedSurvey, colours: &[Colour], across: f64) -> Self {
+        /// Most lanes that are looked through.
+        const LANES: usize = 12;
+        let lanes = placed(found, colours, across, Self::Thousandth).count;
+        if lanes > LANES { Self::Hundredth } else { Self::Thousandth }
+    }
+
+    fn words(self) -> &'static str {
+        if self == Self::Thousandth { "a thousandth" } else { "a hundredth" }
+    }
+
+    fn folds(self, found: &SpeedSurvey, attractor: &AttractorRow) -> bool {
+        let share = if self == Self::Thousandth { 1e-3 } else { 1e-2 };
+        let over = over(found);
+        let [[from, to], [low, high]] = [bar(&over, attractor), found.range.map(|end| over.place(end))];
+        to - from < share * (high - low)
+    }
 }
 
 /// First panel of [`speeds_figure`] alone: impact phases.
 pub fn impacts_by_speed(found: &SpeedSurvey, corners: &[CornerMark]) -> Figure {
-    let mut figure = speeds_figure(found, corners, WIDTH);
+    let (mut figure, folded) = with_folded(found, corners, WIDTH);
     figure.panels.truncate(1);
-    let several = if found.coexistence.is_empty() { "" } else { "; grey: several, each reached by runs" };
-    figure.note = format!("each colour and shape is one motion{several}");
+    let several = (!found.coexistence.is_empty()).then(|| "grey: several, each reached by runs".to_owned());
+    let all = ["each colour and shape is one motion".to_owned()].into_iter().chain(several).chain(folded);
+    figure.note = all.collect::<Vec<_>>().join("; ");
     Figure { title: format!("{}: impacts from {}", found.model, found.over.range(found.range)), ..figure }
 }
 
@@ -142,59 +191,53 @@ fn colours(found: &SpeedSurvey) -> Vec<Colour> {
 /// Axis of shares, slightly wider than 0 to 100 %.
 const SHARES: [f64; 2] = [-5.0, 105.0];
 
-/// An attractor, its lane (0 is uppermost), and the side of its start where its name is written. Where there are many attractors, short
-/// ones have no name.
+/// An attractor, its colour, its lane (0 is uppermost), and the side of its start where its name is written; none where there is no room
+/// for names.
 type Placed<'a> = (&'a AttractorRow, Colour, usize, Option<Beside>);
 
-/// Places the attractors in as few lanes as they and their names need; also returns the number of lanes.
-fn placed<'a>(found: &'a SpeedSurvey, colours: &[Colour], across: f64) -> (Vec<Placed<'a>>, usize) {
+/// Attractors in lanes.
+struct Lanes<'a> {
+    placed: Vec<Placed<'a>>,
+    /// Number of lanes of named attractors.
+    count: usize,
+    /// Attractors that are folded into a lane below.
+    brief: Vec<&'a AttractorRow>,
+}
+
+/// Places the attractors in as few lanes as they and their names need.
+fn placed<'a>(found: &'a SpeedSurvey, colours: &[Colour], across: f64, folding: Folding) -> Lanes<'a> {
     /// Smallest gap between two bars of a lane, as a share of the range.
     const APART: f64 = 0.004;
     /// Room for labels on both sides of the frame, in units of the page's width.
     const LABELS: f64 = 130.0;
-    /// Most lanes that are tried. With more, bars shorter than the share `SHORT` of the range get one extra lane, without names.
-    const LOOKED_THROUGH: usize = 12;
-    const SHORT: f64 = 0.01;
     let over = over(found);
     let [low, high] = found.range.map(|end| over.place(end));
     let span = high - low;
     // Width of a name on the axis, with half a letter's room.
     let name =
         |attractor: &AttractorRow| span * (width(&attractor.id, TEXT) + 0.5 * TEXT) / (across - LABELS).max(LABELS);
-    let each = || found.attractors.iter().zip(colours);
-    let lanes = |named: &dyn Fn(&AttractorRow) -> bool| {
-        let mut ends: Vec<f64> = Vec::new();
-        let mut placed = Vec::new();
-        for (attractor, colour) in each().filter(|(attractor, _)| named(attractor)) {
-            let ([from, to], name) = (bar(&over, attractor), name(attractor));
-            // At the right edge, only the left side of the bar's start has room.
-            let (beside, taken) = if from + name > high {
-                (Beside::AboveLeft, [from - name, to])
-            } else {
-                (Beside::AboveRight, [from, to.max(from + name)])
-            };
-            let lane = ends.iter().position(|end| *end + APART * span < taken[0]).unwrap_or(ends.len());
-            ends.resize(ends.len().max(lane + 1), f64::NEG_INFINITY);
-            ends[lane] = taken[1];
-            placed.push((attractor, *colour, lane, Some(beside)));
-        }
-        (placed, ends.len())
-    };
-    let all = lanes(&|_| true);
-    if all.1 <= LOOKED_THROUGH {
-        return all;
+    let mut ends: Vec<f64> = Vec::new();
+    let mut placed = Vec::new();
+    let (brief, long): (Vec<_>, Vec<_>) =
+        found.attractors.iter().zip(colours).partition(|(attractor, _)| folding.folds(found, attractor));
+    for (attractor, colour) in long {
+        let ([from, to], name) = (bar(&over, attractor), name(attractor));
+        // At the right edge, only the left side of the bar's start has room.
+        let (beside, taken) = if from + name > high {
+            (Beside::AboveLeft, [from - name, to])
+        } else {
+            (Beside::AboveRight, [from, to.max(from + name)])
+        };
+        let lane = ends.iter().position(|end| *end + APART * span < taken[0]).unwrap_or(ends.len());
+        ends.resize(ends.len().max(lane + 1), f64::NEG_INFINITY);
+        ends[lane] = taken[1];
+        placed.push((attractor, *colour, lane, Some(beside)));
     }
-    let is_long = |attractor: &AttractorRow| {
-        let [from, to] = bar(&over, attractor);
-        to - from >= SHORT * span
-    };
-    let (mut placed, count) = lanes(&is_long);
-    placed.extend(each().filter(|(one, _)| !is_long(one)).map(|(short, colour)| (short, *colour, count, None)));
-    (placed, count + 1)
+    Lanes { placed, count: ends.len(), brief: brief.into_iter().map(|(attractor, _)| attractor).collect() }
 }
 
 /// Range of speeds of each attractor as a bar, with a stroke for its kind.
-fn bars(over: &Across, (placed, lanes): (Vec<Placed<'_>>, usize)) -> Panel {
+fn bars(over: &Across, Lanes { placed, count, brief }: Lanes<'_>) -> Panel {
     let place = |lane: usize| -(lane as f64);
     let bars = BARS.iter().filter_map(|(kind, stroke)| {
         let of_kind = placed.iter().filter(|(attractor, ..)| attractor.kind == *kind);
@@ -213,7 +256,14 @@ fn bars(over: &Across, (placed, lanes): (Vec<Placed<'_>>, usize)) -> Panel {
     let names = placed.iter().filter_map(|(attractor, _, lane, beside)| {
         Some(Label::new([bar(over, attractor)[0], place(*lane)], &attractor.id, (*beside)?))
     });
-    let series = bars.chain(marks).chain(Series::words(names).if_any()).collect();
+    let lanes = count + usize::from(!brief.is_empty());
+    let dots = brief.iter().map(|attractor| [bar(over, attractor)[0], place(count)]);
+    let dots = Series::points("", Colour::Grey, Marker::Dot, dots).called(BRIEF).if_any();
+    let number = brief.first().map(|first| {
+        let text = format!("{} brief", brief.len());
+        Label::new([bar(over, first)[0], place(count)], &text, Beside::AboveRight)
+    });
+    let series = bars.chain(marks).chain(dots).chain(Series::words(names.chain(number)).if_any()).collect();
     // Room for the names above the first lane, in a narrow figure, too.
     let range = [0.5 + place(lanes), 1.3];
     let axis = FigureAxis { spacing: TickSpacing::Nothing, ..FigureAxis::new("attractor", "").over(range) };

@@ -22,10 +22,12 @@ use corner_impact::progress::Watch;
 use corner_impact::study::attractors::{AttractorsError, Resolution, Step};
 use corner_impact::study::cam::CamSheet;
 use corner_impact::study::design::contact::{Contact, Separation};
+use corner_impact::study::design::denser::DRAWN;
 use corner_impact::study::design::{Asked, Design, design, known};
 use corner_impact::study::speeds::{SpeedSurvey, speeds, usual_range};
 use corner_impact::study::survey::{Over, Spacing};
 use corner_impact::study::verify::{ComparisonTally, External, Verification, verify_watched};
+use corner_impact_plot::Look;
 use corner_impact_plot::layout::WIDTH;
 
 /// A report on one model; serializes to the document `corner-impact/report/1`.
@@ -49,6 +51,8 @@ pub struct Report {
     pub measured: Option<Measured>,
     /// Contact force below separation; `None` if the follower leaves the cam at any speed, or never.
     pub margin: Option<Margin>,
+    /// Look of the figures.
+    pub look: Look,
     /// Units of the model's lengths in the report.
     pub units: Units,
     /// The model.
@@ -231,7 +235,7 @@ impl Report {
         let speeds = surveyed.map_err(|error| error.to_string());
         let overview = speeds.as_ref().ok().map(|found| overview(model, &cam, found));
         let attractors = speeds.as_ref().ok().map(|found| attractors(model, &cam, found));
-        let asked = Asked { rpm: Some(range), speeds: LOADED, ..Asked::default() };
+        let asked = Asked { rpm: Some(range), speeds: LOADED, drawn: Some(DRAWN), ..Asked::default() };
         let design = design(model, &asked, &part(SURVEYED, LOADS)).ok();
         let loads = design.as_ref().map(|found| loads(model, found, range));
         part(LOADS, THROUGH).at("the orbits on both sides of the corner impact", 0, 1);
@@ -263,6 +267,7 @@ impl Report {
             separation,
             measured: likely.map(|likely| likely.measured),
             margin,
+            look: Look::default(),
             units,
             parsed: model.clone(),
             speeds,
@@ -310,8 +315,8 @@ fn loads(model: &Model, found: &Design, [low, high]: [f64; 2]) -> RenderedFigure
     let figure = design_figure(found).in_units(|unit| model.units.spelled(unit));
     let title = figure.title.clone();
     let caption = format!(
-        "The least force between cam and follower of {} as long as they touch; above the separation the most of what four starts come to: \
-         impacts, gap, time off the cam and energy.",
+        "The least and the greatest force between cam and follower of {}; above the separation the most of what four starts come to: \
+         greatest force, impacts, gap, time off the cam and energy.",
         model.name
     );
     let command = command("design", model, &format!("--rpm {low}:{high} --out loads.svg"));

@@ -289,32 +289,50 @@ pub(crate) fn curves(parameter: &str, curves: &[EventCurve], units: &Units) -> S
     lines
 }
 
+/// Digits of the values in a figure's table, across and up.
+pub(crate) type FigureDigits = [usize; 2];
+/// Digits of a page: six across, because speeds may differ little, and five up.
+pub(crate) const OF_PAGE: FigureDigits = [6, 5];
+/// Digits from which a figure is drawn again, however narrow its range.
+pub(crate) const OF_SCRIPT: FigureDigits = [12, 9];
+
 /// Table of a figure's data: a row for each point of its lines and marks, and for each cell of its clouds with the number of points in it.
-/// Values have six digits across, because speeds may differ little, and five up. Cells have one digit less, as two thousand lie side by
-/// side.
-pub fn figure(figure: &Figure) -> String {
-    let mut rows = String::from("panel,series,kind,x,y,count\n");
+/// A region has a row for each rectangle, with the number of cells, and a band one for each place. Cells have one digit less, as two
+/// thousand lie side by side.
+pub(crate) fn figure(figure: &Figure, digits: FigureDigits) -> String {
+    let mut rows = String::from("panel,series,kind,x,y,count,width,height,panel_number,series_number\n");
     let word = |text: &str| format!("\"{}\"", text.replace('"', "\"\""));
-    for panel in &figure.panels {
-        for series in &panel.series {
+    for (panel_number, panel) in figure.panels.iter().enumerate() {
+        for (series_number, series) in panel.series.iter().enumerate() {
             let across = [&figure.x, &panel.y].map(|axis| format!("{} ({})", axis.label, axis.unit).replace(" ()", ""));
             let heads = format!(
                 "{},{}",
                 word(&across.join(", ")),
                 word(if series.label.is_empty() { &series.name } else { &series.label })
             );
-            let mut row = |kind: &str, [x, y]: [f64; 2], count: u16| {
-                let [across, up] = if kind == "line" || kind == "point" { [6, 5] } else { [5, 4] };
-                let [x, y] = [shown(x, across), shown(y, up)];
-                rows.push_str(&format!("{heads},{kind},{x},{y},{count}\n"));
+            let tails = format!("{panel_number},{series_number}");
+            let mut row = |kind: &str, [x, y]: [f64; 2], count: usize, [wide, high]: [f64; 2]| {
+                let is_cell = kind == "cell";
+                let [across, up] = digits.map(|digits| digits - usize::from(is_cell));
+                let [x, y, wide, high] =
+                    [(x, across), (y, up), (wide, across), (high, up)].map(|(it, to)| shown(it, to));
+                rows.push_str(&format!("{heads},{kind},{x},{y},{count},{wide},{high},{tails}\n"));
             };
+            const NO_SIZE: [f64; 2] = [f64::NAN; 2];
             match &series.data {
                 Data::Line { points, .. } | Data::Area { points, .. } | Data::Arrow { points, .. } => {
-                    points.iter().for_each(|point| row("line", *point, 1));
+                    points.iter().for_each(|point| row("line", *point, 1, NO_SIZE));
                 }
-                Data::Points { points, .. } => points.iter().for_each(|point| row("point", *point, 1)),
-                Data::Density(cells) => cells.counted().for_each(|(at, count)| row("cell", at, count)),
-                Data::Region { cells, .. } => cells.counted().for_each(|(at, _)| row("region", at, 1)),
+                Data::Band { edges } => edges.iter().for_each(|[x, low, high]| {
+                    row("band", [*x, 0.5 * (low + high)], 1, [f64::NAN, high - low]);
+                }),
+                Data::Points { points, .. } => points.iter().for_each(|point| row("point", *point, 1, NO_SIZE)),
+                Data::Density(cells) => {
+                    cells.counted().for_each(|(at, count)| row("cell", at, usize::from(count), NO_SIZE));
+                }
+                Data::Region { cells, .. } => {
+                    cells.rectangles().into_iter().for_each(|(at, size, count)| row("region", at, count, size));
+                }
                 Data::Words(_) => {}
             }
         }

@@ -9,6 +9,7 @@ pub mod digits;
 pub(crate) mod html;
 pub mod json;
 pub mod markdown;
+pub(crate) mod matplotlib;
 pub mod notes;
 pub(crate) mod page;
 pub(crate) mod words;

@@ -30,6 +30,7 @@ use crate::show::block::{Block, PageSection, in_units};
 use crate::show::html::{blocks, words};
 use corner_impact::study::verify::Verification;
 use corner_impact::untrusted;
+use corner_impact_plot::look::LookError;
 use corner_impact_plot::svg::SvgError;
 
 const STYLE: &str = include_str!("page.css");
@@ -47,6 +48,9 @@ pub enum HtmlError {
     /// A figure could not be written.
     #[error("figure: {0}")]
     Figure(#[from] SvgError),
+    /// A figure has no room in the look that is asked for.
+    #[error(transparent)]
+    Look(#[from] LookError),
     /// A figure's data could not be compressed.
     #[error("data of a figure: {0}")]
     Packed(#[from] std::io::Error),

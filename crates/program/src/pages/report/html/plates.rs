@@ -7,7 +7,7 @@ use crate::pages::report::html::{HtmlError, packed};
 use crate::report::Report;
 use crate::show::block::{Block, PageSection};
 use crate::show::csv;
-use corner_impact_plot::{Look, svg};
+use corner_impact_plot::{LegendPlace, Look, TitleChoice, svg};
 
 /// Name of the figure beside the model.
 pub(crate) const CAM: &str = "cam";
@@ -30,11 +30,12 @@ fn elsewhere(plate: &RenderedFigure, report: &Report) -> Markup {
     html! { p.note { (place(plate, report)) a href={ "#plate-" (plate.id) } { (plate.title) } " stands with the model." } }
 }
 
-/// Look of a figure on a telephone: narrow, with letters as large as the surrounding text.
-fn narrow() -> Look {
+/// Look of a figure on a telephone: narrow, with letters as large as the surrounding text, and without room beside it.
+fn narrow(look: &Look) -> Look {
     /// Width of a telephone's screen, points, on the scale on which a page has its width.
     const PHONE: f64 = 250.0;
-    Look { width: Some(PHONE), untitled: true, ..Look::default() }
+    let legend = if look.legend == LegendPlace::Right { LegendPlace::Below } else { look.legend };
+    Look { width: Some(PHONE), size: None, title: TitleChoice::Hidden, legend, ..look.clone() }
 }
 
 /// Number of the paper's figure, shown only for the paper's model.
@@ -46,11 +47,12 @@ fn place(plate: &RenderedFigure, report: &Report) -> Markup {
 pub(crate) fn plate(plate: &RenderedFigure, report: &Report) -> Result<Block, HtmlError> {
     let (drawing, caption) = match &plate.drawn {
         Ok(Captioned { figure, caption }) => {
-            let [broad, narrow] = [Look::default(), narrow()].map(|look| svg::render(figure, &look));
+            report.look.has_room(figure)?;
+            let [broad, narrow] = [&report.look, &narrow(&report.look)].map(|look| svg::render(figure, look));
             let drawing = html! {
                 div.drawing.broad { (PreEscaped(broad?)) }
                 div.drawing.narrow data-packed=(packed(&narrow?)?) {}
-                div.save data-packed=(packed(&csv::figure(figure))?) {}
+                div.save data-packed=(packed(&csv::figure(figure, csv::OF_PAGE))?) {}
             };
             (drawing, html! { (caption) code.command { (plate.command) } })
         }

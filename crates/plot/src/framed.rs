@@ -1,0 +1,65 @@
+//! The part of a figure that a look shows, and whether the figure has room in it.
+
+use super::layout::{LARGEST, Layout};
+use super::look::{LegendPlace, Look, LookError};
+use super::{Data, Figure, Panel, extent};
+
+/// Largest ratio of the drawn range to the displayed range: farther out, coordinates are clamped, and lines would change direction.
+const FARTHEST: f64 = 100.0;
+
+impl Look {
+    /// Checks that the figure fits into the height of the look, beside its legend.
+    pub fn has_room(&self, figure: &Figure) -> Result<(), LookError> {
+        /// Largest difference in height, points: the page is as high as a whole number of units.
+        const CLOSE: f64 = 1.0;
+        if self.height.is_none() && self.legend != LegendPlace::Right {
+            return Ok(());
+        }
+        let (layout, width) = (Layout::new(figure, self), self.points());
+        let needed = layout.height * width / self.across();
+        if let Some(height) = self.height.filter(|height| (height - needed).abs() > CLOSE) {
+            return Err(LookError::Height { height, width, needed });
+        }
+        let reaches = layout.panels.iter().map(|panel| panel.frame.right()).fold(0.0, f64::max);
+        let legend = layout.panels.iter().flat_map(|panel| &panel.legend).map(|(_, text)| text.at[0]);
+        let is_apart = self.legend != LegendPlace::Right || reaches < legend.fold(f64::INFINITY, f64::min);
+        if is_apart { Ok(()) } else { Err(LookError::Legend(width)) }
+    }
+
+    /// Restricts the figure to the requested ranges; the vertical one applies to the first panel only.
+    pub fn framed(&self, mut figure: Figure) -> Result<Figure, LookError> {
+        if let Some(shown) = self.x {
+            let drawn = extent(figure.panels.iter().flat_map(|panel| reach(panel, 0)));
+            figure.x.range = Some(within("--x-range", shown, drawn)?);
+        }
+        if let Some((shown, panel)) = self.y.zip(figure.panels.first_mut()) {
+            panel.y.range = Some(within("--y-range", shown, extent(reach(panel, 1)))?);
+        }
+        self.has_room(&figure)?;
+        Ok(figure)
+    }
+}
+
+/// Drawable data of a panel in one direction, from which its extent follows.
+fn reach(panel: &Panel, direction: usize) -> Vec<f64> {
+    let of = |data: &Data| match data {
+        Data::Density(cells) | Data::Region { cells, .. } => cells.ranges()[direction].to_vec(),
+        Data::Band { edges } if direction == 0 => edges.iter().map(|[x, ..]| *x).collect(),
+        Data::Band { edges } => edges.iter().flat_map(|[_, low, high]| [*low, *high]).collect(),
+        data => data.points().unwrap_or_default().iter().map(|point| point[direction]).collect(),
+    };
+    let all = panel.series.iter().flat_map(|series| of(&series.data));
+    all.filter(|value| value.abs() < LARGEST).collect()
+}
+
+fn within(axis: &'static str, shown: [f64; 2], drawn: [f64; 2]) -> Result<[f64; 2], LookError> {
+    let [low, high] = drawn;
+    // Without data, any range will do.
+    if low <= high && (shown[1] < low || high < shown[0]) {
+        return Err(LookError::Aside { axis, shown, drawn });
+    }
+    if high - low > FARTHEST * (shown[1] - shown[0]) {
+        return Err(LookError::Narrow { axis, shown, drawn });
+    }
+    Ok(shown)
+}

@@ -1,0 +1,29 @@
+//! Values between those of a table, so that a curve through them looks like one.
+
+use crate::study::survey::Spacing;
+
+/// Number of values from which a curve is drawn: three to a millimetre of a column's width.
+pub const DRAWN: usize = 241;
+
+/// Values between each neighbouring pair of a table's, so that there are at least `count` in all with the table's own.
+pub(super) fn between(values: &[f64], spacing: Spacing, count: usize) -> Vec<f64> {
+    let pieces = values.len().saturating_sub(1);
+    let parts = count.saturating_sub(1).div_ceil(pieces.max(1)).max(1);
+    let of_pair = |pair: &[f64]| {
+        let [from, to] = [pair[0], pair[1]].map(|value| spacing.place(value));
+        let value = move |part: usize| spacing.value(from + (to - from) * part as f64 / parts as f64);
+        (1..parts).map(value).collect::<Vec<_>>()
+    };
+    values.windows(2).flat_map(of_pair).collect()
+}
+
+/// Uncertainties at `value`, linearly between those at the neighbouring values of a table; none beside a value without them.
+pub(super) fn errors<const N: usize>(known: &[(f64, Option<[f64; N]>)], value: f64) -> Option<[f64; N]> {
+    let after = known.partition_point(|(at, _)| *at < value);
+    if let Some((_, errors)) = known.get(after).filter(|(at, _)| *at == value) {
+        return *errors;
+    }
+    let ((low, one), (high, other)) = (known.get(after.checked_sub(1)?)?, known.get(after)?);
+    let ((one, other), part) = ((one.as_ref()?, other.as_ref()?), (value - low) / (high - low));
+    Some(std::array::from_fn(|index| one[index] + (other[index] - one[index]) * part))
+}
