@@ -57,12 +57,6 @@ impl OffsetArc {
         Lift { value, slope, curvature, third }
     }
 
-    /// Whether the line meets the circle, and crosses it, at every angle from `start` to `end`, rad.
-    pub(super) fn reaches(&self, start: f64, end: f64) -> bool {
-        let (sin, _) = (Interval::new(start, end) - self.direction).sin_cos();
-        self.root_squared(sin * self.distance + self.offset).is_positive()
-    }
-
     /// `c(from + turn) - c(from)`, m, exact as `turn` goes to 0.
     pub fn rise(&self, from: f64, turn: f64) -> f64 {
         let (half_sin, half_cos) = elementary::sin_cos(0.5 * turn);
@@ -85,13 +79,9 @@ impl OffsetArc {
         self.bound(4, start, end)
     }
 
-    /// A bound on a derivative over `[start, end]`, from interval arithmetic.
+    /// A bound on a derivative over `[start, end]`, from interval arithmetic; infinite where the line may miss the circle.
     fn bound(&self, order: usize, start: f64, end: f64) -> f64 {
-        if self.reaches(start, end) {
-            self.derivatives(Interval::new(start, end))[order].magnitude()
-        } else {
-            f64::INFINITY
-        }
+        self.derivatives(Interval::new(start, end))[order].magnitude()
     }
 
     /// Lift and high derivatives at `angle`, rad.

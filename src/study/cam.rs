@@ -46,8 +46,6 @@ pub struct CamGeometry {
     pub contact: FollowerContact,
     /// Least radius of curvature of the contour, m.
     pub least_radius_m: f64,
-    /// Cam angle of that radius, rad.
-    pub least_radius_angle_rad: f64,
     /// Largest angle between the contour's normal and the follower's motion, rad, without its sign.
     pub pressure_angle_rad: f64,
     /// Cam angle of that angle, rad.
@@ -62,13 +60,11 @@ impl CamGeometry {
     pub fn of(model: &Model, cam: &Cam) -> Option<Self> {
         let contact = model.cam.contact()?;
         let steepness = |point: &ContourPoint| point.pressure_angle.abs();
-        let sharpest = cam.contour(contact).min_by(|one, two| one.radius.total_cmp(&two.radius))?;
         let steepest = cam.contour(contact).max_by(|one, two| steepness(one).total_cmp(&steepness(two)))?;
         let slope = |sign: f64| cam.least([0.0, sign, 0.0, 0.0]).value;
         Some(Self {
             contact,
-            least_radius_m: sharpest.radius,
-            least_radius_angle_rad: sharpest.cam_angle,
+            least_radius_m: cam.contour(contact).map(|point| point.radius).fold(f64::INFINITY, f64::min),
             pressure_angle_rad: steepness(&steepest),
             pressure_angle_at_rad: steepest.cam_angle,
             face_width_m: (contact == FollowerContact::Flat).then(|| -slope(1.0) - slope(-1.0)),

@@ -54,8 +54,7 @@ pub(crate) fn follower(geometry: Option<&CamGeometry>) -> Block {
             words!["; largest pressure angle ", angle, " deg", at(of.pressure_angle_at_rad), large]
         }
     };
-    let sharpest =
-        words!["; least radius of curvature of the cam ", length(of.least_radius_m), at(of.least_radius_angle_rad)];
+    let sharpest = words!["; least radius of curvature of the cam ", length(of.least_radius_m)];
     Block::paragraph(words!["follower: ", end, pressed, sharpest])
 }
 
