@@ -5,7 +5,7 @@ import sys
 
 import numpy as np
 
-PER_CIRCLE = 400_000
+PER_CIRCLE = 100_000
 
 
 def contour(cam):
