@@ -4,12 +4,31 @@ from flint import arb
 
 
 class Circle:
+    """A circle about polar (distance kappa, direction), seen from the axis: c = kappa cos(phi) + sqrt(rho^2 - kappa^2 sin^2(phi))."""
+
+    def __init__(self, distance, direction, radius):
+        self.distance, self.direction, self.radius = distance, direction, radius
+
+    def derivatives(self, angle):
+        """(c, c', c'', c''') over the ball."""
+        sin, cos = (angle - self.direction).sin_cos()
+        # a = kappa sin(phi), b = kappa cos(phi), w^2 = rho^2 - a^2; a' = b, b' = -a.
+        a, b = self.distance * sin, self.distance * cos
+        w = ((self.radius - a) * (self.radius + a)).sqrt()
+        # w w' = -a b,  w'^2 + w w'' = a^2 - b^2,  3 w' w'' + w w''' = 4 a b
+        w1 = -(a * b) / w
+        w2 = ((a - b) * (a + b) - w1 * w1) / w
+        w3 = (4 * a * b - 3 * w1 * w2) / w
+        return b + w, w1 - a, w2 - b, w3 + a
+
+
+class OffsetCircle:
     """A circle about polar (distance kappa, direction), met by a line at an offset e to the left of the axis.
 
     c = kappa cos(phi) + sqrt(rho^2 - (kappa sin(phi) + e)^2)
     """
 
-    def __init__(self, distance, direction, radius, offset=0):
+    def __init__(self, distance, direction, radius, offset):
         self.distance, self.direction, self.radius, self.offset = distance, direction, radius, offset
 
     def derivatives(self, angle):

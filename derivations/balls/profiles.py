@@ -8,7 +8,7 @@ from math import floor
 
 from flint import arb, arb_mat, arb_poly, fmpq
 
-from .laws import Circle, Waves
+from .laws import Circle, OffsetCircle, Waves
 from .numbers import Refused, Undecided, decimal
 
 # Larger systems than a measured cam has; their solution in balls takes minutes.
@@ -72,7 +72,7 @@ def arcs(table):
     def circle(distance, direction, radius):
         if contact == "flat":
             return Waves(arb(0), [radius], [(distance, 1, -direction)])
-        return Circle(distance, direction, radius + tip, offset)
+        return OffsetCircle(distance, direction, radius + tip, offset) if offset != 0 else Circle(distance, direction, radius + tip)
 
     def dwell(radius):
         return Waves(arb(0), [((radius + tip - offset) * (radius + tip + offset)).sqrt() if offset != 0 else radius + tip])
