@@ -174,7 +174,7 @@ fn figure(title: &str, cam: &Cam, outline: &Outline) -> Figure {
     let follower = [from, [from[0], from[1] + 0.45 * farthest]];
     series.extend([
         Series::line("", Colour::Grey, Stroke::Thin, outline.pitch.iter().copied()),
-        Series::line("", Colour::Purple, Stroke::Thick, outline.follower.iter().copied()),
+        Series::line("", Colour::Purple, Stroke::Solid, outline.follower.iter().copied()),
     ]);
     let turn = (0..=24).map(|step| {
         let angle = -0.5 + f64::from(step) / 24.0;
