@@ -58,11 +58,13 @@ const WORDS: [(Meaning, &str); 20] = [
     (Meaning::LengthUnit(5), "ft foot feet"),
     (Meaning::LengthUnit(6), "thou thous mil mils"),
     (Meaning::TimeUnit, "s sec ms min"),
-    (Meaning::OtherUnit, "km dm nm pm yd yard yards gon gons mrad arcmin arcsec °c °f"),
+    (Meaning::OtherUnit, "km dm nm pm yd yard yards gon gons mrad arcmin arcsec °c °f %"),
     (Meaning::Part(1), "tenth tenths zehntel"),
     (Meaning::Part(2), "hundredth hundredths hundertstel"),
     (Meaning::Part(3), "thousandth thousandths tausendstel"),
 ];
+/// The unit of gauges.
+const MILLIMETRE: Meaning = Meaning::LengthUnit(2);
 /// The meaning of each word.
 static MEANINGS: LazyLock<HashMap<&str, Meaning>> = LazyLock::new(|| words().collect());
 /// The endings of longer words.
@@ -147,7 +149,8 @@ fn first_length(text: &str) -> usize {
 /// Takes a text apart.
 fn tokens(text: &str) -> Vec<Token> {
     /// Signs by the forms that they are typed in.
-    const SIGNS: [(&str, &str); 6] = [("/", "/"), ("#", "#"), ("°", "°"), ("*", "*×"), ("'", "'’′´"), ("\"", "\"″”“")];
+    const SIGNS: [(&str, &str); 7] =
+        [("/", "/"), ("#", "#"), ("%", "%"), ("°", "°"), ("*", "*×"), ("'", "'’′´"), ("\"", "\"″”“")];
     let mut text = text.replace("\"\"", "\"").replace('º', "°");
     for (power, raised) in (1..).zip(['¹', '²', '³', '⁴', '⁵', '⁶']) {
         for written in [format!("10⁻{raised}"), format!("10^-{power}")] {
@@ -431,7 +434,12 @@ fn named<T: PartialEq>(
     }
     found.dedup();
     match found.len() {
-        0 if is_unread || times.is_some() || !units.is_empty() => Err(Vec::new()),
+        0 if units.is_empty() && times.is_some() => {
+            // Parts of a unit that has no name: of a millimetre, as gauges have them.
+            let meant = times.and_then(places_of).and_then(|places| of(MILLIMETRE, places));
+            Err(meant.iter().map(name).collect())
+        }
+        0 if is_unread || !units.is_empty() => Err(Vec::new()),
         0 | 1 => Ok(found.pop()),
         _ => Err(found.iter().map(name).collect()),
     }

@@ -171,7 +171,13 @@ pub(super) fn without_comment(line: &str) -> (&str, Option<&str>) {
     if line.trim_start().starts_with('*') {
         return ("", Some(line));
     }
-    let at = MARKS.iter().filter_map(|mark| line.find(mark)).min();
+    // A percent sign is a unit, but where a line begins with it or it follows a number.
+    let is_mark = |at: usize, mark: &str| {
+        let before = line[..at].trim_end();
+        mark != "%" || before.is_empty() || before.ends_with(|letter: char| letter.is_ascii_digit() || letter == '.')
+    };
+    let first = |mark: &&str| line.match_indices(*mark).map(|(at, _)| at).find(|at| is_mark(*at, mark));
+    let at = MARKS.iter().filter_map(first).min();
     // In `Pt #,Angle` and `Pt #  Angle` the sign belongs to the name, and in `Angle,#` it is one.
     let is_name = |at: usize| {
         const PARTS: [char; 4] = [',', ';', '\t', '|'];

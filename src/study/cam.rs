@@ -46,6 +46,8 @@ pub struct CamGeometry {
     pub contact: FollowerContact,
     /// Least radius of curvature of the contour, m.
     pub least_radius_m: f64,
+    /// Whether this follower can touch all of the contour: a flat face touches no hollow, and a roller none that is narrower than itself.
+    pub is_touchable: bool,
     /// Largest angle between the contour's normal and the follower's motion, rad, without its sign.
     pub pressure_angle_rad: f64,
     /// Cam angle of that angle, rad.
@@ -61,10 +63,17 @@ impl CamGeometry {
         let contact = model.cam.contact()?;
         let steepness = |point: &ContourPoint| point.pressure_angle.abs();
         let steepest = cam.contour(contact).max_by(|one, two| steepness(one).total_cmp(&steepness(two)))?;
+        let widest = match contact {
+            FollowerContact::Point => 0.0,
+            FollowerContact::Flat => f64::INFINITY,
+            FollowerContact::Roller { roller_radius, .. } => roller_radius,
+        };
+        let is_touched = |point: ContourPoint| point.radius >= 0.0 || point.radius <= -widest;
         let slope = |sign: f64| cam.least([0.0, sign, 0.0, 0.0]).value;
         Some(Self {
             contact,
             least_radius_m: cam.contour(contact).map(|point| point.radius).fold(f64::INFINITY, f64::min),
+            is_touchable: cam.contour(contact).all(is_touched),
             pressure_angle_rad: steepness(&steepest),
             pressure_angle_at_rad: steepest.cam_angle,
             face_width_m: (contact == FollowerContact::Flat).then(|| -slope(1.0) - slope(-1.0)),

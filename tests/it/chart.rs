@@ -182,7 +182,7 @@ fn a_store_is_the_table_in_blocks() {
     let speeds = stored(whole.as_ref(), "impact_speed", f64::from_le_bytes);
     assert!(speeds.into_iter().zip(column(7).map(|cell| number(&cell))).all(same));
     let rpm = std::fs::read(folder.path().join("whole.zarr/rpm/c/0")).unwrap();
-    assert_eq!(f64::from_le_bytes(rpm[119 * 8..].try_into().unwrap()), 190.0);
+    assert_eq!(f64::from_le_bytes(rpm[119 * 8..120 * 8].try_into().unwrap()), 190.0);
     // Two parts, in any order, and then what was lost.
     let parts = path("parts.zarr");
     assert_eq!(into(&parts, &["--shard", "2/2"])["blocks"], blocks(2, 2));
@@ -329,7 +329,9 @@ fn curves_go_over_the_chart() {
         };
         let panel = "<svg x=";
         let place = [right * quoted(panel, "width"), (1.0 - up) * quoted(panel, "height")];
-        let line = svg.lines().find(|line| line.starts_with("<path") && line.contains("s-vermilion")).unwrap();
+        // Corner impacts are the thick curves.
+        let is_thick = |line: &&str| line.contains("stroke-width=\"4.5\"") && line.contains("s-ink");
+        let line = svg.lines().filter(|line| line.starts_with("<path")).find(is_thick).unwrap();
         let line = &line[line.find(" d=\"M").unwrap() + 5..];
         let points = line[..line.find('"').unwrap()].split(['M', 'L']).map(|point| {
             let (x, y) = point.split_once(' ').unwrap();

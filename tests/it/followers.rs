@@ -177,6 +177,10 @@ fn the_geometry_is_that_of_the_circles() {
         assert_relative_eq!(farthest, 0.15 + 0.404_081, max_relative = 1e-3);
         assert_eq!(found.face_width_m.is_some(), contact.contains("flat"), "{contact}");
     }
+    // Rounded over a degree, with the lift kept, the way into the nose is hollow.
+    let rounded = |contact: &str| geometry(&textbook(&format!("corner_rounding_deg = 1.0\n{contact}"))).is_touchable;
+    assert!(rounded("") && !rounded("contact = \"flat\"") && rounded("contact = { roller_radius = 8.0 }"));
+    assert!(geometry(&textbook("contact = \"flat\"")).is_touchable);
     // tan(alpha) = c'/c of a point; sin(alpha) = e/R on the base circle of an offset roller.
     let point = geometry(&paper(""));
     let lift = common::cam(&paper("")).lift(point.pressure_angle_at_rad);

@@ -1030,7 +1030,8 @@ fn a_new_measured_machine() {
     for says in [
         "id=\"loads\"",
         "table: 180 rows; columns parted by commas",
-        ">impact speed (mm/s)<",
+        ">impact speed</text>",
+        ">(mm/s)<",
         "± is what the cam leaves open, lift rounded to 0.001 mm",
         "of the cam as it is drawn (lift rounded to 0.001 mm); the loads below have their ±.",
         "design valve.toml --rpm 2700:3500 --out loads.svg",

@@ -274,6 +274,15 @@ fn script(line: &str) -> [String; 2] {
     ["it.py", "it.csv"].map(|name| std::fs::read_to_string(path(name)).unwrap())
 }
 
+/// Where the follower leaves the cam at the low end of a range, the greatest force goes on by rising values.
+#[test]
+fn the_greatest_force_is_one_curve() {
+    let [_, data] = script("design models/preloaded.toml --rpm 126 --over stiffness=300:3000:6");
+    let greatest = data.lines().filter(|line| line.ends_with(",0,0"));
+    let places: Vec<f64> = greatest.map(|row| row.rsplit(',').nth(6).unwrap().parse().unwrap()).collect();
+    assert!(places.len() >= 241 && places.windows(2).all(|pair| pair[0] < pair[1]), "{places:?}");
+}
+
 /// The vertical axis of `continue` spans the branches, also where runs settle elsewhere.
 #[test]
 fn branches_fill_their_axis() {

@@ -88,7 +88,7 @@ pub struct LoadCurves {
 }
 
 impl LoadCurves {
-    /// Returns the largest contact force at each value, with its uncertainty: of the cam as long as the follower stays on it, else of the
+    /// Returns the largest contact force by rising value, with its uncertainty: of the cam as long as the follower stays on it, else of the
     /// motions, without impacts.
     pub fn greatest_forces(&self) -> Vec<(Place, f64, Option<f64>)> {
         let parted = |place: Place| self.loads.iter().any(|loads| loads.place == place);
@@ -96,7 +96,9 @@ impl LoadCurves {
         let on_cam = self.forces.iter().filter(|at| !parted(at.place));
         let on_cam = on_cam.map(|at| (at.place, at.largest, error(at)));
         let off_cam = self.loads.iter().map(|loads| (loads.place, loads.force, loads.errors.map(|errors| errors[4])));
-        on_cam.chain(off_cam).collect()
+        let mut all: Vec<_> = on_cam.chain(off_cam).collect();
+        all.sort_by(|(one, ..), (other, ..)| one.across().total_cmp(&other.across()));
+        all
     }
 }
 

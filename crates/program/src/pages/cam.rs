@@ -55,7 +55,8 @@ pub(crate) fn follower(geometry: Option<&CamGeometry>) -> Block {
         }
     };
     let sharpest = words!["; least radius of curvature of the cam ", length(of.least_radius_m)];
-    Block::paragraph(words!["follower: ", end, pressed, sharpest])
+    let hollow = if of.is_touchable { "" } else { "; it has a hollow that this follower cannot touch" };
+    Block::paragraph(words!["follower: ", end, pressed, sharpest, hollow])
 }
 
 /// The largest velocity, acceleration and jerk, a line each.
