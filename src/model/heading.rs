@@ -440,6 +440,8 @@ fn named<T: PartialEq>(
             Err(meant.iter().map(name).collect())
         }
         0 if is_unread || !units.is_empty() => Err(Vec::new()),
+        // A share of the length beside it, or so.
+        1 if tokens.iter().any(|token| token.text == "%") => Err(Vec::new()),
         0 | 1 => Ok(found.pop()),
         _ => Err(found.iter().map(name).collect()),
     }

@@ -217,6 +217,7 @@ fn a_unit_that_is_not_understood_is_refused_with_the_line_that_says_it() {
         ("angle;Hub [1/100]", multiple, "unit = \"0.01 mm\"", 0.01),
         ("angle;lift [%]", one_of, "unit = \"mm\"", 1.0),
         ("angle;lift (%)", one_of, "unit = \"mm\"", 1.0),
+        ("angle [deg];lift % of 8 mm", one_of, "unit = \"mm\"", 1.0),
         ("angle [deg];lift %", one_of, "unit = \"mm\"", 1.0),
         ("angle;lift deg", one_of, "unit = \"mm\"", 1.0),
         ("angle;Lift\"", one_of, "unit = \"in\"", 25.4),
