@@ -219,7 +219,7 @@ pub(super) fn part_of_unit(text: &str) -> Option<LiftUnit> {
     }
 }
 
-/// What a number beside a unit makes of it.
+/// Multiple of a unit that a number beside it says.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Parts {
     /// A decimal part of the unit, by its number of places; 0 is the unit itself.

@@ -458,7 +458,7 @@ fn a_refused_table_without_a_model_says_how_to_have_one() {
     assert!(!page("angle,lift\n0,x\n").1.contains("no model file yet"));
 }
 
-/// What may not be meant is said.
+/// Readings that may not be meant are noted.
 #[test]
 fn doubts_about_a_table_are_noted() {
     let doubts = |csv: &str, fields: &str| table(&model(&TempDir::new().unwrap(), csv, fields).unwrap()).doubts();

@@ -188,7 +188,7 @@ mod unix {
     /// Signals wait for the registry. As soon as the first of many names is there, nobody gets it until the last one is.
     #[test]
     fn signals_wait_until_all_files_have_their_names() {
-        /// As many as one process may have open.
+        /// Number of files: a process may have about as many open.
         const MANY: usize = 800;
         let folder = TempDir::new().unwrap();
         let file = |index: usize| {
