@@ -71,6 +71,7 @@ mod ledger;
 mod limits;
 mod local_map;
 mod locate;
+mod machines;
 mod measured;
 mod memory;
 mod mirrored;

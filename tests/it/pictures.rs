@@ -123,7 +123,7 @@ fn a_figure_is_as_high_as_asked() {
         }
     }
     let low = Look { height: Some(60.0), ..column() }.framed(figure).unwrap_err().to_string();
-    assert!(low.contains("cannot be 60.0 pt high") && low.contains("it takes"), "{low}");
+    assert!(low.contains("cannot be 21.2 mm high") && low.contains("it takes"), "{low}");
     let long = lines(&["a name that is longer than half of the column"], [0.0, 1.0], 0.5);
     let right = Look { legend: LegendPlace::Right, ..column() }.framed(long).unwrap_err().to_string();
     assert!(right.contains("leaves no room") && right.contains("--legend below"), "{right}");
@@ -303,4 +303,22 @@ fn curves_of_events_are_in_ink() {
     let [script, _] = script("curve --rpm 600:760 --over restitution=0.5:0.95");
     let lines: Vec<&str> = script.lines().filter(|line| line.contains("\"kind\": \"line\"")).collect();
     assert!(lines.len() > 3 && lines.iter().all(|line| line.contains("#1a1a1a")), "{lines:?}");
+}
+
+/// An attractor that only one of the speeds has would be a line of no length.
+#[test]
+fn the_share_of_an_attractor_of_one_speed_is_a_point() {
+    let folder = tempfile::TempDir::new().unwrap();
+    let at = |name: &str| folder.path().join(name).display().to_string();
+    let words = ["speeds", "--rpm", "600:760", "--speeds", "5", "--starts", "8", "--out"];
+    let words = words.map(String::from).into_iter().chain([at("speeds.svg"), "--script".into(), at("speeds.py")]);
+    assert_eq!(common::corner_impact(words).status.code(), Some(0));
+    let rows = std::fs::read_to_string(folder.path().join("speeds.csv")).unwrap();
+    let kinds = |attractor: &str| -> Vec<&str> {
+        let rows = rows.lines().filter(|row| row.contains("share of starts") && row.contains(attractor));
+        rows.map(|row| row.rsplit("\",").next().unwrap().split(',').next().unwrap()).collect()
+    };
+    assert_eq!(kinds("\"A1\""), ["line"; 3]);
+    assert!(kinds("\"A4\"").iter().all(|kind| *kind == "point"), "{:?}", kinds("\"A4\""));
+    assert_eq!(kinds("\"A4\"").len(), 1);
 }

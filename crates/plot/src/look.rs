@@ -85,6 +85,11 @@ pub fn length(text: &str) -> Result<f64, String> {
     Ok(number.ok_or("must be a finite number above 0 with its unit")? * points)
 }
 
+/// Millimetres of points.
+fn millimetres(points: f64) -> f64 {
+    points * 25.4 / 72.0
+}
+
 /// Checks the ends of an axis: finite numbers, the lower first.
 pub fn ends([low, high]: [f64; 2]) -> Result<[f64; 2], String> {
     let is_range = low.is_finite() && high.is_finite() && low < high;
@@ -119,17 +124,20 @@ pub struct Look {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LookError {
     /// A width outside the allowed range.
-    #[error("a figure {0:.1} pt wide cannot be made: {low} to {high} pt can", low = WIDTHS[0], high = WIDTHS[1])]
+    #[error("a figure {:.1} mm wide cannot be made: {:.1} to {:.0} mm can", millimetres(*.0), millimetres(WIDTHS[0]), millimetres(WIDTHS[1]))]
     Width(f64),
     /// A height in which the panels and words have no room, or that panels to scale do not have.
-    #[error("this figure cannot be {height:.1} pt high at a width of {width:.1} pt: it takes {needed:.1} pt")]
+    #[error(
+        "this figure cannot be {:.1} mm high at a width of {:.1} mm: it takes {:.1} mm",
+        millimetres(*height), millimetres(*width), millimetres(*needed)
+    )]
     #[expect(missing_docs, reason = "what the words say")]
     Height { height: f64, width: f64, needed: f64 },
     /// A legend that leaves the frames too little room.
-    #[error("the legend leaves no room for the figure in a width of {0:.1} pt: --legend below or above does")]
+    #[error("the legend leaves no room for the figure in a width of {:.1} mm: --legend below or above does", millimetres(*.0))]
     Legend(f64),
     /// Letters that leave no room, or that are too small to read.
-    #[error("letters of {size:.2} pt do not fit into a figure {width:.1} pt wide: {low:.2} to {high:.1} pt do")]
+    #[error("letters of {size:.2} pt do not fit into a figure {:.1} mm wide: {low:.2} to {high:.1} pt do", millimetres(*width))]
     #[expect(missing_docs, reason = "what the words say")]
     Size { size: f64, width: f64, low: f64, high: f64 },
     /// A range that shows no data.

@@ -95,7 +95,11 @@ fn with_folded(found: &SpeedSurvey, corners: &[CornerMark], across: f64) -> (Fig
     let shares = long.iter().map(|(index, attractor)| {
         let stroke = BARS.iter().find(|(kind, _)| *kind == attractor.kind).map_or(Stroke::Thin, |(_, stroke)| *stroke);
         let points = attractor.at.iter().map(|at| [over.place(at.value()), 100.0 * at.share.value]);
-        Series::line("", colour(*index), stroke, points).called(&attractor.id)
+        // One point makes no line.
+        let of_one = || Series::points("", colour(*index), marker(attractor, colour(*index)), points.clone());
+        let shares =
+            if attractor.at.len() == 1 { of_one() } else { Series::line("", colour(*index), stroke, points.clone()) };
+        shares.called(&attractor.id)
     });
     let shares = shade(SHARES[1]).into_iter().chain(shares).collect();
     let shares = Panel::new(FigureAxis::new("share of starts", "%").over(SHARES), 0.14, shares);
