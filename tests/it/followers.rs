@@ -150,6 +150,21 @@ fn an_offset_may_turn_a_circle_past_angle_0() {
     }
 }
 
+/// A flank that starts at angle 0 ends on the way down at the end of the turn: there is no base circle.
+#[test]
+fn a_flank_may_start_at_angle_0() {
+    let with = |start: f64| {
+        let circles = "base_radius = 0.4\nflank_radius = 0.5\nnose_radius = 0.3\nnose_end_deg = 170.0\n";
+        common::cam(&read("", &format!("{circles}flank_start_deg = {start:?}\n"), "").unwrap())
+    };
+    let (cam, near) = (with(0.0), with(1e-9));
+    for index in 0..1000 {
+        let angle = TAU * f64::from(index) / 1000.0;
+        assert_abs_diff_eq!(cam.lift(angle).value, near.lift(angle).value, epsilon = 1e-9);
+    }
+    assert_eq!(cam.segments().len() + 2, near.segments().len());
+}
+
 #[test]
 fn a_flat_face_separates_four_times_as_fast_as_a_point() {
     // Of the flat face where the nose begins, at `c = rho + kappa cos(phi)`: `m w^2 (c - rho) = F + k (c - c_min)`.

@@ -410,7 +410,7 @@ fn pages_are_for_eighty_columns() {
         ("design --rpm 200 --over mass=1:2:3", true),
         ("simulate --rpm 183 --revolutions 5", false),
         ("simulate --rpm 670 --lyapunov", false),
-        ("speeds --rpm 600:760 --speeds 20 --starts 8", true),
+        ("speeds --rpm 600:760 --speeds 5 --starts 4", true),
         ("diagram --rpm 660:670:3", false),
         ("chart --over rpm=600:760:3 --over restitution=0.5:0.9:3", false),
         ("basins --rpm 678 --grid 4x4", false),

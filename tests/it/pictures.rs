@@ -264,6 +264,22 @@ fn loads_are_drawn_from_more_speeds_than_the_table_has() {
     assert!(below && impacts.iter().any(|[rpm, speed]| *rpm > passed && *speed > 0.5), "{passed}");
 }
 
+/// Between two speeds of the table the band of ± is linearly between those that the table has.
+#[test]
+fn the_band_of_loads_is_that_of_the_table() {
+    let folder = tempfile::tempdir().unwrap();
+    let valve = folder.path().join("valve.toml").display().to_string();
+    assert_eq!(common::corner_impact(["new", &valve, "--law", "table"]).status.code(), Some(0));
+    let [_, data] = script(&format!("design {valve} --rpm 2000:2800 --speeds 3"));
+    let number = |row: &str, from_the_end: usize| row.rsplit(',').nth(from_the_end).unwrap().parse::<f64>().unwrap();
+    let rows: Vec<&str> = data.lines().filter(|row| row.contains(",band,") && row.ends_with(",0,0")).collect();
+    let width = |rpm: f64| number(rows.iter().find(|row| number(row, 6) == rpm).unwrap(), 2);
+    for [low, middle, high] in [[2000.0, 2200.0, 2400.0], [2400.0, 2600.0, 2800.0]] {
+        assert!(width(low) < width(high));
+        approx::assert_relative_eq!(width(middle), 0.5 * (width(low) + width(high)), max_relative = 1e-7);
+    }
+}
+
 /// Runs a command that draws, and returns its script and its data.
 fn script(line: &str) -> [String; 2] {
     let folder = tempfile::tempdir().unwrap();

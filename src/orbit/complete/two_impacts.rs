@@ -20,7 +20,7 @@ use std::f64::consts::{PI, TAU};
 
 use super::clearance::Hop;
 use super::{Solved, Standing, Struck, joined};
-use crate::cam::Lift;
+use crate::cam::{Lift, Segment};
 use crate::flight::Response;
 use crate::interval::Interval;
 use crate::interval::dual::Dual;
@@ -32,11 +32,52 @@ use crate::simulate::Machine;
 /// Boxes after which everything else is left undecided: some seconds.
 const MOST_BOXES: usize = 1 << 18;
 
-/// Two segments of the cam, one struck after the other.
+/// A run of neighbouring segments of the cam.
+struct Run {
+    /// Indices of its first and last segment.
+    ends: [usize; 2],
+    angles: Interval,
+    /// Enclosures of its lift and derivatives.
+    over: Lift<Interval>,
+    /// Both halves of a run of several segments.
+    halves: Option<Box<[Run; 2]>>,
+}
+
+impl Run {
+    fn of(segments: &[Segment], ends: [usize; 2]) -> Self {
+        let [first, last] = ends;
+        let angles = Interval::new(segments[first].start, segments[last].end);
+        if first == last {
+            return Self { ends, angles, over: segments[first].over, halves: None };
+        }
+        let middle = first.midpoint(last);
+        let halves = [[first, middle], [middle + 1, last]].map(|ends| Self::of(segments, ends));
+        let [one, two] = [&halves[0].over, &halves[1].over];
+        let over = Lift {
+            value: one.value.hull(two.value),
+            slope: one.slope.hull(two.slope),
+            curvature: one.curvature.hull(two.curvature),
+            third: one.third.hull(two.third),
+        };
+        Self { ends, angles, over, halves: Some(Box::new(halves)) }
+    }
+
+    /// The segment at an angle of the run.
+    fn segment_at(&self, angle: f64) -> &Self {
+        match self.halves.as_deref() {
+            Some([one, _]) if angle < one.angles.high() => one.segment_at(angle),
+            Some([_, two]) => two.segment_at(angle),
+            None => self,
+        }
+    }
+}
+
+/// Two runs of segments of the cam, one struck after the other.
+#[derive(Clone, Copy)]
 struct Pair<'a> {
     machine: &'a Machine,
-    /// Indices of the segments, and how often the cam passes angle 0 from the first to the second: 0 or 1.
-    segments: [usize; 2],
+    runs: [&'a Run; 2],
+    /// How often the cam passes angle 0 from the first to the second: 0 or 1.
     turns: u64,
 }
 
@@ -51,7 +92,7 @@ struct Flights {
     long: Dual<2>,
 }
 
-impl Pair<'_> {
+impl<'a> Pair<'a> {
     /// h, rad.
     fn turn(&self, [x, y]: &[Interval; 2]) -> Interval {
         *y + Interval::TURN * self.turns as f64 - *x
@@ -60,7 +101,7 @@ impl Pair<'_> {
     /// Derivatives of the lift from `x` to `y`: the slope all over, and the curvature if one law holds all over.
     fn between(&self, [x, y]: &[Interval; 2]) -> [Interval; 2] {
         let segments = self.machine.cam().segments();
-        let [first, last] = self.segments;
+        let (first, last) = (self.runs[0].ends[0], self.runs[1].ends[1]);
         // Borders on the way: a cam of one segment has one where it is passed at angle 0.
         let borders = last + self.turns as usize * segments.len() - first;
         if borders == 0 {
@@ -76,13 +117,39 @@ impl Pair<'_> {
         [(1..=borders).map(slope).fold(slope(0), Interval::hull), Interval::EVERYTHING]
     }
 
+    /// The lift over angles of a run: of one of several segments, over all of it.
+    fn lift_over(&self, which: usize, angles: Interval) -> Lift<Interval> {
+        let run = self.runs[which];
+        if run.halves.is_some() { run.over } else { self.machine.cam().segments()[run.ends[0]].law.lift_over(angles) }
+    }
+
+    /// Whether the second may be struck after the first within half a turn.
+    fn follows(&self) -> bool {
+        let [first, second] = self.runs;
+        let is_behind = if self.turns == 0 { second.ends[1] >= first.ends[0] } else { second.ends[0] <= first.ends[1] };
+        let start = second.angles.low() + if self.turns == 1 { TAU } else { 0.0 };
+        is_behind && start - first.angles.high() <= PI
+    }
+
+    /// Both halves of the wider run beside the other run; none of two segments.
+    fn halved(&self) -> Option<[Self; 2]> {
+        let [first, second] = self.runs;
+        let is_first = first.angles.width() >= second.angles.width();
+        let of_first = |[one, two]: &'a [Run; 2]| [one, two].map(|half| Self { runs: [half, second], ..*self });
+        let of_second = |[one, two]: &'a [Run; 2]| [one, two].map(|half| Self { runs: [first, half], ..*self });
+        match (first.halves.as_deref(), second.halves.as_deref()) {
+            (Some(halves), other) if is_first || other.is_none() => Some(of_first(halves)),
+            (_, Some(halves)) => Some(of_second(halves)),
+            (_, None) => None,
+        }
+    }
+
     fn flights(&self, place: &[Interval; 2]) -> Flights {
         let (machine, flight) = (self.machine, self.machine.flight());
         let omega = Interval::from(machine.angular_velocity());
         let h = self.turn(place);
         let (t1, t2) = (h / omega, (Interval::TURN - h) / omega);
-        let laws = self.segments.map(|segment| &machine.cam().segments()[segment].law);
-        let lifts = [laws[0].lift_over(place[0]), laws[1].lift_over(place[1])];
+        let lifts = [0, 1].map(|which| self.lift_over(which, place[which]));
         let forces = lifts.map(|lift| flight.force(lift.value));
         let responses = [flight.response_over(t1), flight.response_over(t2)];
         let [one, two] = &responses;
@@ -160,7 +227,8 @@ impl Pair<'_> {
         if is_broken {
             return Standing::NoOrbit;
         }
-        let struck = |which: usize, turns: u64| Struck { segment: self.segments[which], angle: place[which], turns };
+        let struck =
+            |which: usize, turns: u64| Struck { segment: self.runs[which].ends[0], angle: place[which], turns };
         let hops = [
             Hop { from: struck(0, 0), to: struck(1, self.turns), velocity: after[0], omega },
             Hop { from: struck(1, 0), to: struck(0, 1 - self.turns), velocity: after[1], omega },
@@ -180,7 +248,7 @@ impl Pair<'_> {
         let before = self.flights(&middles).velocities(self.machine).before.map(Interval::middle);
         let impact = |which: usize| Impact {
             revolution: if which == 0 { 0 } else { self.turns as i64 },
-            segment: self.segments[which],
+            segment: self.runs[which].ends[0],
             cam_angle: middles[which].middle(),
             velocity_before: before[which],
         };
@@ -227,37 +295,70 @@ impl Flights {
     }
 }
 
+/// The pairs of segments that may hold an orbit, and runs of segments that were left when so many boxes had been looked at.
+struct Candidates<'a> {
+    pairs: Vec<Pair<'a>>,
+    left: Vec<Pair<'a>>,
+    boxes: usize,
+}
+
+/// Looks for pairs of segments that may hold an orbit, by halving: two runs over which the equations have no root are dropped whole.
+fn candidates<'a>(machine: &'a Machine, all: &'a Run, watch: &dyn Watch) -> Candidates<'a> {
+    let mut found = Candidates { pairs: Vec::new(), left: Vec::new(), boxes: 0 };
+    let mut stack = [1, 0].map(|turns| Pair { machine, runs: [all, all], turns }).to_vec();
+    while let Some(pair) = stack.pop() {
+        if !pair.follows() {
+            continue;
+        }
+        let Some(halves) = pair.halved() else {
+            found.pairs.push(pair);
+            continue;
+        };
+        found.boxes += 1;
+        watch.at("two impacts: pairs of segments", found.boxes as u64, MOST_BOXES as u64);
+        if found.boxes > MOST_BOXES {
+            found.left.push(pair);
+            continue;
+        }
+        let BoxValues { values, is_wanted, .. } = pair.over(&pair.runs.map(|run| run.angles));
+        if is_wanted && values.iter().all(|value| value.holds_zero()) {
+            stack.extend(halves);
+        }
+    }
+    found.pairs.sort_by_key(|pair| (pair.runs[0].ends, pair.turns, pair.runs[1].ends));
+    found
+}
+
 /// Returns every solution at the speed of a machine, and places that may be one.
 pub(crate) fn of_two_impacts(machine: &Machine, watch: &dyn Watch) -> Vec<Solved> {
     let segments = machine.cam().segments();
-    let count = segments.len();
-    let (mut all, mut most) = (Vec::new(), MOST_BOXES);
-    for first in 0..count {
-        watch.at("two impacts: segments of the cam", first as u64, count as u64);
-        for later in 0..=count {
-            let second = (first + later) % count;
-            let turns = u64::from(first + later >= count);
-            let start = segments[second].start + if turns == 1 { TAU } else { 0.0 };
-            if start - segments[first].end > PI {
-                break;
-            }
-            let pair = Pair { machine, segments: [first, second], turns };
-            let place = [first, second].map(|segment| Interval::new(segments[segment].start, segments[segment].end));
-            let Isolated { roots, undecided, boxes } = isolate(place, most, |place| pair.over(place));
-            most = most.saturating_sub(boxes);
-            let mut add = |place: [Interval; 2], standing: Standing| {
-                // Half a turn apart either impact may be called the first: what is there already by the other name is the same,
-                // since each is alone in a box far wider than its own.
-                let again = |known: &Solved| (0..2).all(|which| known.angles[which].common(place[1 - which]).is_some());
-                if all.iter().any(again) {
-                    return;
-                }
-                let velocities = pair.flights(&place).velocities(machine).before.to_vec();
-                all.push(Solved { guess: pair.guess(&place), angles: place.to_vec(), velocities, standing });
-            };
-            roots.into_iter().for_each(|place| add(place, pair.standing(&place)));
-            joined(undecided).into_iter().for_each(|place| add(place, Standing::Undecided));
+    let whole = Run::of(segments, [0, segments.len() - 1]);
+    let Candidates { pairs, left, boxes } = candidates(machine, &whole, watch);
+    let mut most = MOST_BOXES.saturating_sub(boxes);
+    let mut all: Vec<Solved> = Vec::new();
+    let mut add = |pair: &Pair<'_>, place: [Interval; 2], standing: Standing| {
+        // Half a turn apart, and nowhere else, either impact may be called the first: what is there already by the other name is the
+        // same, since each is alone in a box far wider than its own.
+        let has_two_names = pair.turn(&place).common(Interval::TURN.half()).is_some();
+        let again = |known: &Solved| (0..2).all(|which| known.angles[which].common(place[1 - which]).is_some());
+        if has_two_names && all.iter().any(again) {
+            return;
         }
+        let velocities = pair.flights(&place).velocities(machine).before.to_vec();
+        all.push(Solved { guess: pair.guess(&place), angles: place.to_vec(), velocities, standing });
+    };
+    for (index, pair) in pairs.iter().enumerate() {
+        watch.at("two impacts: segments of the cam", index as u64, pairs.len() as u64);
+        let place = pair.runs.map(|run| run.angles);
+        let Isolated { roots, undecided, boxes } = isolate(place, most, |place| pair.over(place));
+        most = most.saturating_sub(boxes);
+        roots.into_iter().for_each(|place| add(pair, place, pair.standing(&place)));
+        joined(undecided).into_iter().for_each(|place| add(pair, place, Standing::Undecided));
+    }
+    for pair in left {
+        let place = pair.runs.map(|run| run.angles);
+        let runs = pair.runs.map(|run| run.segment_at(run.angles.middle()));
+        add(&Pair { runs, ..pair }, place, Standing::Undecided);
     }
     all
 }
