@@ -233,6 +233,9 @@ impl Machine {
                 cancel::check();
             }
             steps = steps.wrapping_add(1);
+            if motion.contact && self.stays(motion, &goal) {
+                stopped = None;
+            }
             let left = motion.left(&goal);
             // At the end of the last segment a corner is still to be passed.
             if !(left > 0.0) && motion.cam_angle < TAU {

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use super::motion::Chatter;
 use super::terrain::Entry;
-use super::{EventKind, Machine, Motion, Observer, SimulateError, Step, on_cam};
+use super::{EventKind, Goal, Machine, Motion, Observer, SimulateError, Step, on_cam};
 use crate::cam::{Lift, Segment};
 use crate::flight::State;
 use crate::tolerance;
@@ -93,6 +93,24 @@ impl Machine {
         motion.state = on_cam(lift, self.angular_velocity);
         (motion.contact, motion.gap, motion.lift) = (true, Some(0.0), Some(*lift));
         self.report(motion, EventKind::Stick, observer)
+    }
+
+    /// Moves a follower that never leaves the cam to the start of the goal's segment, over any number of turns: a whole turn on the cam
+    /// without an event repeats to the last bit. Returns whether it moved.
+    pub(super) fn stays(&self, motion: &mut Motion, goal: &Goal) -> bool {
+        let (last_event, _) = motion.events;
+        if motion.revolution <= last_event + 1 {
+            return false;
+        }
+        let index = self.cam().segment_at(goal.cam_angle);
+        let segment = &self.cam().segments()[index];
+        if (motion.revolution, motion.cam_angle) >= (goal.revolution, segment.start) {
+            return false;
+        }
+        (motion.revolution, motion.cam_angle, motion.segment) = (goal.revolution, segment.start, index);
+        motion.state = on_cam(&segment.law.lift(segment.start), self.angular_velocity);
+        (motion.gap, motion.lift) = (Some(0.0), None);
+        true
     }
 
     /// Follows one stretch on the cam: to a release, to the end of the segment, or to the end of the run.

@@ -42,8 +42,10 @@ impl CamBounds {
         let before = segments.last().into_iter().chain(segments);
         let size = segments.iter().flat_map(|segment| segment.bounds.lift).map(f64::abs).fold(0.0, f64::max);
         let steepest = segments.iter().flat_map(|segment| segment.bounds.slope).map(f64::abs).fold(0.0, f64::max);
-        let entries: Vec<Entry> =
-            before.zip(segments).map(|(before, after)| entry(before, after, cam.ends_a_continued_law(after))).collect();
+        let entries: Vec<Entry> = before
+            .zip(segments)
+            .map(|(before, after)| entry(before, after, cam.ends_a_continued_law(after), steepest))
+            .collect();
         let kicks = entries.iter().any(|entry| entry.slope_jump > 0.0 || entry.lift_step > 0.0);
         let curvatures = segments.iter().map(|segment| segment.bounds.curvature[1]);
         let largest_curvature = if kicks { f64::INFINITY } else { curvatures.fold(f64::NEG_INFINITY, f64::max) };
@@ -54,8 +56,9 @@ impl CamBounds {
     }
 }
 
-/// Changes between two segments of a cam. The lift changes only at the end of a law that is continued past its segment.
-fn entry(before: &Segment, after: &Segment, may_step: bool) -> Entry {
+/// Changes between two segments of a cam, whose largest slope is `steepest`, m/rad. The lift changes only at the end of a law that is
+/// continued past its segment.
+fn entry(before: &Segment, after: &Segment, may_step: bool, steepest: f64) -> Entry {
     let (minus, plus) = (before.law.lift(before.end), after.law.lift(after.start));
     let jump = |minus: f64, plus: f64, rounding: f64| {
         if (plus - minus).abs() <= rounding { 0.0 } else { plus - minus }
@@ -67,10 +70,12 @@ fn entry(before: &Segment, after: &Segment, may_step: bool) -> Entry {
     let scale = [minus, plus]
         .iter()
         .fold(0.0_f64, |scale, lift| scale.max(lift.value.abs()).max(lift.slope.abs()).max(lift.curvature.abs()));
+    // On a dwell at 0 a spline may end in numbers that are next to nothing, and so is their scale.
+    let slope_rounding = (tolerance::CAM_JUMP.value * scale).max(tolerance::ULP.value * steepest);
     Entry {
         lift_step: if may_step { step } else { 0.0 },
         seam: (!may_step && step != 0.0).then_some(minus.value),
         lift: plus.value,
-        slope_jump: jump(minus.slope, plus.slope, tolerance::CAM_JUMP.value * scale),
+        slope_jump: jump(minus.slope, plus.slope, slope_rounding),
     }
 }

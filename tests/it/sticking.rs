@@ -40,6 +40,40 @@ fn run(machine: &Machine, mut motion: Motion, revolutions: u64) -> (Motion, Vec<
     (motion, events)
 }
 
+/// A whole turn on the cam without an event repeats, so that a million million of them take no time. Wherever the run is stopped, the state
+/// is that of the first turn to the last bit.
+#[test]
+fn a_follower_that_never_leaves_repeats_its_first_turn() {
+    // Far from the lobe the spline through the rows of the dwell ends in numbers below 1e-290, which are no corners.
+    let lift = |degrees: f64| {
+        let x = (1.0 - (degrees - 180.0).abs() / 120.0).max(0.0);
+        x.powi(3) * (10.0 - 15.0 * x + 6.0 * x * x)
+    };
+    let row = |index: i32| {
+        let degrees = 0.036 * f64::from(index);
+        format!("[{degrees:?}, {:?}],", lift(degrees))
+    };
+    let rows: String = (0..10_000).map(row).collect();
+    let model = over(&format!("law = \"table\"\nspline = \"quintic\"\nrows = [{rows}]"), 0.5, -5.0);
+    let machine = machine(&model, 30.0);
+    let segment = machine.cam().segments()[2500].start;
+    let start = machine.start_on_cam(1.0, 0.0).unwrap();
+    let shown = |motion: &Motion| (motion.state, motion.cam_angle, motion.contact, machine.gap(motion));
+    let mut stopped = start;
+    for (turn, cam_angle) in [0.0, segment, 3.0, 1.0, 0.5, segment, 6.0].into_iter().enumerate() {
+        let to = |mut motion: Motion, revolution: u64| {
+            let _ =
+                machine.advance(&mut motion, Goal { revolution, cam_angle }, &mut |event: &Event| panic!("{event:?}"));
+            assert_eq!(motion.revolution, revolution);
+            motion
+        };
+        let far = 1_000_000_000_000 + turn as u64;
+        stopped = to(stopped, far);
+        assert_eq!(shown(&to(start, 1)), shown(&to(start, far)), "{cam_angle}");
+        assert_eq!(shown(&stopped), shown(&to(start, far)), "{cam_angle}");
+    }
+}
+
 /// c = a cos theta: the contact force is 0 where w0^2 (c - rest) + g + w^2 c'' = 0, and grows less before that.
 #[test]
 fn release_inside_a_segment_is_where_the_contact_force_ends() {
