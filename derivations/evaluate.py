@@ -85,6 +85,19 @@ class Face:
         return Face(float(self.distance), float(self.direction), float(self.radius))
 
 
+class Levered:
+    """A law behind a lever: every lift times its ratio."""
+
+    def __init__(self, law, ratio):
+        self.law, self.ratio = law, ratio
+
+    def lift(self, angle, library=mp):
+        return tuple(self.ratio * part for part in self.law.lift(angle, library))
+
+    def rounded(self):
+        return Levered(self.law.rounded(), float(self.ratio))
+
+
 def section(document, name):
     part = document.get(name)
     if not isinstance(part, dict):
@@ -233,12 +246,16 @@ def corners(laws):
 
 
 def profile(cam):
-    """The laws of a cam with the angles where they start, its corners rounded where it says so."""
+    """The laws of a cam with the angles where they start, its corners rounded and its lift levered where it says so."""
     if cam.get("law") not in SHARP:
         raise Refused(f"cam.law: this route knows {', '.join(SHARP)}, not {cam.get('law')!r}")
     laws = SHARP[cam["law"]](cam)
     half = exact(cam.get("corner_rounding_deg", 0)) * mp.pi / 360
-    return motions.rounded(laws, [angle for angle, _, _ in corners(laws)], half) if half else laws
+    laws = motions.rounded(laws, [angle for angle, _, _ in corners(laws)], half) if half else laws
+    ratio = exact(cam.get("lever_ratio", 1))
+    if not ratio > 0:
+        raise Refused("cam.lever_ratio: must be above 0")
+    return [(angle, Levered(law, ratio)) for angle, law in laws] if ratio != 1 else laws
 
 
 class Follower:

@@ -103,6 +103,22 @@ class Stretch:
         return math.inf
 
 
+class Levered:
+    """A stretch behind a lever of a ratio."""
+
+    def __init__(self, stretch, ratio):
+        self.stretch, self.ratio = stretch, ratio
+
+    def law(self, theta):
+        """Lift, and its first and second derivative by the angle."""
+        lift, slope, bend = self.stretch.law(theta)
+        return self.ratio * lift, self.ratio * slope, self.ratio * bend
+
+    def last_ray(self, theta):
+        """Angle to where the stretch is not analytic."""
+        return self.stretch.last_ray(theta)
+
+
 PI = math.pi
 # Displacements from 0 to 1 in a unit of time, as handbooks of cams print them: (up to where, powers, (size, rate, phase)).
 DISPLACEMENTS = {
@@ -278,6 +294,9 @@ class Cam:
             raise CannotCheck(f"no cam law {numbers.get('law')!r} can be checked")
         self.is_rounded = False
         self.round(0.5 * math.radians(numbers.get("corner_rounding_deg", 0)))
+        if "lever_ratio" in numbers:
+            ratio = number(numbers, "lever_ratio", least=0.0)
+            self.base, self.circles = ratio * self.base, [Levered(circle, ratio) for circle in self.circles]
 
     def round(self, half):
         """From `half` before each corner to `half` after it the quintic that has lift, slope and curvature of both there."""

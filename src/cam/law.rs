@@ -111,6 +111,29 @@ impl Law {
         }
     }
 
+    /// This law with every lift times a ratio.
+    pub(super) fn times(&self, ratio: f64) -> Self {
+        match self {
+            Self::Dwell(value) => Self::Dwell(ratio * value),
+            Self::Arc(arc) => Self::Arc(Arc { distance: ratio * arc.distance, radius: ratio * arc.radius, ..*arc }),
+            Self::OffsetArc(OffsetArc { distance, direction, radius, offset }) => Self::OffsetArc(OffsetArc {
+                distance: ratio * distance,
+                direction: *direction,
+                radius: ratio * radius,
+                offset: ratio * offset,
+            }),
+            Self::Polynomial(polynomial) => Self::Polynomial(polynomial.times(ratio)),
+            Self::Sinusoid(sinusoid) => Self::Sinusoid(Sinusoid {
+                value: ratio * sinusoid.value,
+                tilt: ratio * sinusoid.tilt,
+                sine: ratio * sinusoid.sine,
+                cosine: ratio * sinusoid.cosine,
+                ..*sinusoid
+            }),
+            Self::Harmonics(harmonics) => Self::Harmonics(harmonics.times(ratio)),
+        }
+    }
+
     /// This law a revolution on: its value at `angle + turn` is that of this one at `angle`, for `turn` of 2 pi or -2 pi.
     ///
     /// Where the two meet, at 0 and 2 pi, the distance from the law's start rounds to the same bits.

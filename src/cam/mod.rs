@@ -153,6 +153,17 @@ impl Cam {
         cam
     }
 
+    /// The cam behind a lever: every lift times its ratio.
+    #[doc(hidden)]
+    pub fn levered(&self, ratio: f64) -> Self {
+        if ratio == 1.0 {
+            return self.clone();
+        }
+        let count = self.segments.len();
+        let segment = |it: &Segment| Segment::new(it.start, it.end, it.law.times(ratio), count);
+        Self::joined(self.segments.iter().map(segment).collect(), self.joint.clone())
+    }
+
     /// Whether a corner is only where two pieces of a spline meet: a knot, which is no feature of the cam that was measured.
     pub fn is_knot(&self, corner: &Corner) -> bool {
         matches!(self.joint, Joint::Spline { degree, .. } if corner.jump_order >= degree)

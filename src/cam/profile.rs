@@ -33,8 +33,13 @@ impl Cam {
             CamProfile::Program(profile) => program::build(model, profile),
             CamProfile::Polynomial(segments) => polynomial(model, segments),
             CamProfile::Table(profile) => table::build(model, profile),
-            CamProfile::Rounded { corner_rounding_deg, sharp } => {
-                Self::of(model, sharp)?.rounded(model, *corner_rounding_deg)
+            CamProfile::Modified { change, plain } => {
+                let sharp = Self::of(model, plain)?;
+                let rounded = match change.corner_rounding_deg {
+                    0.0 => sharp,
+                    degrees => sharp.rounded(model, degrees)?,
+                };
+                Ok(rounded.levered(change.lever_ratio))
             }
         }
     }

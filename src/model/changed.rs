@@ -80,11 +80,7 @@ impl Model {
         let rows = dwells.iter().map(|dwell| (*dwell, None)).collect();
         fields.put("cam.dwells_deg", if dwells.is_empty() { Value::Array(0) } else { Value::Rows(rows) });
         let mut model = Self { changes: self.changes.clone(), ..Self::from_fields(fields)? };
-        let mut cam = &mut model.cam;
-        while let CamProfile::Rounded { sharp, .. } = cam {
-            cam = sharp;
-        }
-        if let CamProfile::Table(TableProfile { spline: Spline::Smoothing(smoothing), .. }) = cam {
+        if let CamProfile::Table(TableProfile { spline: Spline::Smoothing(smoothing), .. }) = model.cam.plain_mut() {
             (smoothing.tolerance, smoothing.are_near) = (SmoothingTolerance::Weighted(weight), are_near);
         }
         Ok(model)

@@ -34,11 +34,11 @@ use fields::Fields;
 pub use lines::Separator;
 pub use nearest::nearest;
 pub use numeral::{Numeral, finite, parted};
-pub use profile::CORNER_ROUNDING;
 pub(crate) use profile::{
     ArcsProfile, MOST_COEFFICIENTS, MotionSegment, PolynomialSegment, ProgramProfile, RectifiedSineProfile,
 };
-pub use profile::{CamProfile, FollowerContact, HarmonicProfile, StandardMotion};
+pub use profile::{CORNER_ROUNDING, LEVER_RATIO};
+pub use profile::{CamProfile, FollowerContact, HarmonicProfile, ProfileChange, StandardMotion};
 #[doc(hidden)]
 pub use quantity::{Dimension, MODEL_NUMBERS, ModelNumber};
 pub use rows::TableLayout;
@@ -188,11 +188,7 @@ impl Model {
 
     /// The table of lifts that gives the cam its profile, if there is one.
     pub fn table(&self) -> Option<&TableProfile> {
-        let mut sharp = &self.cam;
-        while let CamProfile::Rounded { sharp: inside, .. } = sharp {
-            sharp = inside;
-        }
-        if let CamProfile::Table(table) = sharp { Some(table) } else { None }
+        if let CamProfile::Table(table) = self.cam.plain() { Some(table) } else { None }
     }
 
     /// Whether the cam is a smoothing spline near the rows of a table.

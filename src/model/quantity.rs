@@ -118,7 +118,7 @@ const fn number(
 /// Every number of the format, in the order in which reports have them.
 #[doc(hidden)]
 #[rustfmt::skip]
-pub static MODEL_NUMBERS: [ModelNumber; 28] = {
+pub static MODEL_NUMBERS: [ModelNumber; 29] = {
     use Dimension::*;
     const POSITIVE: Allowed = Allowed::POSITIVE;
     const NOT_NEGATIVE: Allowed = Allowed::NOT_NEGATIVE;
@@ -145,6 +145,7 @@ pub static MODEL_NUMBERS: [ModelNumber; 28] = {
         number("cam.base", "", "lift at angle 0", Length, FINITE, &["program"]),
         number("cam.tolerance", "", "largest distance of a smoothing spline from a row", Pure, POSITIVE, &["table"]),
         number("cam.corner_rounding_deg", "", "angle that corners are rounded over", Degrees, A_TURN, &[]).or(0.0),
+        number("cam.lever_ratio", "", "lift of the follower over lift at the cam", Pure, POSITIVE, &[]).or(1.0),
         number("cam.amplitudes", "", "amplitudes", Length, FINITE, &["harmonic"]),
         number("cam.phases_deg", "", "phases", Degrees, FINITE, &["harmonic"]),
         number("cam.segment.span_deg", "", "span", Degrees, Allowed::above(0.0, 360.0), &["program"]),

@@ -37,6 +37,16 @@ fn followed_by(contact: &Value) -> Model {
     Model::of_document("followed", &document).unwrap()
 }
 
+/// A valve behind a rocker: an offset roller, rounded corners and a lever together.
+fn levered() -> Model {
+    let paper = common::osorio();
+    let mut document = json!({ "follower": paper.follower, "cam": paper.cam });
+    document["cam"]["contact"] = json!({ "roller_radius": 0.1, "offset": 0.05 });
+    document["cam"]["corner_rounding_deg"] = json!(5.0);
+    document["cam"]["lever_ratio"] = json!(1.5);
+    Model::of_document("levered", &document).unwrap()
+}
+
 /// Every law, with its corners rounded where it has some, and splines through and near the rows of a table: one with corners and
 /// dwells that are found, one with a row beside the corner that is no knot.
 fn cams() -> Vec<(String, Model)> {
@@ -55,6 +65,7 @@ fn cams() -> Vec<(String, Model)> {
     }
     let contacts = [json!("flat"), json!({ "roller_radius": 0.2 }), json!({ "roller_radius": 0.1, "offset": 0.05 })];
     models.extend(contacts.map(|contact| (format!("arcs, {contact}"), followed_by(&contact))));
+    models.push(("arcs, lever".into(), levered()));
     models.push(("smoothed".into(), measured(&json!({}))));
     models.push(("smoothed, a corner given".into(), measured(&json!({ "corners_deg": [150.3], "dwells_deg": [] }))));
     models
@@ -134,7 +145,8 @@ fn every_route_runs_on_every_cam_with_corners() {
     let followers =
         [json!("flat"), json!({ "roller_radius": 0.1, "offset": 0.05 })].map(|contact| followed_by(&contact));
     let cams = [new("program"), new("polynomial"), measured(&json!({}))];
-    for model in cams.into_iter().chain(typed()).chain(followers) {
+    let levers = [&followers[0], &cams[1]].map(|model| model.with_number("cam.lever_ratio", 1.25).unwrap());
+    for model in cams.into_iter().chain(typed()).chain(followers).chain(levers) {
         let (law, found) = (model.cam.law(), verify(&model, External::Run).unwrap());
         assert!(found.agrees, "{law}: {:?}", found.skipped);
         let last = (law != "table").then_some(RouteName::Certificate);

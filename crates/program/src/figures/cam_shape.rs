@@ -19,7 +19,8 @@ pub(crate) const CAM_SHAPE: Entry = Entry {
     takes_rpm: false,
     title: |subject| format!("{}: the cam, its segments and corners", subject.model.name),
     draw: |subject, title| {
-        let outline = Outline::new(&subject.cam, subject.model.cam.contact());
+        let profile = &subject.model.cam;
+        let outline = Outline::new(&subject.cam.levered(profile.lever_ratio().recip()), profile.contact());
         let how = match subject.model.cam.contact() {
             Some(FollowerContact::Flat) => {
                 "The flat face of the follower is square to the line straight above the axis O".to_owned()
