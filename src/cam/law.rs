@@ -111,6 +111,21 @@ impl Law {
         }
     }
 
+    /// Polar distance, m, and direction, rad, of the centre of the circle of the cam's contour that this law follows; `None` for another law, and
+    /// for a circle about the axis.
+    pub fn circle_centre(&self) -> Option<[f64; 2]> {
+        match *self {
+            Self::Arc(Arc { distance, direction, .. }) | Self::OffsetArc(OffsetArc { distance, direction, .. }) => {
+                Some([distance, direction])
+            }
+            // Under a flat face: rho + kappa cos(phi).
+            Self::Sinusoid(Sinusoid { start, tilt: 0.0, sine: 0.0, cosine, frequency: 1.0, .. }) => {
+                Some([-cosine, start])
+            }
+            _ => None,
+        }
+    }
+
     /// This law with every lift times a ratio.
     pub(super) fn times(&self, ratio: f64) -> Self {
         match self {

@@ -22,6 +22,8 @@ pub enum CamProfile {
     Polynomial(Vec<PolynomialSegment>),
     /// A spline through measured lifts.
     Table(TableProfile),
+    /// A spline through measured radii of the cam's own contour.
+    Contour(ContourProfile),
     /// Another profile, with the corners of its acceleration rounded or its lift scaled by a lever.
     Modified {
         /// The changes.
@@ -66,6 +68,7 @@ impl CamProfile {
             Self::Program(_) => "program",
             Self::Polynomial(_) => "polynomial",
             Self::Table(_) => "table",
+            Self::Contour(_) => "contour",
             // A profile is modified at most once.
             Self::Modified { .. } => "",
         }
@@ -76,8 +79,13 @@ impl CamProfile {
         if let Self::Modified { plain, .. } = self { plain } else { self }
     }
 
-    pub(super) fn plain_mut(&mut self) -> &mut Self {
-        if let Self::Modified { plain, .. } = self { plain } else { self }
+    /// The table of a profile that has one.
+    pub(super) fn table_mut(&mut self) -> Option<&mut TableProfile> {
+        let plain = if let Self::Modified { plain, .. } = self { plain } else { self };
+        match plain {
+            Self::Table(table) | Self::Contour(ContourProfile { table, .. }) => Some(table),
+            _ => None,
+        }
     }
 
     /// Lift of the follower over lift at the cam: the ratio of the lever between them, 1 without one.
@@ -91,7 +99,11 @@ impl CamProfile {
 
     /// The end of the follower, where the lift follows from the cam's contour; `None` where the lift itself is given.
     pub fn contact(&self) -> Option<FollowerContact> {
-        if let Self::Arcs(profile) = self.plain() { Some(profile.contact) } else { None }
+        match self.plain() {
+            Self::Arcs(profile) => Some(profile.contact),
+            Self::Contour(profile) => Some(profile.contact),
+            _ => None,
+        }
     }
 }
 
@@ -118,6 +130,7 @@ impl Serialize for CamProfile {
             Self::Program(profile) => Named { law, change, profile }.serialize(to),
             Self::Polynomial(segment) => Named { law, change, profile: Segments { segment } }.serialize(to),
             Self::Table(profile) => Named { law, change, profile }.serialize(to),
+            Self::Contour(profile) => Named { law, change, profile }.serialize(to),
             Self::Modified { .. } => Named { law, change, profile: () }.serialize(to),
         }
     }
@@ -138,6 +151,16 @@ pub struct ArcsProfile {
     pub nose_end_deg: f64,
     /// The end of the follower that touches the cam.
     #[serde(skip_serializing_if = "FollowerContact::is_point")]
+    pub contact: FollowerContact,
+}
+
+/// A cam's own contour, and the follower on it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ContourProfile {
+    /// Radii over polar angles, which count against the cam's turn.
+    #[serde(flatten)]
+    pub table: TableProfile,
+    /// The end of the follower that touches the cam.
     pub contact: FollowerContact,
 }
 
@@ -280,13 +303,17 @@ pub const MOST_COEFFICIENTS: usize = 32;
 type ReadProfile = fn(&mut Fields) -> Result<CamProfile, ModelError>;
 
 /// Every lift law, with its name in the field `law`.
-static CAM_LAWS: [(&str, ReadProfile); 6] = [
+static CAM_LAWS: [(&str, ReadProfile); 7] = [
     ("arcs", arcs),
     ("harmonic", harmonic),
     ("rectified-sine", rectified_sine),
     ("program", program),
     ("polynomial", polynomial),
     ("table", |fields| table::read(fields).map(CamProfile::Table)),
+    ("contour", |fields| {
+        let contact = contact(fields)?;
+        Ok(CamProfile::Contour(ContourProfile { table: table::read_contour(fields)?, contact }))
+    }),
 ];
 
 /// Field of the angle over which corners are rounded.

@@ -47,8 +47,11 @@ pub struct CamSheet {
 pub struct CamGeometry {
     /// End of the follower that touches the cam.
     pub contact: FollowerContact,
-    /// Least radius of curvature of the contour, m.
+    /// Least radius of curvature of the contour where it is convex, m.
     pub least_radius_m: f64,
+    /// Least radius of curvature of its hollows, m; none for a convex contour.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub hollow_radius_m: Option<f64>,
     /// Whether this follower can touch all of the contour: a flat face touches no hollow, and a roller none that is narrower than itself.
     pub is_touchable: bool,
     /// Largest angle between the contour's normal and the follower's motion, rad, without its sign.
@@ -78,10 +81,15 @@ impl CamGeometry {
             FollowerContact::Roller { roller_radius, .. } => roller_radius,
         };
         let is_touched = |point: ContourPoint| point.radius >= 0.0 || point.radius <= -widest;
+        let radii = |sign: f64| {
+            let radii = cam.contour(contact).map(move |point| sign * point.radius);
+            radii.filter(|radius| *radius > 0.0).fold(f64::INFINITY, f64::min)
+        };
         let slope = |sign: f64| cam.least([0.0, sign, 0.0, 0.0]).value;
         Some(Self {
             contact,
-            least_radius_m: cam.contour(contact).map(|point| point.radius).fold(f64::INFINITY, f64::min),
+            least_radius_m: radii(1.0),
+            hollow_radius_m: Some(radii(-1.0)).filter(|radius| radius.is_finite()),
             is_touchable: cam.contour(contact).all(is_touched),
             pressure_angle_rad: steepness(&steepest),
             pressure_angle_at_rad: steepest.cam_angle,

@@ -47,13 +47,19 @@ pub(crate) fn follower(geometry: Option<&CamGeometry>, lever_ratio: f64) -> Bloc
     let end = match of.contact {
         FollowerContact::Point => "a point on a line through the cam's axis".into(),
         FollowerContact::Flat => "a flat face square to its motion".into(),
-        FollowerContact::Roller { roller_radius, offset } => words![
-            "a roller of radius ",
-            length(roller_radius),
-            ", whose centre moves on a line ",
-            length(offset),
-            " beside the cam's axis; the lift is the distance of its centre"
-        ],
+        FollowerContact::Roller { roller_radius, offset } => {
+            let line = match offset {
+                0.0 => "through".into(),
+                offset => words![length(offset), " beside"],
+            };
+            words![
+                "a roller of radius ",
+                length(roller_radius),
+                ", whose centre moves on a line ",
+                line,
+                " the cam's axis; the lift is the distance of its centre"
+            ]
+        }
     };
     let pressed = match of.face_width_m {
         Some(width) => words!["; the cam touches ", length(width), " of the face"],
@@ -65,7 +71,11 @@ pub(crate) fn follower(geometry: Option<&CamGeometry>, lever_ratio: f64) -> Bloc
         }
     };
     let sharpest = words!["; least radius of curvature of the cam ", length(of.least_radius_m)];
-    let hollow = if of.is_touchable { "" } else { "; it has a hollow that this follower cannot touch" };
+    let hollow = match (of.hollow_radius_m, of.is_touchable) {
+        (_, false) => "; it has a hollow that this follower cannot touch".into(),
+        (Some(radius), true) => words![", of its hollows ", length(radius)],
+        (None, true) => Words::default(),
+    };
     Block::paragraph(words!["follower: ", end, pressed, sharpest, hollow, lever])
 }
 
