@@ -85,6 +85,19 @@ class Face:
         return Face(float(self.distance), float(self.direction), float(self.radius))
 
 
+class Levered:
+    """A law behind a lever: every lift times its ratio."""
+
+    def __init__(self, law, ratio):
+        self.law, self.ratio = law, ratio
+
+    def lift(self, angle, library=mp):
+        return tuple(self.ratio * part for part in self.law.lift(angle, library))
+
+    def rounded(self):
+        return Levered(self.law.rounded(), float(self.ratio))
+
+
 def section(document, name):
     part = document.get(name)
     if not isinstance(part, dict):
@@ -210,8 +223,71 @@ def table(cam):
     return motions.polynomials(list(basis.powers(numbers)))
 
 
+class Touched:
+    """A piece of a contour, its radius over the polar angle, as a flat face or a roller touches it about one of its angles."""
+
+    def __init__(self, radius, polar, roller, offset):
+        """`roller` is None for a flat face."""
+        self.radius, self.polar, self.roller, self.offset = radius, polar, roller, offset
+
+    def touch(self, polar, library):
+        """(cam angle, its rate by the polar angle), (lift, and its first and second derivative)."""
+        radius, slope, bend = self.radius.lift(polar, library)
+        square = radius * radius + slope * slope
+        # The normal turns by so much for each radian of the polar angle, and leans back by the angle of the slope.
+        turns = (square + slope * slope - radius * bend) / square
+        speed, leans = library.sqrt(square), -library.atan(slope / radius)
+        if self.roller is None:
+            lift = radius * radius / speed
+            return (polar + leans, turns), (lift, radius * slope / speed, speed / turns - lift)
+        along, left = radius + self.roller * radius / speed, -self.roller * slope / speed
+        away = library.sqrt(along * along + left * left)
+        angle = library.atan(left / along) - library.asin(self.offset / away)
+        lift, tan = library.sqrt((away - self.offset) * (away + self.offset)), library.tan(leans - angle)
+        rate = (speed + self.roller * turns) * library.cos(leans - angle) / lift
+        first = self.offset - lift * tan
+        return (polar + angle, rate), (lift, first, -first * tan - lift * (1 + tan * tan) * (turns / rate - 1))
+
+    def lift(self, angle, library=mp):
+        """c, dc/dtheta, d^2c/dtheta^2 where Newton's method finds the polar angle of a cam angle."""
+        polar, close = self.polar, mp.eps * 100 if library is mp else 1e-15
+        turn = 2 * library.pi
+        for _ in range(50):
+            (there, rate), lift = self.touch(polar, library)
+            missed = angle - there
+            step = (missed - turn * library.floor(missed / turn + 0.5)) / rate
+            if abs(step) <= close:
+                break
+            polar += step
+        return lift
+
+    def rounded(self):
+        roller = self.roller if self.roller is None else float(self.roller)
+        return Touched(self.radius.rounded(), float(self.polar), roller, float(self.offset))
+
+
+def contour(cam):
+    """A spline of the cam's own radius, and the lift of what touches it: [(angle where each piece starts, law)]."""
+    radii, contact = table(cam), cam.get("contact", "point")
+    if contact == "point":
+        return radii
+    if isinstance(contact, dict):
+        roller, offset = number(contact, "cam.contact", "roller_radius"), exact(contact.get("offset", 0))
+    elif contact == "flat":
+        roller, offset = None, mpf(0)
+    else:
+        raise Refused(f"cam.contact: no follower {contact!r}")
+    turn, pieces = 2 * mp.pi, []
+    for (start, radius), end in zip(radii, [start for start, _ in radii[1:]] + [turn]):
+        law = Touched(radius, (start + end) / 2, roller, offset)
+        pieces.append((law.touch(start, mp)[0][0] % turn, law))
+    pieces.sort(key=lambda piece: piece[0])
+    return pieces if pieces[0][0] == 0 else [(mpf(0), pieces[-1][1]), *pieces]
+
+
 SHARP = {
     "arcs": arcs,
+    "contour": contour,
     "harmonic": harmonic,
     "rectified-sine": rectified_sine,
     "program": program,
@@ -233,12 +309,16 @@ def corners(laws):
 
 
 def profile(cam):
-    """The laws of a cam with the angles where they start, its corners rounded where it says so."""
+    """The laws of a cam with the angles where they start, its corners rounded and its lift levered where it says so."""
     if cam.get("law") not in SHARP:
         raise Refused(f"cam.law: this route knows {', '.join(SHARP)}, not {cam.get('law')!r}")
     laws = SHARP[cam["law"]](cam)
     half = exact(cam.get("corner_rounding_deg", 0)) * mp.pi / 360
-    return motions.rounded(laws, [angle for angle, _, _ in corners(laws)], half) if half else laws
+    laws = motions.rounded(laws, [angle for angle, _, _ in corners(laws)], half) if half else laws
+    ratio = exact(cam.get("lever_ratio", 1))
+    if not ratio > 0:
+        raise Refused("cam.lever_ratio: must be above 0")
+    return [(angle, Levered(law, ratio)) for angle, law in laws] if ratio != 1 else laws
 
 
 class Follower:

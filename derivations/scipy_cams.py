@@ -103,6 +103,22 @@ class Stretch:
         return math.inf
 
 
+class Levered:
+    """A stretch behind a lever of a ratio."""
+
+    def __init__(self, stretch, ratio):
+        self.stretch, self.ratio = stretch, ratio
+
+    def law(self, theta):
+        """Lift, and its first and second derivative by the angle."""
+        lift, slope, bend = self.stretch.law(theta)
+        return self.ratio * lift, self.ratio * slope, self.ratio * bend
+
+    def last_ray(self, theta):
+        """Angle to where the stretch is not analytic."""
+        return self.stretch.last_ray(theta)
+
+
 PI = math.pi
 # Displacements from 0 to 1 in a unit of time, as handbooks of cams print them: (up to where, powers, (size, rate, phase)).
 DISPLACEMENTS = {
@@ -217,7 +233,9 @@ def table(numbers):
     if "fitted" not in numbers:
         degree = {"cubic": 3, "quintic": 5}[numbers["spline"]]
         around = np.append(angles, angles[0] + math.tau), np.append(lifts, lifts[0])
-        return pieces(PPoly.from_spline(make_interp_spline(*around, k=degree, bc_type="periodic")))
+        spline = PPoly.from_spline(make_interp_spline(*around, k=degree, bc_type="periodic"))
+        # Without what reaches out of the turn.
+        return pieces(PPoly(spline.c[:, degree:-degree], spline.x[degree:-degree]))
     return pieces(smoothed(numbers["fitted"], angles, lifts))
 
 
@@ -256,7 +274,68 @@ def smoothed(fitted, angles, lifts):
     return PPoly(spline.c[:, 5 : 5 + count], spline.x[5 : 6 + count])
 
 
+class Touched:
+    """A stretch of a contour, its radius over the polar angle, as a flat face or a roller touches it."""
+
+    def __init__(self, radius, polar, contact):
+        self.radius, self.polar, self.is_flat = radius, polar, contact == "flat"
+        self.roller, self.offset = (0.0, 0.0) if self.is_flat else (number(contact, "roller_radius", least=0.0), number(contact, "offset"))
+        self.middle = self.touch(polar)[0]
+
+    def touch(self, polar):
+        """Cam angle at which the follower touches there, its rate by the polar angle; lift, and its first and second derivative."""
+        radius, slope, bend = self.radius.law(polar)
+        speed = math.hypot(radius, slope)
+        turns = (radius**2 + 2.0 * slope**2 - radius * bend) / speed**2
+        if not (radius > 0.0 and (turns > 0.0 if self.is_flat else speed + self.roller * turns > 0.0)):
+            raise CannotCheck(f"the follower does not touch the contour at its polar angle {polar}")
+        # Along the ray at the polar angle, and to its left.
+        normal = complex(radius, -slope) / speed
+        leans = math.atan2(normal.imag, normal.real)
+        if self.is_flat:
+            lift = radius * normal.real
+            return polar + leans, turns, lift, -radius * normal.imag, speed / turns - lift
+        centre = radius + self.roller * normal
+        angle = math.atan2(centre.imag, centre.real) - math.asin(self.offset / abs(centre))
+        lift, tan = math.sqrt(abs(centre) ** 2 - self.offset**2), math.tan(leans - angle)
+        # The centre moves square to the normal.
+        rate = (speed + self.roller * turns) * math.cos(leans - angle) / lift
+        first = self.offset - lift * tan
+        return polar + angle, rate, lift, first, -first * tan - lift * (1.0 + tan**2) * (turns / rate - 1.0)
+
+    def law(self, theta):
+        """Lift, and its first and second derivative by the angle, from the polar angle that Newton's method finds."""
+        theta = self.middle + math.remainder(theta - self.middle, math.tau)
+        polar = self.polar
+        for _ in range(50):
+            angle, rate, *lift = self.touch(polar)
+            step = (theta - angle) / rate
+            polar += step
+            if abs(step) < 1e-15:
+                break
+        return tuple(self.touch(polar)[2:])
+
+    def last_ray(self, theta):
+        """No angle: it is analytic everywhere."""
+        return math.inf
+
+
+def contour(numbers):
+    """The follower's lift on a spline of the radius: angles where its pieces start, and laws."""
+    starts, radii = table(numbers)
+    contact = numbers.get("contact", "point")
+    if contact == "point":
+        return starts, radii
+    ends = [*starts[1:], math.tau]
+    places = [(low, Touched(radius, 0.5 * (low + high), contact)) for radius, low, high in zip(radii, starts, ends)]
+    found = sorted(((law.touch(low)[0] % math.tau, law) for low, law in places), key=lambda place: place[0])
+    if found[0][0] > 0.0:
+        found.insert(0, (0.0, found[-1][1]))
+    return [low for low, _ in found], [law for _, law in found]
+
+
 LAWS = {
+    "contour": contour,
     "harmonic": harmonic,
     "rectified-sine": rectified_sine,
     "program": program,
@@ -278,6 +357,9 @@ class Cam:
             raise CannotCheck(f"no cam law {numbers.get('law')!r} can be checked")
         self.is_rounded = False
         self.round(0.5 * math.radians(numbers.get("corner_rounding_deg", 0)))
+        if "lever_ratio" in numbers:
+            ratio = number(numbers, "lever_ratio", least=0.0)
+            self.base, self.circles = ratio * self.base, [Levered(circle, ratio) for circle in self.circles]
 
     def round(self, half):
         """From `half` before each corner to `half` after it the quintic that has lift, slope and curvature of both there."""

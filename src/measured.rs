@@ -7,7 +7,7 @@
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::cam::{Cam, Fit, Stray, fit, spread, strays};
+use crate::cam::{Cam, Fit, Stray, fit, spline_of_rows, spread, strays};
 use crate::model::{Model, ModelError, Reading, Smoothing, SmoothingTolerance, TableProfile, TableRow};
 use crate::tolerance;
 
@@ -77,16 +77,19 @@ pub struct PlausibleCams {
 
 /// Number of tables that might have been measured: the largest of so many deviations is near two standard deviations.
 const TABLES: u64 = 16;
+/// One in this many tables may lack a number, or have no cam.
+const WITHOUT: usize = 8;
 
 impl PlausibleCams {
     /// Estimates the accuracy of a model's cam. None if the cam is not given by a table, or if the table has too few rows.
     ///
-    /// A spline through the rows needs no smoothing: if no smooth motion can be fitted to them, only their noise is unknown.
+    /// A spline through the rows needs no smoothing: if no smooth motion can be fitted to them, only their noise is unknown. So it is where the
+    /// follower does not fit on likely contours.
     pub fn of(model: &Model) -> Result<Option<Self>, ModelError> {
         let Some(profile) = model.table().filter(|table| table.may_be_smoothed()) else { return Ok(None) };
         let own = profile.spline.smoothing();
         match Self::fitted(model, profile, own) {
-            Err(why) if own.is_none() => Self::unknown(model, profile, &why).map(Some),
+            Err(why) if own.is_none() || model.cam.contact().is_some() => Self::unknown(model, profile, &why).map(Some),
             likely => likely.map(Some),
         }
     }
@@ -143,7 +146,13 @@ impl PlausibleCams {
             None => Some(smoothed(&rows, fitted.weight)?),
         };
         let count = if is_noisy { TABLES } else { 0 };
-        let others = (0..count).into_par_iter().map(table).collect::<Result<Vec<_>, _>>()?;
+        let tried: Vec<_> = (0..count).into_par_iter().map(table).collect();
+        // A follower may not fit on a few of the likely contours.
+        let mut failed = tried.iter().filter_map(|one| one.as_ref().err());
+        if let Some(why) = failed.nth(TABLES as usize / WITHOUT) {
+            return Err(why.clone());
+        }
+        let others = tried.into_iter().flatten().collect::<Vec<_>>();
         let measured = measured(
             (Reading::clone(&profile.reading), &own_cam),
             &fitted,
@@ -183,8 +192,6 @@ impl PlausibleCams {
         (tables, left_out, times): (usize, usize, f64),
         of: impl Fn(&Model, &Cam) -> Option<Vec<f64>> + Sync,
     ) -> Option<Vec<f64>> {
-        /// One in this many tables may lack the numbers.
-        const WITHOUT: usize = 8;
         let others = &self.others[..tables.min(self.others.len())];
         let Some((best, cam)) = &self.best else { return Some(vec![0.0; numbers.len()]) };
         let centre = of(best, cam)?;
@@ -314,7 +321,8 @@ fn contradicted(
         (Some(_), _) => "cam.corners_deg",
         _ => return Ok(None),
     };
-    let cam = Cam::new(model)?;
+    // Of the rows, whatever follows on them.
+    let cam = spline_of_rows(model, profile)?;
     let off = |row: &TableRow| (cam.lift(row.angle_deg.to_radians()).value - row.lift).abs();
     let worst = profile.rows.iter().map(|row| (row.angle_deg, off(row))).max_by(|one, two| one.1.total_cmp(&two.1));
     let least = tolerance::NOISE_SEEN.value * profile.rise();

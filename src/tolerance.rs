@@ -56,6 +56,12 @@ table! {
     /// Lift above the base circle at which the open part of a lobe may begin or end.
     ON_BASE = 1e-3, "of the rise: lifts of 10 mm are rounded to 0.01 mm at most; where an opening is taken at a checking height, a twentieth of \
         a millimetre, the ends are further off";
+    /// Error of the pieces of a contour's lift.
+    ENVELOPE_LIFT = 1e-12, "of the height of the contour: a thousand times less than rows are known, and above the rounding of a lift on a \
+        base circle a hundred times as large";
+    /// Error of their second derivative.
+    ENVELOPE_BEND = 1e-9, "of the height of the contour per square radian: a jump of the acceleration that counts as a corner is as large, \
+        and rounding of the lifts at the ends of a piece of a degree leaves a thousandth of it";
     /// Distance below which a row and a knot are the same.
     SAME_KNOT = 1e-6, "of the mean gap: a piece as short would make coefficients of 1e30 out of roundings";
     /// Curvature that the noise of rows in a dwell may hide.

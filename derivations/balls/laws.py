@@ -63,3 +63,14 @@ class Waves:
             along, across = amplitude * cos, amplitude * frequency * sin
             c, c1, c2, c3 = c + along, c1 - across, c2 - frequency**2 * along, c3 + frequency**2 * across
         return c, c1, c2, c3
+
+
+class Levered:
+    """A law behind a lever: every lift times its ratio."""
+
+    def __init__(self, law, ratio):
+        self.law, self.ratio = law, ratio
+
+    def derivatives(self, angle):
+        """(c, c', c'', c''') over the ball."""
+        return tuple(self.ratio * part for part in self.law.derivatives(angle))

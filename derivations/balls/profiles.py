@@ -8,7 +8,7 @@ from math import floor
 
 from flint import arb, arb_mat, arb_poly, fmpq
 
-from .laws import Circle, OffsetCircle, Waves
+from .laws import Circle, Levered, OffsetCircle, Waves
 from .numbers import Refused, Undecided, decimal
 
 # Larger systems than a measured cam has; their solution in balls takes minutes.
@@ -22,7 +22,15 @@ def pieces_of(table):
         raise Refused(f"cam.law: {law!r} is not known; known are {', '.join(LAWS)}")
     if table.get("corner_rounding_deg", 0) != 0:
         raise Refused("cam.corner_rounding_deg: nothing is proved of rounded corners")
-    return LAWS[law](table)
+    pieces, ratio = LAWS[law](table), _lever_ratio(table)
+    return [(start, Levered(piece, ratio), agree) for start, piece, agree in pieces] if ratio != 1 else pieces
+
+
+def _lever_ratio(table):
+    ratio = decimal(table.get("lever_ratio", 1))
+    if not ratio > 0:
+        raise Refused("cam.lever_ratio: must be above 0")
+    return arb(ratio) if ratio != 1 else ratio
 
 
 def _number(table, name, where="cam"):
@@ -136,7 +144,7 @@ def missed_by(table):
     if table.get("law") != "polynomial":
         return arb(0), arb(0)
     *_, missed, _ = _typed(table)
-    return tuple(max((abs(jumps[n]).upper() for jumps in missed), key=float) for n in (0, 1))
+    return tuple(max((abs(_lever_ratio(table) * jumps[n]).upper() for jumps in missed), key=float) for n in (0, 1))
 
 
 def _typed(table):

@@ -2,8 +2,9 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use super::jet::{Jet, square_root};
+use super::jet::Jet;
 use super::lift::Lift;
+use super::series::square_root;
 use crate::elementary;
 use crate::interval::Number;
 use crate::tolerance;

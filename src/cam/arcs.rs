@@ -11,7 +11,7 @@ use super::arc::Arc;
 use super::law::Law;
 use super::offset_arc::OffsetArc;
 use super::sinusoid::Sinusoid;
-use super::{Cam, Joint};
+use super::{Cam, Joint, within_turn};
 use crate::elementary;
 use crate::model::{ArcsProfile, FollowerContact, Model, ModelError};
 
@@ -162,11 +162,7 @@ fn mirrored(
         (down[2], base),
     ];
     // With an offset the first may start before angle 0, or the last behind a turn.
-    let within = |(start, law): (f64, Law)| {
-        let turns = (start / TAU).floor() * TAU;
-        if turns == 0.0 || start == TAU { (start, law) } else { (start - turns, law.turned(-turns)) }
-    };
-    let mut laws: Vec<(f64, Law)> = laws.into_iter().map(within).collect();
+    let mut laws: Vec<(f64, Law)> = laws.into_iter().map(within_turn).collect();
     laws.sort_by(|one, two| one.0.total_cmp(&two.0));
     Cam::from_laws(laws, Joint::Free)
 }

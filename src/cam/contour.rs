@@ -57,11 +57,13 @@ impl FollowerContact {
 impl Cam {
     /// The contour of a cam that this follower touches, by rising angle; a corner has a point on either side.
     pub fn contour(&self, contact: FollowerContact) -> impl Iterator<Item = ContourPoint> {
-        /// Points of a segment.
-        const POINTS: u32 = 360;
+        /// Points of a segment, and of all segments of a cam that has many.
+        const POINTS: usize = 360;
+        const POINTS_OF_ALL: usize = 24 * POINTS;
+        let points = (POINTS_OF_ALL / self.segments().len()).clamp(2, POINTS);
         self.segments().iter().flat_map(move |segment| {
-            (0..=POINTS).map(move |point| {
-                let angle = segment.start + (segment.end - segment.start) * f64::from(point) / f64::from(POINTS);
+            (0..=points).map(move |point| {
+                let angle = segment.start + (segment.end - segment.start) * point as f64 / points as f64;
                 contact.touches(angle, &segment.law.lift(angle))
             })
         })

@@ -84,6 +84,11 @@ impl Cam {
                 let order = broken.map_or(*degree, |(_, order)| *order);
                 (jump(order) != 0.0).then_some(order)?
             }
+            Joint::Listed { corners, .. } => {
+                let listed = corners.binary_search_by(|(angle, _)| angle.total_cmp(&next.start)).ok()?;
+                let order = corners[listed].1;
+                (jump(order) != 0.0).then_some(order)?
+            }
             Joint::Free | Joint::Continued { .. } => {
                 let (minus_size, plus_size) = (sizes(before), sizes(next));
                 let size = |order: usize| minus_size[order].max(plus_size[order]);

@@ -48,6 +48,15 @@ impl Harmonics {
         Self { offset: profile.offset, terms, bounds }
     }
 
+    pub(super) fn times(&self, ratio: f64) -> Self {
+        let term = |term: &Term| Term { cosine: ratio * term.cosine, sine: ratio * term.sine };
+        Self {
+            offset: ratio * self.offset,
+            terms: self.terms.iter().map(term).collect(),
+            bounds: self.bounds.map(|bound| ratio * bound),
+        }
+    }
+
     /// Number of waves of its highest cosine in a turn.
     pub(super) fn highest(&self) -> usize {
         self.terms.len()

@@ -57,14 +57,3 @@ impl Jet {
         self
     }
 }
-
-/// The series of `sqrt(u)`: `w_0 = sqrt(u_0)`, `2 w_0 w_n = u_n - sum_{0<k<n} w_k w_{n-k}`.
-pub(super) fn square_root(u: [f64; Jet::ORDERS]) -> [f64; Jet::ORDERS] {
-    let mut w = [0.0; Jet::ORDERS];
-    w[0] = u[0].sqrt();
-    for n in 1..Jet::ORDERS {
-        let products: f64 = (1..n).map(|k| w[k] * w[n - k]).sum();
-        w[n] = (u[n] - products) / (2.0 * w[0]);
-    }
-    w
-}

@@ -111,6 +111,44 @@ impl Law {
         }
     }
 
+    /// Polar distance, m, and direction, rad, of the centre of the circle of the cam's contour that this law follows; `None` for another law, and
+    /// for a circle about the axis.
+    pub fn circle_centre(&self) -> Option<[f64; 2]> {
+        match *self {
+            Self::Arc(Arc { distance, direction, .. }) | Self::OffsetArc(OffsetArc { distance, direction, .. }) => {
+                Some([distance, direction])
+            }
+            // Under a flat face: rho + kappa cos(phi).
+            Self::Sinusoid(Sinusoid { start, tilt: 0.0, sine: 0.0, cosine, frequency: 1.0, .. }) => {
+                Some([-cosine, start])
+            }
+            _ => None,
+        }
+    }
+
+    /// This law with every lift times a ratio.
+    pub(super) fn times(&self, ratio: f64) -> Self {
+        match self {
+            Self::Dwell(value) => Self::Dwell(ratio * value),
+            Self::Arc(arc) => Self::Arc(Arc { distance: ratio * arc.distance, radius: ratio * arc.radius, ..*arc }),
+            Self::OffsetArc(OffsetArc { distance, direction, radius, offset }) => Self::OffsetArc(OffsetArc {
+                distance: ratio * distance,
+                direction: *direction,
+                radius: ratio * radius,
+                offset: ratio * offset,
+            }),
+            Self::Polynomial(polynomial) => Self::Polynomial(polynomial.times(ratio)),
+            Self::Sinusoid(sinusoid) => Self::Sinusoid(Sinusoid {
+                value: ratio * sinusoid.value,
+                tilt: ratio * sinusoid.tilt,
+                sine: ratio * sinusoid.sine,
+                cosine: ratio * sinusoid.cosine,
+                ..*sinusoid
+            }),
+            Self::Harmonics(harmonics) => Self::Harmonics(harmonics.times(ratio)),
+        }
+    }
+
     /// This law a revolution on: its value at `angle + turn` is that of this one at `angle`, for `turn` of 2 pi or -2 pi.
     ///
     /// Where the two meet, at 0 and 2 pi, the distance from the law's start rounds to the same bits.

@@ -11,6 +11,7 @@ mod contour;
 mod corner_rounding;
 mod corners;
 mod cyclic;
+mod envelope;
 mod features;
 mod fit;
 mod harmonics;
@@ -23,6 +24,7 @@ mod offset_arc;
 mod polynomial;
 mod profile;
 mod program;
+mod series;
 mod sinusoid;
 mod smoothing;
 mod table;
@@ -48,6 +50,7 @@ pub(crate) use minimum::halved;
 pub use offset_arc::OffsetArc;
 pub use polynomial::Polynomial;
 pub use sinusoid::Sinusoid;
+pub(crate) use table::build as spline_of_rows;
 
 /// A stretch of cam with one law.
 #[derive(Clone, Debug, PartialEq)]
@@ -97,6 +100,8 @@ enum Joint {
     Free,
     /// Pieces of a spline: derivatives below `degree` agree by construction, but for those of `breaks`, by angle, rad, and order.
     Spline { degree: usize, breaks: std::sync::Arc<[(f64, usize)]> },
+    /// Pieces whose corners are known: their angles, rad, rising, and the orders of the derivatives that jump. From `degree` on they are knots.
+    Listed { degree: usize, corners: std::sync::Arc<[(f64, usize)]> },
     /// A cam on which a law goes on past its corner up to this angle, rad, where the next law has another lift.
     Continued { up_to: f64 },
 }
@@ -107,6 +112,17 @@ pub fn within_a_turn(angle: f64) -> f64 {
     let angle = angle.rem_euclid(TAU);
     // A tiny negative angle rounds up to a whole turn.
     if angle >= TAU { 0.0 } else { angle }
+}
+
+/// A law with the angle where it starts, rad, brought into `[0, 2 pi)`.
+fn within_turn((start, law): (f64, Law)) -> (f64, Law) {
+    let inside = within_a_turn(start);
+    match ((start - inside) / TAU).round() * TAU {
+        // What starts where the turn ends has no length; what starts a rounding below 0 starts at 0.
+        _ if start == TAU => (start, law),
+        turns if turns == 0.0 || inside == 0.0 && start < 0.0 => (inside, law),
+        turns => (inside, law.turned(-turns)),
+    }
 }
 
 /// The angle between two angles, rad, the shorter way round.
@@ -153,9 +169,20 @@ impl Cam {
         cam
     }
 
+    /// The cam behind a lever: every lift times its ratio.
+    #[doc(hidden)]
+    pub fn levered(&self, ratio: f64) -> Self {
+        if ratio == 1.0 {
+            return self.clone();
+        }
+        let count = self.segments.len();
+        let segment = |it: &Segment| Segment::new(it.start, it.end, it.law.times(ratio), count);
+        Self::joined(self.segments.iter().map(segment).collect(), self.joint.clone())
+    }
+
     /// Whether a corner is only where two pieces of a spline meet: a knot, which is no feature of the cam that was measured.
     pub fn is_knot(&self, corner: &Corner) -> bool {
-        matches!(self.joint, Joint::Spline { degree, .. } if corner.jump_order >= degree)
+        matches!(self.joint, Joint::Spline { degree, .. } | Joint::Listed { degree, .. } if corner.jump_order >= degree)
     }
 
     /// Whether a segment begins where a continued law ends. The two lifts there count as different, however close they are.

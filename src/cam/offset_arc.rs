@@ -1,7 +1,8 @@
 //! A circle met by a line of motion that does not pass through the cam's axis: the law of an offset roller follower.
 
-use super::jet::{Jet, square_root};
+use super::jet::Jet;
 use super::lift::Lift;
+use super::series::{product, square_root};
 use crate::elementary;
 use crate::interval::{Interval, Number};
 
@@ -91,7 +92,7 @@ impl OffsetArc {
         let mut s = Jet::of_sinusoid(p, q, 1.0).series();
         s[0] += self.offset;
         // u = rho^2 - s^2
-        let mut u: [f64; Jet::ORDERS] = std::array::from_fn(|n| -(0..=n).map(|k| s[k] * s[n - k]).sum::<f64>());
+        let mut u = product(&s, &s).map(|it| -it);
         u[0] = self.root_squared(s[0]);
         Jet::of_sinusoid(-q, p, 1.0).plus(&Jet::from_series(square_root(u)))
     }

@@ -37,6 +37,10 @@ impl Polynomial {
         Self::new(self.start, &coefficients[..kept])
     }
 
+    pub(super) fn times(&self, ratio: f64) -> Self {
+        Self { start: self.start, coefficients: self.coefficients.iter().map(|a| ratio * a).collect() }
+    }
+
     pub(super) fn turned(&self, turn: f64) -> Self {
         Self { start: self.start + turn, coefficients: self.coefficients.clone() }
     }

@@ -2,12 +2,15 @@
 
 use std::f64::consts::{PI, TAU};
 
+use super::envelope::Unfollowed;
 use super::harmonics::Harmonics;
 use super::law::Law;
 use super::polynomial::Polynomial;
 use super::sinusoid::Sinusoid;
-use super::{Cam, Joint, Segment, arcs, program, table, tolerance};
-use crate::model::{CamProfile, HarmonicProfile, Model, ModelError, PolynomialSegment, RectifiedSineProfile};
+use super::{Cam, Joint, Segment, arcs, program, table, tolerance, within_a_turn};
+use crate::model::{
+    CamProfile, ContourProfile, HarmonicProfile, Model, ModelError, PolynomialSegment, RectifiedSineProfile,
+};
 
 impl Cam {
     /// The cam of a model, or the complaint about the field that makes it impossible.
@@ -33,11 +36,72 @@ impl Cam {
             CamProfile::Program(profile) => program::build(model, profile),
             CamProfile::Polynomial(segments) => polynomial(model, segments),
             CamProfile::Table(profile) => table::build(model, profile),
-            CamProfile::Rounded { corner_rounding_deg, sharp } => {
-                Self::of(model, sharp)?.rounded(model, *corner_rounding_deg)
+            CamProfile::Contour(profile) => contour(model, profile),
+            CamProfile::Modified { change, plain } => {
+                let sharp = Self::of(model, plain)?;
+                let rounded = match change.corner_rounding_deg {
+                    0.0 => sharp,
+                    degrees => sharp.rounded(model, degrees)?,
+                };
+                Ok(rounded.levered(change.lever_ratio))
             }
         }
     }
+}
+
+/// The lift of the follower on a contour, or why there is none.
+fn contour(model: &Model, profile: &ContourProfile) -> Result<Cam, ModelError> {
+    let table = &profile.table;
+    let reject = |polar: f64, why: Unfollowed| {
+        let degrees = within_a_turn(polar).to_degrees();
+        let after = table.rows.partition_point(|row| row.angle_deg <= degrees);
+        let row = table.rows[after.checked_sub(1).unwrap_or(table.rows.len() - 1)];
+        let place = match &table.file {
+            Some(file) => format!("line {} of {file}", row.line),
+            None => format!("the row on line {}", row.line),
+        };
+        let at = format!("near {degrees:.2} deg of its polar angle, {place}");
+        let unit = model.units.length.name();
+        match why {
+            Unfollowed::NoRadius => model.reject(
+                table.place(),
+                format!("has no radius above 0 {at}: the spline through its rows meets the axis"),
+            ),
+            Unfollowed::Hollow { radius } => {
+                let shape = if radius.abs() < 1e9 * table.rise() {
+                    format!("hollow, with a radius of curvature of {:.4} {unit},", radius.abs())
+                } else {
+                    "straight".to_owned()
+                };
+                let words = format!(
+                    "must not be a flat face here: the contour is {shape} {at}, and a face touches no hollow; where that is the roughness of \
+                     the rows, spline = \"smoothing\" takes it out"
+                );
+                model.reject("cam.contact", words)
+            }
+            Unfollowed::Undercut { radius } => {
+                let words = format!(
+                    "must be below {:.4} {unit}, the radius of curvature of the hollow {at}: a larger roller does not fit into it \
+                     (undercutting)",
+                    radius.abs()
+                );
+                model.reject("cam.contact.roller_radius", words)
+            }
+            Unfollowed::Beside => {
+                let words = format!(
+                    "is too large: {at} the line of motion does not cross the path of the roller's centre, and the pressure angle is 90 deg"
+                );
+                model.reject("cam.contact.offset", words)
+            }
+            Unfollowed::Sharp => {
+                let words = format!(
+                    "turns too sharply {at} for the lift of this follower: give rows closer together there, or smooth them"
+                );
+                model.reject(table.place(), words)
+            }
+        }
+    };
+    table::build(model, table)?.enveloped(profile.contact, reject)
 }
 
 /// One smooth segment all round.

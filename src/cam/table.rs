@@ -24,8 +24,8 @@ struct Gap {
     slope: f64,
 }
 
-/// The cam of a `table` profile.
-pub(super) fn build(model: &Model, profile: &TableProfile) -> Result<Cam, ModelError> {
+/// The spline through the rows of a table, or near them.
+pub(crate) fn build(model: &Model, profile: &TableProfile) -> Result<Cam, ModelError> {
     let rows = &profile.rows;
     let unit = TAU / rows.len() as f64;
     let gap = |index: usize| {

@@ -3,7 +3,7 @@
 use super::ModelError;
 use super::fields::{Fields, Value};
 use super::heading::{Heading, Kind, Named, ProseUnit, prose_units};
-use super::lines::{Separator, Table};
+use super::lines::{Holds, Separator, Table};
 use super::table_units::{AngleUnit, LiftUnit};
 use super::units::{LENGTHS, Unit};
 
@@ -32,9 +32,6 @@ impl Chosen {
 
 /// Largest number of a column.
 const MOST_COLUMNS: f64 = 1e6;
-/// Example of a header line, for complaints.
-pub(super) const HEADER: &str = "angle_deg,lift";
-
 /// The columns of a table, from 0, the angle's first.
 pub(super) type Columns = [usize; 2];
 
@@ -55,6 +52,8 @@ pub(super) struct Above<'a> {
     pub(super) header: Option<&'a str>,
     pub(super) units: Option<&'a str>,
     pub(super) columns: Option<Columns>,
+    /// Whether they are x and y.
+    pub(super) are_points: bool,
     /// Names of all columns.
     pub(super) names: Vec<String>,
     pub(super) is_of_crank: bool,
@@ -81,6 +80,24 @@ impl<'a> Table<'a> {
         let of = |wanted: &[Kind]| -> Vec<usize> {
             (0..cells.len()).filter(|column| wanted.contains(&headings[*column].kind)).collect()
         };
+        if self.may_be_points || self.holds == Holds::Points {
+            let one = |place: usize, kind: Kind| match by_choice(&chosen[place]) {
+                Some(found) => found,
+                None => {
+                    if let [one] = of(&[kind])[..] {
+                        Some(one)
+                    } else {
+                        None
+                    }
+                }
+            };
+            match (one(0, Kind::Abscissa), one(1, Kind::Ordinate)) {
+                (Some(x), Some(y)) if x == y => return Err("is asked for x and for y in one column".into()),
+                (Some(x), Some(y)) => return Ok(Some([x, y])),
+                _ if self.holds == Holds::Points => return Ok(None),
+                _ => {}
+            }
+        }
         let angle = match by_choice(&chosen[0]) {
             Some(found) => found,
             None => {
@@ -94,26 +111,42 @@ impl<'a> Table<'a> {
             }
         };
         let Some(angle) = angle else { return Ok(None) };
+        let (value, field) = (self.holds.value(), self.holds.choices()[1]);
+        let [own, foreign] = match self.holds {
+            Holds::Lifts => [Kind::Lift, Kind::Radius],
+            _ => [Kind::Radius, Kind::Lift],
+        };
         let lift = match by_choice(&chosen[1]) {
             Some(found) => found,
             None => {
                 let others = |wanted: &[Kind]| -> Vec<usize> {
                     of(wanted).into_iter().filter(|column| *column != angle).collect()
                 };
-                match (&others(&[Kind::Lift])[..], &others(&[Kind::Unknown, Kind::Radius])[..]) {
+                match (&others(&[own])[..], &others(&[Kind::Unknown, foreign, Kind::Abscissa, Kind::Ordinate])[..]) {
                     ([one], _) | ([], [one]) => Some(*one),
                     ([], []) => None,
-                    _ => return Err("leaves open which column is the lift: say which in [cam], by lift_column".into()),
+                    _ => {
+                        return Err(format!("leaves open which column is the {value}: say which in [cam], by {field}"));
+                    }
                 }
             }
         };
         let Some(lift) = lift else { return Ok(None) };
-        if headings[lift].kind == Kind::Radius && chosen[1].is_none() {
-            let words = "names a radius, the cam's own, which is no follower's lift: give the lift; or lift_column in [cam], if it is a lift";
+        if headings[lift].kind == foreign && chosen[1].is_none() {
+            let words = match self.holds {
+                Holds::Lifts => {
+                    "names a radius, the cam's own, which is no follower's lift: law = \"contour\" takes it; or say lift_column in [cam], if it \
+                     is a lift"
+                }
+                _ => {
+                    "names a lift, which is no radius of the cam's own contour: law = \"table\" takes it; or say radius_column in [cam], if it \
+                     is a radius"
+                }
+            };
             return Err(words.into());
         }
         if lift == angle {
-            return Err("is asked for the angle and for the lift in one column".into());
+            return Err(format!("is asked for the angle and for the {value} in one column"));
         }
         Ok(Some([angle, lift]))
     }
@@ -154,8 +187,12 @@ impl<'a> Table<'a> {
                 Some((above.line, cell, heading))
             })
         };
-        let angles = cells(angle).map(|(line, cell, heading)| (line, cell, heading.angle));
-        let lifts = cells(lift).map(|(line, cell, heading)| (line, cell, heading.lift));
+        let kind = |column: usize| named.and_then(|named| named.headings.get(column)).map(|heading| heading.kind);
+        let are_points = self.holds == Holds::Points
+            || self.may_be_points && [angle, lift].map(kind) == [Some(Kind::Abscissa), Some(Kind::Ordinate)];
+        let angles = cells(angle).filter(|_| !are_points).map(|(line, cell, heading)| (line, cell, heading.angle));
+        let lengths = cells(angle).filter(|_| are_points).chain(cells(lift));
+        let lifts = lengths.map(|(line, cell, heading)| (line, cell, heading.lift));
         let units = used.iter().rev().find(|(_, above)| above.is_units());
         let seen = others
             .iter()
@@ -166,6 +203,7 @@ impl<'a> Table<'a> {
             header: named.filter(|named| !named.is_units()).map(|named| named.text.trim()),
             units: units.map(|(_, units)| units.text.trim()),
             columns: header.map(|(_, columns)| columns),
+            are_points,
             names: named.map_or_else(Vec::new, |named| named.cells.clone()),
             is_of_crank: named.and_then(|named| named.headings.get(angle)).is_some_and(|heading| heading.is_of[0]),
             angle: self.together(angles, 0, |unit| AngleUnit::NAMES[*unit].to_owned()),
@@ -202,10 +240,13 @@ impl<'a> Table<'a> {
     fn unnamed(&self, last: &LineAbove<'a>, chosen: &[Option<Chosen>; 2]) -> ModelError {
         let more = match chosen.iter().any(Option::is_some) {
             true => format!("; its columns are {}", last.cells.join(", ")),
-            false => "; or say which they are in [cam], as angle_column = 1 and lift_column = 2 do".to_owned(),
+            false => {
+                let [one, two] = self.holds.choices();
+                format!("; or say which they are in [cam], as {one} = 1 and {two} = 2 do")
+            }
         };
-        let allowed =
-            format!("must name the angle, then the lift, as {HEADER} does, with their units or without{more}");
+        let ([one, two], header) = (self.holds.named(), self.holds.header());
+        let allowed = format!("must name {one}, then {two}, as {header} does, with their units or without{more}");
         self.reject(last.line, "header", last.text.trim(), allowed)
     }
 
@@ -233,7 +274,7 @@ impl<'a> Table<'a> {
     pub(super) fn unit_complaint(&self, line: usize, cell: &str, column: usize, meant: &[String]) -> ModelError {
         let (name, units, field, example) = match column {
             0 => ("angle", AngleUnit::NAMES.to_vec(), "angle_unit", "deg"),
-            _ => ("lift", LENGTHS.iter().map(Unit::name).collect(), "unit", "mm"),
+            _ => (self.holds.value(), LENGTHS.iter().map(Unit::name).collect(), "unit", "mm"),
         };
         let words = match meant {
             [] => format!(

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::fields::{Field, Value};
-use super::{CamProfile, Model, ModelError, Numeral, SmoothingTolerance, Spline, TableProfile, nearest};
+use super::{Model, ModelError, Numeral, SmoothingTolerance, Spline, TableProfile, nearest};
 
 impl Model {
     /// Dotted path of the number of follower or cam that a user calls `name`: the full path, or a path's end that no other
@@ -80,11 +80,7 @@ impl Model {
         let rows = dwells.iter().map(|dwell| (*dwell, None)).collect();
         fields.put("cam.dwells_deg", if dwells.is_empty() { Value::Array(0) } else { Value::Rows(rows) });
         let mut model = Self { changes: self.changes.clone(), ..Self::from_fields(fields)? };
-        let mut cam = &mut model.cam;
-        while let CamProfile::Rounded { sharp, .. } = cam {
-            cam = sharp;
-        }
-        if let CamProfile::Table(TableProfile { spline: Spline::Smoothing(smoothing), .. }) = cam {
+        if let Some(TableProfile { spline: Spline::Smoothing(smoothing), .. }) = model.cam.table_mut() {
             (smoothing.tolerance, smoothing.are_near) = (SmoothingTolerance::Weighted(weight), are_near);
         }
         Ok(model)

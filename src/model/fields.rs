@@ -92,7 +92,14 @@ impl Fields {
     /// Path and value of every number in `tables`.
     pub(super) fn numbers_in<'a>(&'a self, tables: &[&str]) -> impl Iterator<Item = (&'a str, f64)> {
         /// Numbers that say how a table is read, and are none of the machine's.
-        const OF_READING: [&str; 3] = ["cam.angle_column", "cam.lift_column", "cam.turn_deg"];
+        const OF_READING: [&str; 6] = [
+            "cam.angle_column",
+            "cam.lift_column",
+            "cam.radius_column",
+            "cam.x_column",
+            "cam.y_column",
+            "cam.turn_deg",
+        ];
         let inside = |path: &str| {
             path.split_once('.').is_some_and(|(table, _)| tables.contains(&table)) && !OF_READING.contains(&path)
         };

@@ -14,6 +14,10 @@ enum Meaning {
     /// Radius of the cam itself, which is no lift.
     Radius,
     Angle,
+    /// x of a point.
+    Abscissa,
+    /// y of a point.
+    Ordinate,
     /// Word that says nothing about a quantity or a unit.
     Filler,
     /// Unit of angles, by its index in the names of a model file.
@@ -29,7 +33,7 @@ enum Meaning {
 }
 
 /// Words by their meaning, each once. One behind a hyphen may end a longer word, as in German.
-const WORDS: [(Meaning, &str); 20] = [
+const WORDS: [(Meaning, &str); 22] = [
     (
         Meaning::Other,
         "velocity vel v speed acceleration accel acc a jerk j force load curvature time t no nr num number row index idx n point points pt pts \
@@ -46,6 +50,8 @@ const WORDS: [(Meaning, &str); 20] = [
         Meaning::Angle,
         "angle angles theta θ ϑ phi φ ϕ alpha α rotation -winkel cam crank camshaft crankshaft kw nw ca cad angolo ángulo",
     ),
+    (Meaning::Abscissa, "x"),
+    (Meaning::Ordinate, "y"),
     (Meaning::Filler, "of an the at vs valve intake inlet exhaust einlass auslass einer eines von de di"),
     (Meaning::AngleUnit(0), "deg degs degree degrees ° grad degré degrés gradi grados"),
     (Meaning::AngleUnit(1), "rad rads radian radians"),
@@ -332,6 +338,10 @@ pub(super) enum Kind {
     Lift,
     /// A radius of the cam itself.
     Radius,
+    /// x of a point.
+    Abscissa,
+    /// y of a point.
+    Ordinate,
     /// Something else, which is left out.
     Other,
     Unknown,
@@ -386,6 +396,10 @@ impl Heading {
             Kind::Radius
         } else if has(Meaning::Angle) || angles > 0 && lengths == 0 {
             Kind::Angle
+        } else if has(Meaning::Abscissa) {
+            Kind::Abscissa
+        } else if has(Meaning::Ordinate) {
+            Kind::Ordinate
         } else {
             Kind::Unknown
         };

@@ -9,8 +9,67 @@ use super::ModelError;
 use super::heading::{Heading, Kind};
 use super::table_units::AngleUnit;
 
+/// Quantities in the two columns of a table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[doc(hidden)]
+pub enum Holds {
+    /// Lifts over the cam angle.
+    Lifts,
+    /// Radii of a contour over their polar angle.
+    Radii,
+    /// Points of a contour, x and y.
+    Points,
+}
+
+impl Holds {
+    /// Names of the columns in a header.
+    pub(super) fn columns(self) -> [&'static str; 2] {
+        match self {
+            Self::Lifts => ["angle_deg", "lift"],
+            Self::Radii => ["angle_deg", "radius"],
+            Self::Points => ["x", "y"],
+        }
+    }
+
+    /// An example of a header.
+    pub(super) fn header(self) -> String {
+        self.columns().join(",")
+    }
+
+    /// Names of the columns in a sentence.
+    pub(super) fn named(self) -> [&'static str; 2] {
+        match self {
+            Self::Lifts => ["the angle", "the lift"],
+            Self::Radii => ["the angle", "the radius"],
+            Self::Points => ["x", "y"],
+        }
+    }
+
+    /// Fields of a model that choose the columns.
+    pub(super) fn choices(self) -> [&'static str; 2] {
+        match self {
+            Self::Lifts => ["angle_column", "lift_column"],
+            Self::Radii => ["angle_column", "radius_column"],
+            Self::Points => ["x_column", "y_column"],
+        }
+    }
+
+    /// Name of what the rows come to over the angle.
+    pub fn value(self) -> &'static str {
+        if self == Self::Lifts { "lift" } else { "radius" }
+    }
+
+    /// Plural of that name.
+    pub fn values(self) -> &'static str {
+        if self == Self::Lifts { "lifts" } else { "radii" }
+    }
+}
+
 /// A table while it is read; complaints use it.
 pub(super) struct Table<'a> {
+    pub(super) holds: Holds,
+    /// Whether a header may name x and y instead.
+    pub(super) may_be_points: bool,
     pub(super) file: String,
     pub(super) text: &'a str,
     /// Whether complaints name rows by their lines in the text; otherwise by their numbers.

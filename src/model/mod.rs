@@ -14,6 +14,7 @@ mod heading;
 mod lines;
 mod nearest;
 mod numeral;
+mod points;
 mod profile;
 mod quantity;
 mod rows;
@@ -31,14 +32,14 @@ use serde::{Deserialize, Serialize};
 
 pub use complaint::ModelError;
 use fields::Fields;
-pub use lines::Separator;
+pub use lines::{Holds, Separator};
 pub use nearest::nearest;
 pub use numeral::{Numeral, finite, parted};
-pub use profile::CORNER_ROUNDING;
 pub(crate) use profile::{
     ArcsProfile, MOST_COEFFICIENTS, MotionSegment, PolynomialSegment, ProgramProfile, RectifiedSineProfile,
 };
-pub use profile::{CamProfile, FollowerContact, HarmonicProfile, StandardMotion};
+pub use profile::{CORNER_ROUNDING, LEVER_RATIO};
+pub use profile::{CamProfile, ContourProfile, FollowerContact, HarmonicProfile, ProfileChange, StandardMotion};
 #[doc(hidden)]
 pub use quantity::{Dimension, MODEL_NUMBERS, ModelNumber};
 pub use rows::TableLayout;
@@ -186,13 +187,12 @@ impl Model {
         })
     }
 
-    /// The table of lifts that gives the cam its profile, if there is one.
+    /// The table of lifts, or of radii of a contour, that gives the cam its profile, if there is one.
     pub fn table(&self) -> Option<&TableProfile> {
-        let mut sharp = &self.cam;
-        while let CamProfile::Rounded { sharp: inside, .. } = sharp {
-            sharp = inside;
+        match self.cam.plain() {
+            CamProfile::Table(table) | CamProfile::Contour(ContourProfile { table, .. }) => Some(table),
+            _ => None,
         }
-        if let CamProfile::Table(table) = sharp { Some(table) } else { None }
     }
 
     /// Whether the cam is a smoothing spline near the rows of a table.

@@ -22,34 +22,86 @@ pub enum CamProfile {
     Polynomial(Vec<PolynomialSegment>),
     /// A spline through measured lifts.
     Table(TableProfile),
-    /// Another profile, with the corners of its acceleration rounded.
-    Rounded {
-        /// Angle over which each corner is rounded, degrees, above 0.
-        corner_rounding_deg: f64,
-        /// The profile without the rounding.
-        sharp: Box<Self>,
+    /// A spline through measured radii of the cam's own contour.
+    Contour(ContourProfile),
+    /// Another profile, with the corners of its acceleration rounded or its lift scaled by a lever.
+    Modified {
+        /// The changes.
+        change: ProfileChange,
+        /// The profile without them.
+        plain: Box<Self>,
     },
+}
+
+/// Changes that a `[cam]` table makes to the lift of its law.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct ProfileChange {
+    /// Angle over which each corner is rounded, degrees; 0 for none.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub corner_rounding_deg: f64,
+    /// Lift of the follower over lift at the cam; 1 without a lever.
+    #[serde(skip_serializing_if = "is_one")]
+    pub lever_ratio: f64,
+}
+
+impl ProfileChange {
+    const NONE: Self = Self { corner_rounding_deg: 0.0, lever_ratio: 1.0 };
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
+fn is_zero(number: &f64) -> bool {
+    *number == 0.0
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
+fn is_one(number: &f64) -> bool {
+    *number == 1.0
 }
 
 impl CamProfile {
     /// Name of this lift law in the field `law`.
     pub fn law(&self) -> &'static str {
-        match self {
+        match self.plain() {
             Self::Arcs(_) => "arcs",
             Self::Harmonic(_) => "harmonic",
             Self::RectifiedSine(_) => "rectified-sine",
             Self::Program(_) => "program",
             Self::Polynomial(_) => "polynomial",
             Self::Table(_) => "table",
-            Self::Rounded { sharp, .. } => sharp.law(),
+            Self::Contour(_) => "contour",
+            // A profile is modified at most once.
+            Self::Modified { .. } => "",
         }
+    }
+
+    /// The profile without its changes.
+    pub fn plain(&self) -> &Self {
+        if let Self::Modified { plain, .. } = self { plain } else { self }
+    }
+
+    /// The table of a profile that has one.
+    pub(super) fn table_mut(&mut self) -> Option<&mut TableProfile> {
+        let plain = if let Self::Modified { plain, .. } = self { plain } else { self };
+        match plain {
+            Self::Table(table) | Self::Contour(ContourProfile { table, .. }) => Some(table),
+            _ => None,
+        }
+    }
+
+    /// Lift of the follower over lift at the cam: the ratio of the lever between them, 1 without one.
+    pub fn lever_ratio(&self) -> f64 {
+        self.change().lever_ratio
+    }
+
+    fn change(&self) -> ProfileChange {
+        if let Self::Modified { change, .. } = self { *change } else { ProfileChange::NONE }
     }
 
     /// The end of the follower, where the lift follows from the cam's contour; `None` where the lift itself is given.
     pub fn contact(&self) -> Option<FollowerContact> {
-        match self {
+        match self.plain() {
             Self::Arcs(profile) => Some(profile.contact),
-            Self::Rounded { sharp, .. } => sharp.contact(),
+            Self::Contour(profile) => Some(profile.contact),
             _ => None,
         }
     }
@@ -58,20 +110,11 @@ impl CamProfile {
 /// Serializes the profile as the table of a model file; a table of lifts has its rows in place of the file.
 impl Serialize for CamProfile {
     fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
-        match self {
-            Self::Rounded { corner_rounding_deg, sharp } => sharp.with_rounding(Some(*corner_rounding_deg), to),
-            sharp => sharp.with_rounding(None, to),
-        }
-    }
-}
-
-impl CamProfile {
-    fn with_rounding<S: Serializer>(&self, corner_rounding_deg: Option<f64>, to: S) -> Result<S::Ok, S::Error> {
         #[derive(Serialize)]
         struct Named<T> {
             law: &'static str,
-            #[serde(skip_serializing_if = "Option::is_none")]
-            corner_rounding_deg: Option<f64>,
+            #[serde(flatten)]
+            change: ProfileChange,
             #[serde(flatten)]
             profile: T,
         }
@@ -79,18 +122,16 @@ impl CamProfile {
         struct Segments<'a> {
             segment: &'a [PolynomialSegment],
         }
-        let law = self.law();
-        match self {
-            Self::Arcs(profile) => Named { law, corner_rounding_deg, profile }.serialize(to),
-            Self::Harmonic(profile) => Named { law, corner_rounding_deg, profile }.serialize(to),
-            Self::RectifiedSine(profile) => Named { law, corner_rounding_deg, profile }.serialize(to),
-            Self::Program(profile) => Named { law, corner_rounding_deg, profile }.serialize(to),
-            Self::Polynomial(segment) => {
-                Named { law, corner_rounding_deg, profile: Segments { segment } }.serialize(to)
-            }
-            Self::Table(profile) => Named { law, corner_rounding_deg, profile }.serialize(to),
-            // A profile is rounded at most once.
-            Self::Rounded { .. } => Named { law, corner_rounding_deg, profile: () }.serialize(to),
+        let (law, change) = (self.law(), self.change());
+        match self.plain() {
+            Self::Arcs(profile) => Named { law, change, profile }.serialize(to),
+            Self::Harmonic(profile) => Named { law, change, profile }.serialize(to),
+            Self::RectifiedSine(profile) => Named { law, change, profile }.serialize(to),
+            Self::Program(profile) => Named { law, change, profile }.serialize(to),
+            Self::Polynomial(segment) => Named { law, change, profile: Segments { segment } }.serialize(to),
+            Self::Table(profile) => Named { law, change, profile }.serialize(to),
+            Self::Contour(profile) => Named { law, change, profile }.serialize(to),
+            Self::Modified { .. } => Named { law, change, profile: () }.serialize(to),
         }
     }
 }
@@ -110,6 +151,16 @@ pub struct ArcsProfile {
     pub nose_end_deg: f64,
     /// The end of the follower that touches the cam.
     #[serde(skip_serializing_if = "FollowerContact::is_point")]
+    pub contact: FollowerContact,
+}
+
+/// A cam's own contour, and the follower on it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ContourProfile {
+    /// Radii over polar angles, which count against the cam's turn.
+    #[serde(flatten)]
+    pub table: TableProfile,
+    /// The end of the follower that touches the cam.
     pub contact: FollowerContact,
 }
 
@@ -252,18 +303,25 @@ pub const MOST_COEFFICIENTS: usize = 32;
 type ReadProfile = fn(&mut Fields) -> Result<CamProfile, ModelError>;
 
 /// Every lift law, with its name in the field `law`.
-static CAM_LAWS: [(&str, ReadProfile); 6] = [
+static CAM_LAWS: [(&str, ReadProfile); 7] = [
     ("arcs", arcs),
     ("harmonic", harmonic),
     ("rectified-sine", rectified_sine),
     ("program", program),
     ("polynomial", polynomial),
     ("table", |fields| table::read(fields).map(CamProfile::Table)),
+    ("contour", |fields| {
+        let contact = contact(fields)?;
+        Ok(CamProfile::Contour(ContourProfile { table: table::read_contour(fields)?, contact }))
+    }),
 ];
 
 /// Field of the angle over which corners are rounded.
 #[doc(hidden)]
 pub const CORNER_ROUNDING: &str = "cam.corner_rounding_deg";
+/// Field of the ratio of the lever between cam and follower.
+#[doc(hidden)]
+pub const LEVER_RATIO: &str = "cam.lever_ratio";
 
 pub(super) fn read(fields: &mut Fields) -> Result<CamProfile, ModelError> {
     let read = fields.choice("cam.law", &CAM_LAWS)?;
@@ -272,11 +330,9 @@ pub(super) fn read(fields: &mut Fields) -> Result<CamProfile, ModelError> {
     if 0.0 < corner_rounding_deg && corner_rounding_deg < least {
         return Err(fields.reject(path, format!("must be 0, or from {least} on")));
     }
-    let sharp = read(fields)?;
-    if corner_rounding_deg == 0.0 {
-        return Ok(sharp);
-    }
-    Ok(CamProfile::Rounded { corner_rounding_deg, sharp: Box::new(sharp) })
+    let change = ProfileChange { corner_rounding_deg, lever_ratio: fields.number(LEVER_RATIO)? };
+    let plain = read(fields)?;
+    Ok(if change == ProfileChange::NONE { plain } else { CamProfile::Modified { change, plain: Box::new(plain) } })
 }
 
 fn arcs(fields: &mut Fields) -> Result<CamProfile, ModelError> {

@@ -118,7 +118,7 @@ const fn number(
 /// Every number of the format, in the order in which reports have them.
 #[doc(hidden)]
 #[rustfmt::skip]
-pub static MODEL_NUMBERS: [ModelNumber; 28] = {
+pub static MODEL_NUMBERS: [ModelNumber; 29] = {
     use Dimension::*;
     const POSITIVE: Allowed = Allowed::POSITIVE;
     const NOT_NEGATIVE: Allowed = Allowed::NOT_NEGATIVE;
@@ -138,13 +138,14 @@ pub static MODEL_NUMBERS: [ModelNumber; 28] = {
         number("cam.nose_radius", "ρ₂", "radius of the nose", Length, POSITIVE, &["arcs"]),
         number("cam.flank_start_deg", "", "cam angle where the flank starts", Degrees, HALF_A_TURN, &["arcs"]),
         number("cam.nose_end_deg", "", "cam angle where the nose ends", Degrees, HALF_A_TURN, &["arcs"]),
-        number("cam.contact.roller_radius", "", "radius of the roller", Length, POSITIVE, &["arcs"]),
-        number("cam.contact.offset", "", "distance of the line of motion from the axis", Length, FINITE, &["arcs"]).or(0.0),
+        number("cam.contact.roller_radius", "", "radius of the roller", Length, POSITIVE, &["arcs", "contour"]),
+        number("cam.contact.offset", "", "distance of the line of motion from the axis", Length, FINITE, &["arcs", "contour"]).or(0.0),
         number("cam.offset", "", "middle of the lift", Length, FINITE, &["harmonic", "rectified-sine"]),
         number("cam.amplitude", "", "amplitude of the lift", Length, FINITE, &["rectified-sine"]),
         number("cam.base", "", "lift at angle 0", Length, FINITE, &["program"]),
-        number("cam.tolerance", "", "largest distance of a smoothing spline from a row", Pure, POSITIVE, &["table"]),
+        number("cam.tolerance", "", "largest distance of a smoothing spline from a row", Pure, POSITIVE, &["table", "contour"]),
         number("cam.corner_rounding_deg", "", "angle that corners are rounded over", Degrees, A_TURN, &[]).or(0.0),
+        number("cam.lever_ratio", "", "lift of the follower over lift at the cam", Pure, POSITIVE, &[]).or(1.0),
         number("cam.amplitudes", "", "amplitudes", Length, FINITE, &["harmonic"]),
         number("cam.phases_deg", "", "phases", Degrees, FINITE, &["harmonic"]),
         number("cam.segment.span_deg", "", "span", Degrees, Allowed::above(0.0, 360.0), &["program"]),

@@ -9,9 +9,9 @@ use std::iter;
 use serde::Serialize;
 
 use super::ModelError;
-use super::above::{Chosen, HEADER, LineAbove};
+use super::above::{Chosen, LineAbove};
 use super::heading::{ProseUnit, prose_units};
-use super::lines::{Separator, Table, decimal, has_numbers, is_rule, number, without_comment};
+use super::lines::{Holds, Separator, Table, decimal, has_numbers, is_rule, number, without_comment};
 use super::table_units::LiftUnit;
 
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -51,6 +51,9 @@ pub struct TableLayout {
     /// Whether the header says that angles are a crank's.
     #[serde(skip)]
     pub is_of_crank: bool,
+    /// Whether the columns are x and y.
+    #[serde(skip)]
+    pub(super) are_points: bool,
     /// Unit of angles that the lines above the rows name, by its index in the names of a model file; a complaint where it is not understood.
     #[serde(skip)]
     pub(super) angle: Result<Option<usize>, ModelError>,
@@ -75,8 +78,9 @@ impl<'a> Table<'a> {
         if begins_like_table || complaint.pointer.text.is_none() {
             return complaint;
         }
+        let (values, value, header) = (self.holds.values(), self.holds.value(), self.holds.header());
         let words = format!(
-            "is no table of lifts: none of its first {FIRST_LINES} lines has two numbers, or an angle and a lift as {HEADER}"
+            "is no table of {values}: none of its first {FIRST_LINES} lines has two numbers, or an angle and a {value} as {header}"
         );
         ModelError { line: complaint.line, ..ModelError::file(&self.file, words) }
     }
@@ -98,6 +102,7 @@ impl<'a> Table<'a> {
 
     /// Reads the rows of the text and its layout; `chosen` are the columns that the model chooses, the angle's first.
     pub(super) fn rows(&self, chosen: &[Option<Chosen>; 2]) -> Result<(Vec<TableRow>, TableLayout), ModelError> {
+        let header = self.holds.header();
         let lines = || self.text.lines().enumerate().map(|(index, line)| (index + 1, line));
         let filled = || {
             lines()
@@ -105,7 +110,7 @@ impl<'a> Table<'a> {
                 .filter(|(_, text)| !text.trim().is_empty() && !is_rule(text.trim()))
         };
         if filled().next().is_none() {
-            return Err(self.complain(None, format!("is empty; its first line must be {HEADER}")));
+            return Err(self.complain(None, format!("is empty; its first line must be {header}")));
         }
         // Spreadsheets are told the separator so.
         let said = filled().next().and_then(|(_, text)| match text.trim().to_lowercase().strip_prefix("sep=") {
@@ -125,13 +130,14 @@ impl<'a> Table<'a> {
             filled().position(|(_, text)| has_numbers(text)).or_else(|| filled().position(|(_, text)| is_number(text)));
         let found = found.or_else(|| Some(1 + filled().position(|(_, text)| self.is_header(text, chosen))?));
         let Some(found) = found else {
-            return Err(
-                self.complain(None, format!("is no table of lifts: no line has two numbers, as below {HEADER}"))
-            );
+            return Err(self.complain(
+                None,
+                format!("is no table of {}: no line has two numbers, as below {header}", self.holds.values()),
+            ));
         };
         let above: Vec<(usize, &str)> = filled().take(found).collect();
         let Some((_, first)) = filled().nth(found) else {
-            return Err(self.complain(None, format!("has no rows below its header, as {HEADER}")));
+            return Err(self.complain(None, format!("has no rows below its header, as {header}")));
         };
         // If the row is one number without a separator, the line above it decides.
         let is_one = !first.trim().contains(|letter: char| letter.is_whitespace() || ",;|".contains(letter));
@@ -159,11 +165,12 @@ impl<'a> Table<'a> {
                 return Err(self.complain(None, format!("has no column that is named {name}")));
             }
             (None, _) if width < 2 => {
-                return Err(self.reject(first_line, "row", first.trim(), format!("must be two numbers: {HEADER}")));
+                return Err(self.reject(first_line, "row", first.trim(), format!("must be two numbers: {header}")));
             }
             (None, _) => {
+                let ([one, two], [first, second]) = (self.holds.named(), self.holds.choices());
                 let words = format!(
-                    "has {width} columns without names: say which are the angle and the lift in [cam], as angle_column = 1 and lift_column = 2 do"
+                    "has {width} columns without names: say which are {one} and {two} in [cam], as {first} = 1 and {second} = 2 do"
                 );
                 let rows = || filled().skip(begins).map(|(_, text)| text);
                 return Err(self.complain(None, words + commas(separator, rows())));
@@ -183,6 +190,7 @@ impl<'a> Table<'a> {
                 .map(|column| above.names.get(column).cloned().unwrap_or_else(|| (column + 1).to_string()))
                 .collect(),
             is_of_crank: above.is_of_crank,
+            are_points: above.are_points,
             angle: above.angle,
             lift: above.lift,
             seen: above.seen,
@@ -206,6 +214,7 @@ impl<'a> Table<'a> {
             _ if is_number(text) => "",
             _ => "; if this line is no row, leave it out or begin it with #",
         };
+        let names = if above.are_points { Holds::Points } else { self.holds }.columns();
         let mut rows: Vec<TableRow> = Vec::new();
         let (mut point, mut thousands) = (None, Thousands::default());
         for (line, text) in filled().skip(begins) {
@@ -225,7 +234,7 @@ impl<'a> Table<'a> {
                 return Err(self.reject(line, "row", text.trim(), words));
             }
             let [Some(angle), Some(lift)] = found else {
-                let words = format!("must be two numbers: {HEADER}{}", advice(&layout, text));
+                let words = format!("must be two numbers: {header}{}", advice(&layout, text));
                 return Err(self.reject(line, "row", text.trim(), words));
             };
             let angle = match angle.strip_suffix('°') {
@@ -252,7 +261,7 @@ impl<'a> Table<'a> {
                     self.reject(line, column, cell, format!("must be a finite number{}", advice(&layout, text)))
                 })
             };
-            let (angle_deg, lift) = (number("angle_deg", angle)?, number("lift", lift)?);
+            let (angle_deg, lift) = (number(names[0], angle)?, number(names[1], lift)?);
             if rows.len() == MOST_ROWS {
                 return Err(self.complain(Some(line), format!("more than {MOST_ROWS} rows")));
             }

@@ -10,7 +10,7 @@ use super::ModelError;
 use super::above::Chosen;
 use super::fields::{Fields, Pair, Value};
 use super::heading::{ProseUnit, part_of_unit};
-use super::lines::Table;
+use super::lines::{Holds, Table};
 use super::rows::{MOST_ROWS, TableLayout, TableRow};
 use super::table_units::{AngleUnit, LiftUnit};
 use super::toml;
@@ -149,6 +149,9 @@ pub enum SmoothingTolerance {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[doc(hidden)]
 pub struct Reading {
+    /// Quantities in its columns.
+    #[serde(skip)]
+    pub holds: Holds,
     /// The unit of lifts in the table.
     pub unit: String,
     /// The decimal part of that unit that the numbers of the table are.
@@ -217,6 +220,35 @@ const MOST_FEATURES: usize = 1000;
 const MOST_WRITTEN: usize = MOST_PROVED_ROWS + 1;
 /// Reads the fields of `law = "table"`, and the file that they name unless they have its rows.
 pub(super) fn read(fields: &mut Fields) -> Result<TableProfile, ModelError> {
+    read_rows(fields, Holds::Lifts, false)
+}
+
+/// Reads the table of `law = "contour"`: radii over polar angles, or points.
+pub(super) fn read_contour(fields: &mut Fields) -> Result<TableProfile, ModelError> {
+    let path = "cam.coordinates";
+    fields.may_hold(path);
+    let mut chosen = |holds: Holds| {
+        let paths = holds.choices().map(|column| format!("cam.{column}"));
+        paths.iter().for_each(|path| fields.may_hold(path));
+        paths.into_iter().find(|path| fields.has(path))
+    };
+    let [polar, xy] = [Holds::Radii, Holds::Points].map(&mut chosen);
+    let holds = match (&polar, &xy) {
+        _ if fields.has(path) => fields.choice(path, &[("polar", Holds::Radii), ("xy", Holds::Points)])?,
+        (None, Some(_)) => Holds::Points,
+        _ => Holds::Radii,
+    };
+    let is_open = !fields.has(path) && polar.is_none() && xy.is_none();
+    let other = if holds == Holds::Points { polar } else { xy };
+    if let Some(other) = other {
+        let words =
+            "belongs to the other coordinates: a contour has angle_column and radius_column, or x_column and y_column";
+        return Err(fields.reject(&other, words));
+    }
+    read_rows(fields, holds, is_open)
+}
+
+fn read_rows(fields: &mut Fields, holds: Holds, may_be_points: bool) -> Result<TableProfile, ModelError> {
     fields.may_hold("cam.rows");
     if fields.has("cam.rows") {
         let spline = fields.choice("cam.spline", &SPLINES)?;
@@ -228,6 +260,8 @@ pub(super) fn read(fields: &mut Fields) -> Result<TableProfile, ModelError> {
         let has_lines = pairs.iter().all(|(_, line)| line.is_some());
         let text = fields.source().to_owned();
         let table = Table {
+            holds,
+            may_be_points: false,
             file: fields.file().into(),
             text: &text,
             has_lines,
@@ -239,7 +273,11 @@ pub(super) fn read(fields: &mut Fields) -> Result<TableProfile, ModelError> {
             if angle_deg.is_finite() && lift.is_finite() {
                 return Ok(TableRow { angle_deg, lift, line });
             }
-            let words = "must be a finite angle and a finite lift".into();
+            let [one, two] = holds.named();
+            let words = match holds {
+                Holds::Points => format!("must have a finite {one} and a finite {two}"),
+                _ => format!("must be a finite angle and a finite {}", holds.value()),
+            };
             Err(table.reject(line, "cam.rows", &format!("[{angle_deg}, {lift}]"), words))
         };
         let rows = pairs.into_iter().enumerate().map(row).collect::<Result<_, _>>()?;
@@ -258,10 +296,20 @@ pub(super) fn read(fields: &mut Fields) -> Result<TableProfile, ModelError> {
     } else {
         Cow::Borrowed(text)
     };
-    let table = Table { file: shown, text: &text, has_lines: true, angles: AngleUnit::DEGREES, says_angles: false };
-    let chosen = [Chosen::read(fields, "cam.angle_column")?, Chosen::read(fields, "cam.lift_column")?];
+    let angles = AngleUnit::DEGREES;
+    let mut table =
+        Table { holds, may_be_points, file: shown, text: &text, has_lines: true, angles, says_angles: false };
+    let [one, two] = holds.choices().map(|column| format!("cam.{column}"));
+    let chosen = [Chosen::read(fields, &one)?, Chosen::read(fields, &two)?];
     let (rows, layout) = table.rows(&chosen).map_err(|complaint| table.discreet(complaint, &chosen))?;
-    table.profile(fields, (Some(file), spline), rows, Some(layout))
+    if layout.are_points {
+        table.holds = Holds::Points;
+    }
+    let is_unsaid = may_be_points && layout.header.is_none();
+    table.profile(fields, (Some(file), spline), rows, Some(layout)).map_err(|error| {
+        let meant = "are the columns x and y? then say coordinates = \"xy\" in [cam]";
+        if is_unsaid && error.pointer.meant.is_none() { error.meaning(Some(meant.into())) } else { error }
+    })
 }
 
 /// The unit that a field or the table names; `usual` if neither does. A field that is given decides where the table is not understood.
@@ -315,7 +363,7 @@ fn mirrored(fields: &mut Fields) -> Result<bool, ModelError> {
 
 /// Reads the fields of `spline = "smoothing"`. `step` is the step of the lifts in the table's unit; `in_model` is that unit as a multiple
 /// of the model's unit of length.
-fn smoothing(fields: &mut Fields, step: Option<f64>, in_model: &Unit) -> Result<Smoothing, ModelError> {
+fn smoothing(fields: &mut Fields, step: Option<f64>, in_model: &Unit, holds: Holds) -> Result<Smoothing, ModelError> {
     let path = "cam.tolerance";
     fields.may_hold(path);
     let tolerance = match fields.fields.get(path).map(|field| &field.value) {
@@ -325,8 +373,9 @@ fn smoothing(fields: &mut Fields, step: Option<f64>, in_model: &Unit) -> Result<
             let within = fields.number(path)?;
             // Half of a decimal step has one digit more; allow for its rounding.
             if let Some(step) = step.filter(|step| within < 0.5 * step * (1.0 - 8.0 * tolerance::ULP.value)) {
+                let (half, values) = (0.5 * step, holds.values());
                 let words =
-                    format!("must be at least {}, half of the step {step} that the lifts are rounded to", 0.5 * step);
+                    format!("must be at least {half}, half of the step {step} that the {values} are rounded to");
                 return Err(fields.reject(path, words));
             }
             SmoothingTolerance::Within(in_model.inside(within))
@@ -393,19 +442,19 @@ fn shifted(number: &str, places: u32) -> String {
 
 /// Step of the coarsest decimal grid, 1, 2 or 5 times a power of ten, that all numbers lie on. `None` if they have as many
 /// digits as a double, or are all 0.
-fn grid(numbers: &[TableRow]) -> Option<f64> {
+fn grid(numbers: &[f64]) -> Option<f64> {
     /// Upper limit of whole numbers of which a double has every digit.
     const DIGITS: f64 = 1e15;
     // The shortest digits that read back as the same double are the written ones, except for zeros at the end.
-    let decimals = |row: &TableRow| row.lift.to_string().split_once('.').map_or(0, |(_, behind)| behind.len());
+    let decimals = |number: &f64| number.to_string().split_once('.').map_or(0, |(_, behind)| behind.len());
     let decimals = numbers.iter().map(decimals).max().unwrap_or_default();
     let power = 10.0_f64.powi(i32::try_from(decimals).ok()?);
-    let whole = |row: &TableRow| (row.lift * power).round().abs();
-    if !numbers.iter().all(|row| whole(row) < DIGITS) {
+    let whole = |number: &f64| (number * power).round().abs();
+    if !numbers.iter().all(|number| whole(number) < DIGITS) {
         return None;
     }
-    let common = numbers.iter().fold(0_u64, |common, row| {
-        let (mut one, mut two) = (common, whole(row) as u64);
+    let common = numbers.iter().fold(0_u64, |common, number| {
+        let (mut one, mut two) = (common, whole(number) as u64);
         while two != 0 {
             (one, two) = (two, one % two);
         }
@@ -429,7 +478,7 @@ impl Table<'_> {
         mut rows: Vec<TableRow>,
         layout: Option<TableLayout>,
     ) -> Result<TableProfile, ModelError> {
-        let named = layout.as_ref();
+        let (named, are_points) = (layout.as_ref(), self.holds == Holds::Points);
         fields.may_hold("cam.angle_unit");
         let names: Vec<(&str, usize)> =
             AngleUnit::NAMES.iter().enumerate().map(|(index, name)| (*name, index)).collect();
@@ -447,13 +496,14 @@ impl Table<'_> {
         let lift_unit = said.or(own).unwrap_or(LiftUnit { index: 0, places: 0 });
         // A unit in a title or a comment may be that of the lifts, or of something else.
         let unread = |(_, _, seen): &&(usize, String, ProseUnit)| match seen {
+            ProseUnit::Angle(_) if are_points => false,
             ProseUnit::Angle(seen) => index.is_none() && *seen != self.angles.index,
             ProseUnit::Length(seen) => said.is_none() && *seen != lift_unit,
         };
         if let Some((line, word, seen)) = named.and_then(|named| named.seen.iter().find(unread)) {
             let (what, of, field, meant) = match seen {
                 ProseUnit::Angle(index) => ("angle", "angles", "angle_unit", AngleUnit::NAMES[*index].to_owned()),
-                ProseUnit::Length(unit) => ("length", "lifts", "unit", unit.name()),
+                ProseUnit::Length(unit) => ("length", self.holds.values(), "unit", unit.name()),
             };
             let words = format!(
                 "is a unit of {what} that no column is said to be in: say which the {of} are in, by {field} in [cam], such as {field} = \"{meant}\""
@@ -462,15 +512,30 @@ impl Table<'_> {
         }
         let unit = &LENGTHS[lift_unit.index];
         let in_model = unit.in_parts_of(&of_model);
-        if lift_unit.places > 0 {
-            rows.iter_mut().for_each(|row| {
-                row.lift = shifted(&row.lift.to_string(), lift_unit.places).parse().unwrap_or(row.lift)
-            });
+        let mut lengths: Vec<f64> = rows.iter().map(|row| row.lift).collect();
+        if are_points {
+            lengths.extend(rows.iter().map(|row| row.angle_deg));
         }
-        let step = grid(&rows);
-        for row in &mut rows {
-            row.lift = in_model.inside(row.lift);
-            row.angle_deg = self.angles.degrees(row.angle_deg);
+        if lift_unit.places > 0 {
+            lengths
+                .iter_mut()
+                .for_each(|length| *length = shifted(&length.to_string(), lift_unit.places).parse().unwrap_or(*length));
+        }
+        let step = grid(&lengths);
+        let (values, abscissas) = lengths.split_at(rows.len());
+        for (index, row) in rows.iter_mut().enumerate() {
+            row.lift = in_model.inside(values[index]);
+            row.angle_deg = match abscissas.get(index) {
+                Some(x) => in_model.inside(*x),
+                None => self.angles.degrees(row.angle_deg),
+            };
+        }
+        let of_angles = ["cam.angle_unit", "cam.turn_deg"].into_iter().find(|path| fields.has(path));
+        match (self.holds, of_angles) {
+            (Holds::Lifts, _) => {}
+            (Holds::Radii, _) => self.radii(&rows)?,
+            (Holds::Points, None) => self.polar(&mut rows)?,
+            (Holds::Points, Some(path)) => return Err(fields.reject(path, "is of angles, and the table has x and y")),
         }
         let first_deg = rows.first().map_or(0.0, |row| row.angle_deg);
         let falls = rows.windows(2).filter(|pair| pair[1].angle_deg < pair[0].angle_deg).count();
@@ -486,7 +551,7 @@ impl Table<'_> {
         fields.may_hold("cam.outside");
         let fills = fields.has("cam.outside") && fields.choice("cam.outside", &[("base", true)])?;
         let mut written = Vec::new();
-        let is_whole = self.angles.is_of_cam() && !(is_mirrored || fills || falls || merged > 0);
+        let is_whole = self.angles.is_of_cam() && !(are_points || is_mirrored || fills || falls || merged > 0);
         if is_whole && rows.len() <= MOST_WRITTEN {
             written = match (named, fields.fields.get("cam.rows")) {
                 (Some(layout), _) => rows.iter().filter_map(|row| self.cells(layout, row.line)).collect(),
@@ -498,8 +563,9 @@ impl Table<'_> {
         }
         let nose_deg = if is_mirrored { self.mirror(fields, &mut rows)? } else { None };
         // Row numbers are as far apart as degrees are.
-        let counts =
-            fields.has("cam.angle_column") && rows.windows(2).all(|pair| pair[1].angle_deg - pair[0].angle_deg == 1.0);
+        let counts = !are_points
+            && fields.has("cam.angle_column")
+            && rows.windows(2).all(|pair| pair[1].angle_deg - pair[0].angle_deg == 1.0);
         let column = named.map_or(0, |named| named.columns[0]);
         let (repeats_first, filled) = self.turned(fields, &mut rows, fills).map_err(|error| {
             let meant =
@@ -514,10 +580,11 @@ impl Table<'_> {
         let spline = match spline {
             Kind::Cubic => Spline::Cubic,
             Kind::Quintic => Spline::Quintic,
-            Kind::Smoothing => Spline::Smoothing(smoothing(fields, step, &in_model)?),
+            Kind::Smoothing => Spline::Smoothing(smoothing(fields, step, &in_model, self.holds)?),
         };
         written.truncate(if written.len() < rows.len() { 0 } else { rows.len() });
         let reading = Reading {
+            holds: self.holds,
             unit: unit.name().to_owned(),
             part: (lift_unit.places > 0).then(|| lift_unit.name()),
             in_model,

@@ -27,7 +27,21 @@ impl Fields {
     /// Replaces a table's rows and file by rows at the same angles with other lifts, in the units of the model.
     pub(super) fn put_lifts(&mut self, table: &TableProfile, lifts: impl Iterator<Item = f64>) {
         // What says how the rows are read is done.
-        for name in ["file", "unit", "angle_unit", "angle_column", "lift_column", "turn_deg", "mirrored", "outside"] {
+        const OF_READING: [&str; 12] = [
+            "file",
+            "unit",
+            "angle_unit",
+            "angle_column",
+            "lift_column",
+            "radius_column",
+            "x_column",
+            "y_column",
+            "coordinates",
+            "turn_deg",
+            "mirrored",
+            "outside",
+        ];
+        for name in OF_READING {
             self.fields.remove(&*format!("cam.{name}"));
         }
         if let Some(SmoothingTolerance::Within(within)) = table.spline.smoothing().map(|smoothing| smoothing.tolerance)

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use super::ModelError;
 use super::fields::Fields;
-use super::lines::Table;
+use super::lines::{Holds, Table};
 use super::rows::{MOST_ROWS, TableRow};
 use crate::tolerance;
 
@@ -34,8 +34,11 @@ impl Table<'_> {
             let before = rows[rows.len() - 2].angle_deg;
             (last.angle_deg, last.angle_deg + 0.5 * (last.angle_deg - before))
         } else {
-            let words =
-                format!("needs the nose, the greatest lift, at one end of the rows: it is on {}", self.place(&highest));
+            let words = format!(
+                "needs the nose, the greatest {}, at one end of the rows: it is on {}",
+                self.holds.value(),
+                self.place(&highest)
+            );
             return Err(fields.reject("cam.mirrored", words));
         };
         let whole = (outside / 180.0).round() * 180.0;
@@ -92,7 +95,8 @@ impl Table<'_> {
                 )
             };
             let words = format!(
-                "is asked of rows that do not begin and end on the base circle: the lift on {} {found}",
+                "is asked of rows that do not begin and end on the base circle: the {} on {} {found}",
+                self.holds.value(),
                 self.place(&row)
             );
             return Err(fields.reject("cam.outside", words));
@@ -186,7 +190,8 @@ impl Table<'_> {
 
     /// An angle, degrees of the cam, as the table has it.
     fn shown(&self, angle_deg: f64) -> f64 {
-        self.angles.told(angle_deg)
+        // Polar angles of points have rounded digits.
+        if self.holds == Holds::Points { (angle_deg * 1e9).round() / 1e9 } else { self.angles.told(angle_deg) }
     }
 
     fn reject_angle(&self, line: usize, angle_deg: f64, words: String) -> ModelError {
@@ -202,7 +207,8 @@ impl Table<'_> {
             return Ok(());
         }
         let repeats = row.angle_deg >= before.angle_deg;
-        let what = if repeats { "repeats the angle of the row before with another lift" } else { "angles must rise" };
+        let again = || format!("repeats the angle of the row before with another {}", self.holds.value());
+        let what = if repeats { again() } else { "angles must rise".to_owned() };
         let of_turn = if begins_turn { " less a turn" } else { "" };
         let words = format!("{what}: must be above {}{of_turn}, {}", self.shown(above), self.place(before));
         Err(self.reject_angle(row.line, written, words))
@@ -212,13 +218,14 @@ impl Table<'_> {
     fn closes(&self, rows: &[TableRow], first: &TableRow, last: &TableRow) -> Result<(), ModelError> {
         let largest = rows.iter().fold(0.0_f64, |largest, row| largest.max(row.lift.abs()));
         if (last.lift - first.lift).abs() > tolerance::CAM_CLOSURE.value * largest {
+            let value = self.holds.value();
             let words = format!(
-                "must be {}, the lift at {} on {}: a turn later it is the same again, and the row may be left out",
+                "must be {}, the {value} at {} on {}: a turn later it is the same again, and the row may be left out",
                 first.lift,
                 self.shown(first.angle_deg),
                 self.place(first)
             );
-            return Err(self.reject(last.line, "lift", &last.lift.to_string(), words));
+            return Err(self.reject(last.line, value, &last.lift.to_string(), words));
         }
         Ok(())
     }

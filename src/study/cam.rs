@@ -18,6 +18,8 @@ pub struct CamSheet {
     pub law: &'static str,
     /// Lowest and highest lift.
     pub lift_m: [f64; 2],
+    /// Ratio of the lever between cam and follower, 1 without one.
+    pub lever_ratio: f64,
     /// Contour of a cam whose lift follows from it, and what it asks of the follower.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub geometry: Option<CamGeometry>,
@@ -39,28 +41,38 @@ pub struct CamSheet {
     pub own_corners: Vec<Corner>,
 }
 
-/// Contour of a cam and the follower that touches it, computed at 361 angles of each segment.
+/// Contour of a cam and the end of the follower that touches it, computed at 361 angles of each segment. Where a lever lies between cam and
+/// follower, the lengths are those at the cam.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct CamGeometry {
     /// End of the follower that touches the cam.
     pub contact: FollowerContact,
-    /// Least radius of curvature of the contour, m.
+    /// Least radius of curvature of the contour where it is convex, m.
     pub least_radius_m: f64,
+    /// Least radius of curvature of its hollows, m; none for a convex contour.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub hollow_radius_m: Option<f64>,
     /// Whether this follower can touch all of the contour: a flat face touches no hollow, and a roller none that is narrower than itself.
     pub is_touchable: bool,
     /// Largest angle between the contour's normal and the follower's motion, rad, without its sign.
     pub pressure_angle_rad: f64,
     /// Cam angle of that angle, rad.
     pub pressure_angle_at_rad: f64,
+    /// Whether the largest pressure angle is above [`CamGeometry::LARGE_PRESSURE_ANGLE`].
+    pub is_steep: bool,
     /// Width along which the cam touches a flat face, m; none for other followers.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub face_width_m: Option<f64>,
 }
 
 impl CamGeometry {
+    /// Pressure angle from which a guide takes large forces across, rad: a rule of thumb of textbooks.
+    pub const LARGE_PRESSURE_ANGLE: f64 = std::f64::consts::FRAC_PI_6;
+
     /// Computes the geometry of a model's cam. `None` where the model gives a lift and no contour.
     pub fn of(model: &Model, cam: &Cam) -> Option<Self> {
         let contact = model.cam.contact()?;
+        let cam = cam.levered(model.cam.lever_ratio().recip());
         let steepness = |point: &ContourPoint| point.pressure_angle.abs();
         let steepest = cam.contour(contact).max_by(|one, two| steepness(one).total_cmp(&steepness(two)))?;
         let widest = match contact {
@@ -69,23 +81,21 @@ impl CamGeometry {
             FollowerContact::Roller { roller_radius, .. } => roller_radius,
         };
         let is_touched = |point: ContourPoint| point.radius >= 0.0 || point.radius <= -widest;
+        let radii = |sign: f64| {
+            let radii = cam.contour(contact).map(move |point| sign * point.radius);
+            radii.filter(|radius| *radius > 0.0).fold(f64::INFINITY, f64::min)
+        };
         let slope = |sign: f64| cam.least([0.0, sign, 0.0, 0.0]).value;
         Some(Self {
             contact,
-            least_radius_m: cam.contour(contact).map(|point| point.radius).fold(f64::INFINITY, f64::min),
+            least_radius_m: radii(1.0),
+            hollow_radius_m: Some(radii(-1.0)).filter(|radius| radius.is_finite()),
             is_touchable: cam.contour(contact).all(is_touched),
             pressure_angle_rad: steepness(&steepest),
             pressure_angle_at_rad: steepest.cam_angle,
+            is_steep: steepness(&steepest) > Self::LARGE_PRESSURE_ANGLE,
             face_width_m: (contact == FollowerContact::Flat).then(|| -slope(1.0) - slope(-1.0)),
         })
-    }
-}
-
-/// The profile without its rounding.
-fn sharp(profile: &CamProfile) -> &CamProfile {
-    match profile {
-        CamProfile::Rounded { sharp: inner, .. } => sharp(inner),
-        profile => profile,
     }
 }
 
@@ -125,7 +135,7 @@ fn motions(model: &Model, cam: &Cam) -> Vec<&'static str> {
         cam.segments().iter().enumerate().map(name).collect()
     };
     let is_dwell = |segment: Option<&Segment>| segment.is_some_and(|it| matches!(it.law, Law::Dwell(_)));
-    match sharp(&model.cam) {
+    match model.cam.plain() {
         CamProfile::Program(program) => names(&|_, middle| {
             let mut end = 0.0;
             let motion = program.segments.iter().find(|motion| {
@@ -160,6 +170,7 @@ impl CamSheet {
             model: model.name.clone(),
             source: model.source.clone(),
             law: model.cam.law(),
+            lever_ratio: model.cam.lever_ratio(),
             lift_m: [cam.lowest().value, -cam.least([-1.0, 0.0, 0.0, 0.0]).value],
             motions: motions(model, cam),
             geometry: CamGeometry::of(model, cam),

@@ -422,7 +422,8 @@ fn certificate(
 ) -> Option<Certificate> {
     let name = RouteName::Certificate;
     let Some(proving) = proving else {
-        let beyond = "knows splines through the rows of a table, not near them, and of a thousand rows at most";
+        let beyond =
+            "knows splines through the rows of a table, not near them, and of a thousand rows at most; no contour";
         log.leave_out(name, if is_beyond { beyond } else { "left out by --no-external" });
         return None;
     };

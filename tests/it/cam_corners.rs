@@ -241,7 +241,7 @@ fn the_page_fits_and_counts_what_it_does_not_list() {
         assert!(output.status.code() == Some(0) && output.stderr.is_empty());
         String::from_utf8(output.stdout).unwrap()
     };
-    for name in ["harmonic", "polynomial", "program", "rectified-sine", "table-cubic", "table-quintic"] {
+    for name in ["contour", "harmonic", "polynomial", "program", "rectified-sine", "table-cubic", "table-quintic"] {
         let page = page(&format!("{name}.toml"));
         assert!(page.lines().all(|line| line.chars().count() <= 100 && !line.ends_with(' ')), "{page}");
         assert!(page.lines().count() < 60, "{page}");

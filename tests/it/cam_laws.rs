@@ -15,7 +15,10 @@ fn law_files() -> Vec<PathBuf> {
     let mut files: Vec<PathBuf> = files.filter(|file| file.extension().is_some_and(|end| end == "toml")).collect();
     files.sort();
     let names: Vec<String> = files.iter().map(|file| common::stem(file)).collect();
-    assert_eq!(names, ["harmonic", "polynomial", "program", "rectified-sine", "table-cubic", "table-quintic"]);
+    assert_eq!(
+        names,
+        ["contour", "harmonic", "polynomial", "program", "rectified-sine", "table-cubic", "table-quintic"]
+    );
     files
 }
 

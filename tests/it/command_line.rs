@@ -259,7 +259,7 @@ fn a_model_need_not_be_named() {
 fn templates_load_as_they_stand() {
     let folder = TempDir::new().unwrap();
     let at = |words: &[&str]| program(words).current_dir(folder.path()).output().unwrap();
-    for law in ["arcs", "harmonic", "rectified-sine", "program", "polynomial", "table"] {
+    for law in ["arcs", "harmonic", "rectified-sine", "program", "polynomial", "table", "contour"] {
         let file = format!("{law}.toml");
         let written = at(&["new", &file, "--law", law]);
         assert_eq!(written.status.code(), Some(0), "{}", text(written.stderr));

@@ -1,9 +1,10 @@
-"""Lifts of a follower on a cam of three circles, from points of the contour alone: the highest position in which no point is inside the follower."""
+"""Lifts of a follower on a cam of three circles, or on a contour, from points of it alone: the highest position in which no point is inside of the follower."""
 
 import json
 import sys
 
 import numpy as np
+from scipy.interpolate import CubicSpline
 
 PER_CIRCLE = 100_000
 
@@ -30,6 +31,14 @@ def contour(cam):
     return np.concatenate([half, half.conj()])
 
 
+def through(rows):
+    """Points of the periodic cubic spline of the radius through rows."""
+    angles, radii = np.array([[np.radians(row["angle_deg"]), row["lift"]] for row in rows]).T
+    spline = CubicSpline(np.append(angles, angles[0] + 2.0 * np.pi), np.append(radii, radii[0]), bc_type="periodic")
+    angles = np.linspace(0.0, 2.0 * np.pi, 8 * PER_CIRCLE, endpoint=False)
+    return spline(angles) * np.exp(1j * angles)
+
+
 def lift(points, contact, angle):
     """How far the points hold the follower from the axis, when the cam has turned by an angle."""
     turned = points * np.exp(-1j * angle)
@@ -50,6 +59,6 @@ def lift(points, contact, angle):
 found = []
 asked = json.load(sys.stdin)
 for cam in asked["cams"]:
-    points = contour(cam)
+    points = through(cam["rows"]) if cam["law"] == "contour" else contour(cam)
     found.append([lift(points, cam.get("contact", "point"), angle) for angle in asked["angles"]])
 print(json.dumps(found))

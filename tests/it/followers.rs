@@ -214,6 +214,85 @@ fn the_geometry_is_that_of_the_circles() {
 }
 
 #[test]
+fn a_lever_multiplies_every_lift() {
+    for file in common::model_files() {
+        let model = common::read(&file);
+        let plain = common::cam(&model);
+        let cam = common::cam(&model.with_number("cam.lever_ratio", 1.7).unwrap());
+        assert_eq!(cam.corners().len(), plain.corners().len(), "{}", file.display());
+        for (one, other) in cam.corners().iter().zip(plain.corners()) {
+            assert_eq!((one.angle, one.jump_order), (other.angle, other.jump_order));
+            assert_relative_eq!(one.jump, 1.7 * other.jump, max_relative = 1e-9);
+        }
+        for angle in (0..97).map(|index| TAU * f64::from(index) / 97.0) {
+            let (one, other) = (cam.lift(angle), plain.lift(angle));
+            let pairs = [
+                (one.value, other.value),
+                (one.slope, other.slope),
+                (one.curvature, other.curvature),
+                (one.third, other.third),
+            ];
+            for (one, other) in pairs {
+                assert_abs_diff_eq!(one, 1.7 * other, epsilon = 1e-12 * (1.0 + other.abs()));
+            }
+        }
+    }
+}
+
+/// A mass at the valve is R² times as heavy at the tappet, with R² times the stiffness and R times the preload.
+#[test]
+fn a_lever_is_a_reduced_mass() {
+    let speed = |model: &Model| Contact::new(&common::cam(model), model.follower).separation().speed();
+    for contact in ["", "contact = \"flat\"", "contact = { roller_radius = 10.0, offset = 2.0 }"] {
+        let model = textbook(contact);
+        let at_valve = speed(&model.with_number("cam.lever_ratio", 1.6).unwrap());
+        let numbers = [("mass", 0.5 * 2.56), ("stiffness", 10.0 * 2.56), ("preload", 100.0 * 1.6)];
+        let at_tappet = speed(&model.changed(&numbers.map(|(name, number)| (name.into(), number))).unwrap());
+        assert_relative_eq!(at_valve, at_tappet, max_relative = 1e-12);
+        assert!((at_valve / speed(&model) - 1.0).abs() > 0.01);
+    }
+}
+
+/// The lengths of the cam stay those of the cam, and its page names the lever.
+#[test]
+fn a_lever_leaves_the_geometry_of_the_cam() {
+    let ratio = 1.5;
+    for contact in ["", "contact = \"flat\"", ROLLERS[1]] {
+        let model = paper(contact);
+        let levered = model.with_number("cam.lever_ratio", ratio).unwrap();
+        let [one, other] = [&model, &levered].map(|model| CamGeometry::of(model, &common::cam(model)).unwrap());
+        assert_relative_eq!(one.least_radius_m, other.least_radius_m, max_relative = 1e-9);
+        assert_relative_eq!(one.pressure_angle_rad, other.pressure_angle_rad, max_relative = 1e-9);
+        assert_eq!(one.is_steep, other.is_steep);
+        let [one, other] = [one, other].map(|it| it.face_width_m.unwrap_or_default());
+        assert_abs_diff_eq!(one, other, epsilon = 1e-12);
+    }
+    let folder = tempfile::TempDir::new().unwrap();
+    let file = folder.path().join("lever.toml");
+    std::fs::write(&file, toml(&paper("")) + "lever_ratio = 1.5\n").unwrap();
+    let path = file.to_str().unwrap();
+    for command in [&["cam", path][..], &["design", path, "--rpm", "100"]] {
+        let page = text(corner_impact(command).stdout).split_whitespace().collect::<Vec<_>>().join(" ");
+        let says = "least radius of curvature of the cam 0.15 m; a lever of ratio 1.5 moves the follower: lifts and forces are those at the \
+                    follower, and the cam presses 1.5 times as hard";
+        assert!(page.contains(says), "{page}");
+    }
+    let document = text(corner_impact(["design", path, "--rpm", "100", "--json"]).stdout);
+    let document: serde_json::Value = serde_json::from_str(&document).unwrap();
+    assert_eq!(document["lever_ratio"], json!(1.5));
+    assert_relative_eq!(document["geometry"]["least_radius_m"].as_f64().unwrap(), 0.15, max_relative = 1e-9);
+    assert_eq!(document["geometry"]["is_steep"], json!(false));
+}
+
+#[test]
+fn a_lever_that_is_none_is_refused() {
+    for ratio in ["0.0", "-1.5", "nan", "\"long\""] {
+        let refused = read("", PAPER, &format!("lever_ratio = {ratio}")).unwrap_err();
+        assert!(refused.contains(&format!("cam.lever_ratio = {ratio}: must be a finite number above 0")), "{refused}");
+    }
+}
+
+#[test]
 fn what_no_follower_is_is_refused() {
     for (contact, says) in [
         ("contact = \"knife\"", "cam.contact = \"knife\": must be a name or a roller"),

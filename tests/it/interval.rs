@@ -424,7 +424,7 @@ pub fn parts(count: usize) -> impl Iterator<Item = f64> {
 /// Lift, slope and curvature over ranges hold those at angles in them, for a law of every kind; and little else.
 #[test]
 fn every_law_stays_in_its_ranges() {
-    let laws = ["harmonic", "polynomial", "program", "rectified-sine", "table-cubic", "table-quintic"];
+    let laws = ["contour", "harmonic", "polynomial", "program", "rectified-sine", "table-cubic", "table-quintic"];
     let files = laws.map(|law| format!("{}/models/laws/{law}.toml", common::ROOT));
     let files = files.iter().map(std::path::Path::new).map(common::read).chain([common::osorio()]);
     let mut kinds = std::collections::BTreeSet::new();

@@ -31,6 +31,7 @@ mod common;
 mod compare;
 mod complaints;
 mod complete;
+mod contours;
 mod corner_maps;
 mod corner_numbers;
 mod corner_orbits;

@@ -46,7 +46,15 @@ fn mirrored(cam: &str, table: Option<&str>) -> (String, Option<String>) {
     };
     let text = match field(cam, "law").trim_matches('"') {
         // These are their own mirrors.
-        "arcs" | "rectified-sine" | "table" => cam.to_owned(),
+        "rectified-sine" | "table" => cam.to_owned(),
+        // The line of motion is on the other side of the axis.
+        "arcs" => match cam.lines().find_map(|line| line.strip_prefix("contact.offset = ")) {
+            Some(offset) => {
+                let other = format!("contact.offset = {:?}", -offset.parse::<f64>().unwrap());
+                cam.replace(&format!("contact.offset = {offset}"), &other)
+            }
+            None => cam.to_owned(),
+        },
         "harmonic" => {
             let phases = field(cam, "phases_deg");
             let mirror: Vec<f64> = numbers(phases).into_iter().map(opposite).collect();

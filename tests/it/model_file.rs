@@ -61,11 +61,13 @@ fn samples(page: &Page) -> Vec<(String, String)> {
     .collect()
 }
 
-/// A folder with the page's table of lifts.
+/// A folder with the page's tables.
 fn folder(page: &Page) -> tempfile::TempDir {
     let folder = tempfile::tempdir_in(env!("CARGO_TARGET_TMPDIR")).unwrap();
-    let table = page.blocks.iter().find(|block| block.file.as_deref() == Some("lift.csv")).unwrap();
-    std::fs::write(folder.path().join("lift.csv"), &table.text).unwrap();
+    for table in ["lift.csv", "contour.csv"] {
+        let block = page.blocks.iter().find(|block| block.file.as_deref() == Some(table)).unwrap();
+        std::fs::write(folder.path().join(table), &block.text).unwrap();
+    }
     folder
 }
 

@@ -187,6 +187,7 @@ fn parts_of_a_range_of_any_number_have_their_part_of_the_answer() {
         ("restitution", [0.4, 0.5, 0.6], 0.1),
         ("amplitudes[0]", [0.008, 0.009, 0.01], 0.001),
         ("cam.offset", [0.0, 0.001, 0.002], 0.001),
+        ("lever_ratio", [0.9, 1.0, 1.1], 0.1),
     ];
     let asked: Vec<&str> = axes.iter().map(|(name, ..)| *name).collect();
     let changes_nothing = |path: &str| path.ends_with("phases_deg[0]") || path.ends_with("corner_rounding_deg");

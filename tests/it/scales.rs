@@ -39,9 +39,20 @@ fn dimension(name: &str) -> Option<Scales> {
         "damping" => Some([0, 1, -1]),
         "stiffness" => Some([0, 1, -2]),
         "gravity" => Some([1, 0, -2]),
-        "restitution" | "start_deg" | "span_deg" | "phases_deg" | "flank_start_deg" | "nose_end_deg" => Some(NONE),
-        "rest_position" | "base" | "rise" | "offset" | "amplitude" | "amplitudes" | "coefficients" | "base_radius"
-        | "flank_radius" | "nose_radius" => Some([1, 0, 0]),
+        "restitution" | "lever_ratio" | "start_deg" | "span_deg" | "phases_deg" | "flank_start_deg"
+        | "nose_end_deg" => Some(NONE),
+        "rest_position"
+        | "base"
+        | "rise"
+        | "offset"
+        | "amplitude"
+        | "amplitudes"
+        | "coefficients"
+        | "base_radius"
+        | "flank_radius"
+        | "nose_radius"
+        | "contact.roller_radius"
+        | "contact.offset" => Some([1, 0, 0]),
         _ => None,
     }
 }

@@ -22,7 +22,7 @@ use crate::corner::map::{Eigenvalue, Own, Sides};
 use crate::corner::range::{RangeError, Rejected, find_corner_impacts};
 use crate::corner::{CornerImpact, CornerMap, SideMap};
 use crate::known::Evidence;
-use crate::model::{MOST_PROVED_ROWS, Model, ModelError, Study};
+use crate::model::{CamProfile, MOST_PROVED_ROWS, Model, ModelError, Study};
 use crate::progress::Watch;
 use crate::python::{self, PythonError};
 use crate::simulate::Machine;
@@ -334,6 +334,11 @@ pub(super) fn prove(model: &Model, candidates: Vec<Value>, bits: u32) -> Result<
 /// Runs the script on a model with one request field. Returns its answer.
 fn ask<T: DeserializeOwned>(model: &Model, bits: u32, (field, value): (&str, Value)) -> Result<T, CertifyError> {
     if is_beyond(model) {
+        if is_contour(model) {
+            let allowed =
+                "gives a contour; proofs are of lifts, and of the three circles of arcs with what touches them";
+            return Err(model.reject("cam.law", allowed).into());
+        }
         let allowed =
             format!("proofs are of splines through the rows, cubic or quintic, and of {MOST_PROVED_ROWS} rows at most");
         return Err(model.reject("cam.spline", allowed).into());
@@ -344,9 +349,13 @@ fn ask<T: DeserializeOwned>(model: &Model, bits: u32, (field, value): (&str, Val
     Ok(python::run("certify.py", &document)?)
 }
 
+fn is_contour(model: &Model) -> bool {
+    matches!(model.cam.plain(), CamProfile::Contour(_))
+}
+
 /// Whether proofs do not cover the model's cam.
 pub(super) fn is_beyond(model: &Model) -> bool {
-    model.is_smoothed() || model.table().is_some_and(|table| table.rows.len() > MOST_PROVED_ROWS)
+    is_contour(model) || model.is_smoothed() || model.table().is_some_and(|table| table.rows.len() > MOST_PROVED_ROWS)
 }
 
 /// Builds the candidate for a corner impact: its place, and its flights in order from the corner on.

@@ -20,6 +20,7 @@ use crate::model::{CORNER_ROUNDING, Model, Units};
 use crate::orbit::long_run::Budget;
 use crate::progress::{Pieces, Watch};
 use crate::simulate::{Machine, angular_velocity};
+use crate::study::cam::CamGeometry;
 use crate::study::survey::{Attractor, Axis, Over, Place, Spacing, Start, Values, VariedNumber};
 use crate::tolerance;
 use contact::{Contact, Separation};
@@ -33,6 +34,10 @@ pub struct Design {
     pub model: ModelLabel,
     /// Units of the displayed numbers.
     pub units: Units,
+    /// Contour of the cam, if its lift follows from one.
+    pub geometry: Option<CamGeometry>,
+    /// Ratio of the lever between cam and follower, 1 without one. Forces are those on the follower.
+    pub lever_ratio: f64,
     /// Where the follower first leaves the cam; the error includes the uncertainty of a measured cam.
     pub separation: Separation,
     /// Places where the follower may leave the cam first, if a measured cam leaves open which it is by more than 10 degrees.
@@ -204,6 +209,8 @@ pub struct Trade {
 document!(Design as it {
     schema: "corner-impact/design/1",
     model: it.model,
+    geometry if_any: it.geometry,
+    lever_ratio: it.lever_ratio,
     over if_any: it.over.rpm.map(|_| &it.over.name),
     separation: it.separated(),
     separates: it.separation.name(),
@@ -557,6 +564,8 @@ pub fn design(model: &Model, asked: &Asked, watch: &dyn Watch) -> Result<Design,
     Ok(Design {
         model: label,
         units,
+        geometry: CamGeometry::of(model, &cam),
+        lever_ratio: model.cam.lever_ratio(),
         separation,
         places,
         measured: likely.map(|likely| likely.measured),

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::{AnswerArguments, CommandError, Exit, ModelArgument, Session, picture, progress::Progress};
-use crate::figures::cam_figure;
+use crate::figures::{cam_figure, shape_figure};
 use corner_impact::cam::{Cam, Jet};
 use corner_impact::study::cam::CamSheet;
 
@@ -25,6 +25,9 @@ pub(super) struct Arguments {
     /// Draw lift, velocity and acceleration against the cam angle (.svg, .png or .pdf).
     #[arg(long, value_name = "FILE", value_parser = picture::picture, group = "picture")]
     out: Option<PathBuf>,
+    /// Draw the shape of the cam with the end of the follower on it instead: contour, path of a roller's centre, roller or face.
+    #[arg(long, requires = "picture")]
+    shape: bool,
     #[command(flatten)]
     picture: picture::PictureArguments,
 }
@@ -36,7 +39,11 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let sheet = CamSheet::new(&model, &cam, arguments.order)?;
     if let Some(path) = &arguments.out {
         let canvas = picture::Canvas::create(path, arguments.picture.request()?)?;
-        canvas.write(cam_figure(&cam, &model.name), &model.units)?;
+        let figure = match arguments.shape {
+            true => shape_figure(&model, &cam, &model.name),
+            false => cam_figure(&cam, &model.name),
+        };
+        canvas.write(figure, &model.units)?;
     }
     drop(progress);
     session.answer(&sheet, &arguments.answer)

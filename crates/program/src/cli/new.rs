@@ -40,14 +40,13 @@ enum Law {
     Program,
     Polynomial,
     Table,
+    Contour,
 }
 
 const FOLLOWER: &str = include_str!("templates/follower.toml");
 const STUDY: &str = include_str!("templates/study.toml");
-const LIFTS: &str = include_str!("templates/lifts.csv");
-/// Names of the machine and of its table in the templates.
+/// Name of the machine in the templates.
 const NAME: &str = "my-machine";
-const TABLE: &str = "lifts.csv";
 
 impl Law {
     fn cam(self) -> &'static str {
@@ -58,13 +57,23 @@ impl Law {
             Self::Program => include_str!("templates/program.toml"),
             Self::Polynomial => include_str!("templates/polynomial.toml"),
             Self::Table => include_str!("templates/table.toml"),
+            Self::Contour => include_str!("templates/contour.toml"),
+        }
+    }
+
+    /// The name and the text of the table that the template names.
+    fn table(self) -> Option<(&'static str, &'static str)> {
+        match self {
+            Self::Table => Some(("lifts.csv", include_str!("templates/lifts.csv"))),
+            Self::Contour => Some(("contour.csv", include_str!("templates/contour.csv"))),
+            _ => None,
         }
     }
 
     /// The model file; `verify` has something to look for where the cam has corners of order 2.
     fn template(self) -> String {
         // A measured cam comes with a follower of its size.
-        let follower = if self == Self::Table { "" } else { FOLLOWER };
+        let follower = if self.table().is_some() { "" } else { FOLLOWER };
         let study = if matches!(self, Self::Arcs | Self::Program | Self::Polynomial) { STUDY } else { "" };
         let text = [follower, self.cam(), study].concat();
         text.trim_end().to_owned() + "\n"
@@ -75,21 +84,23 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let (path, law) = (&arguments.file, arguments.law);
     if path.as_os_str() == "-" {
         session.print(&law.template())?;
-        if law == Law::Table {
-            session.note(&format!("{TABLE} is not written: give a FILE to have it beside the model"));
+        if let Some((table, _)) = law.table() {
+            session.note(&format!("{table} is not written: give a FILE to have it beside the model"));
         }
         return Ok(Exit::Agrees);
     }
     // A name that TOML takes between quotes as it is names the machine and its table.
     let is_plain = |stem: &&str| stem.chars().all(|letter| letter.is_alphanumeric() || "-_. ".contains(letter));
     let stem = path.file_stem().and_then(|stem| stem.to_str()).filter(is_plain);
-    let table = stem.map_or(TABLE.to_owned(), |stem| format!("{stem}.csv"));
-    let text = law.template().replace(NAME, stem.unwrap_or(NAME)).replace(TABLE, &table);
-    let beside = path.with_file_name(&table);
-    let mut files: Vec<(&Path, &str)> = vec![(path, &text)];
-    if law == Law::Table {
-        files.push((&beside, LIFTS));
+    let mut text = law.template().replace(NAME, stem.unwrap_or(NAME));
+    let mut beside = None;
+    if let Some((name, rows)) = law.table() {
+        let table = stem.map_or(name.to_owned(), |stem| format!("{stem}.csv"));
+        text = text.replace(name, &table);
+        beside = Some((path.with_file_name(table), rows));
     }
+    let mut files: Vec<(&Path, &str)> = vec![(path, &text)];
+    files.extend(beside.iter().map(|(path, rows)| (&**path, *rows)));
     if let Some((there, _)) = files.iter().find(|(path, _)| path.is_file()).filter(|_| !arguments.force) {
         let words = format!("{}: is there already; --force writes over it", there.display());
         return Err(CommandError::Words(words));

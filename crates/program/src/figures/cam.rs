@@ -104,7 +104,10 @@ pub(crate) fn corners_in_words(cam: &Cam, marks: &str) -> String {
 /// Whether the cam is base circle, flank, nose, top, and the mirror image of these.
 pub(crate) fn of_circles(cam: &Cam) -> bool {
     let dwells: Vec<bool> = cam.segments().iter().map(|segment| matches!(segment.law, Law::Dwell(_))).collect();
-    let arcs = cam.segments().iter().all(|segment| matches!(segment.law, Law::Dwell(_) | Law::Arc(_)));
+    let arcs = cam
+        .segments()
+        .iter()
+        .all(|segment| matches!(segment.law, Law::Dwell(_)) || segment.law.circle_centre().is_some());
     arcs && cam.corners().len() == 6 && dwells == [true, false, false, true, false, false, true]
 }
 

@@ -7,9 +7,9 @@ use std::f64::consts::TAU;
 
 use crate::figures::cam::{corner_marks, corners_in_words, of_circles};
 use crate::figures::{Entry, drawn};
-use corner_impact::cam::{Arc, Cam, Law, Lift, Segment};
+use corner_impact::cam::{Cam, Lift, Segment};
 use corner_impact::elementary;
-use corner_impact::model::FollowerContact;
+use corner_impact::model::{FollowerContact, Model};
 use corner_impact_plot::{BREAK, Beside, Colour, Figure, FigureAxis, Label, Marker, Panel, Series, Stroke, extent};
 
 /// The report's figure of the cam's shape.
@@ -19,7 +19,7 @@ pub(crate) const CAM_SHAPE: Entry = Entry {
     takes_rpm: false,
     title: |subject| format!("{}: the cam, its segments and corners", subject.model.name),
     draw: |subject, title| {
-        let outline = Outline::new(&subject.cam, subject.model.cam.contact());
+        let outline = Outline::of(&subject.model, &subject.cam);
         let how = match subject.model.cam.contact() {
             Some(FollowerContact::Flat) => {
                 "The flat face of the follower is square to the line straight above the axis O".to_owned()
@@ -97,14 +97,24 @@ fn beside(angle: f64, [along, across]: [f64; 2]) -> [f64; 2] {
     [x + down, y - right]
 }
 
+/// Draws the shape of a model's cam, and the end of the follower on it.
+pub fn shape_figure(model: &Model, cam: &Cam, title: &str) -> Figure {
+    figure(title, cam, &Outline::of(model, cam))
+}
+
 impl Outline {
+    /// Computes the outline of a model's cam, at the cam's end of a lever.
+    fn of(model: &Model, cam: &Cam) -> Self {
+        Self::new(&cam.levered(model.cam.lever_ratio().recip()), model.cam.contact())
+    }
+
     /// Computes the outline of a cam and the follower that touches it; with a lift alone, that of a point.
     pub fn new(cam: &Cam, contact: Option<FollowerContact>) -> Self {
         let [low, high] = extent(cam.segments().iter().flat_map(|segment| segment.bounds.lift));
         let stroke = high - low;
-        let contact = contact.unwrap_or_default();
-        // If the lift would turn the outline inside out, or make it a needle, add a radius.
-        let added = if low >= stroke || !contact.is_point() { 0.0 } else { 2.0 * stroke - low };
+        let (has_contour, contact) = (contact.is_some(), contact.unwrap_or_default());
+        // If a lift alone would turn the outline inside out, or make it a needle, add a radius.
+        let added = if low >= stroke || has_contour { 0.0 } else { 2.0 * stroke - low };
         let at = |angle: f64, lift: &Lift| match contact {
             FollowerContact::Point => place(angle, added + lift.value),
             _ => beside(angle, contact.touches(angle, lift).place),
@@ -115,10 +125,8 @@ impl Outline {
             (0..=steps as usize).map(move |step| start + span * step as f64 / steps)
         };
         let piece = |segment: &Segment| {
-            let centre = match &segment.law {
-                Law::Arc(Arc { distance, direction, .. }) if added == 0.0 => Some(place(*direction, *distance)),
-                _ => None,
-            };
+            let centre = segment.law.circle_centre().filter(|_| added == 0.0);
+            let centre = centre.map(|[distance, direction]| place(direction, distance));
             Piece { points: angles(segment).map(|angle| at(angle, &segment.law.lift(angle))).collect(), centre }
         };
         let first = cam.lift(0.0).value;
@@ -192,7 +200,7 @@ fn figure(title: &str, cam: &Cam, outline: &Outline) -> Figure {
     ]);
     let reach = 1.7 * farthest;
     let x = FigureAxis::new("from the axis, across", "m").over([-reach, reach]);
-    let y = FigureAxis::new("from the axis, along the follower", "m").over([-1.12 * farthest, 1.3 * farthest]).scaled();
+    let y = FigureAxis::new("from the axis, along the follower", "m").over([-1.3 * farthest, 1.3 * farthest]).scaled();
     Figure::new(title, x, vec![Panel::new(y, 0.6, series)])
 }
 

@@ -18,7 +18,7 @@ impl Paged for CamSheet {
         let title = Block::Title(words!["Cam of ", &self.model]);
         let mut blocks = vec![title];
         blocks.extend(source(&self.source));
-        blocks.extend([Block::Gap, Block::paragraph(lift(self)), follower(self.geometry.as_ref())]);
+        blocks.extend([Block::Gap, Block::paragraph(lift(self)), follower(self.geometry.as_ref(), self.lever_ratio)]);
         blocks.extend(largest(self));
         blocks.extend(self.measured.iter().flat_map(measured));
         blocks.extend(parts(self));
@@ -27,36 +27,56 @@ impl Paged for CamSheet {
 }
 
 /// The end of the follower that the lift is of, and what the contour asks of it.
-pub(crate) fn follower(geometry: Option<&CamGeometry>) -> Block {
-    /// Pressure angle from which a guide takes large forces across, rad: a rule of thumb of textbooks.
-    const LARGE: f64 = std::f64::consts::FRAC_PI_6;
+pub(crate) fn follower(geometry: Option<&CamGeometry>, lever_ratio: f64) -> Block {
+    let lever = match lever_ratio {
+        1.0 => Words::default(),
+        ratio => words![
+            "; a lever of ratio ",
+            (ratio, Digits::Short),
+            " moves the follower: lifts and forces are those at the follower, and the cam presses ",
+            (ratio, Digits::Short),
+            " times as hard on its end of the lever"
+        ],
+    };
     let Some(of) = geometry else {
-        return Block::paragraph("follower: the lift is the follower's own, whatever end of it touches the cam");
+        let own = "follower: the lift is the follower's own, whatever end of it touches the cam";
+        return Block::paragraph(words![own, lever]);
     };
     let length = |length: f64| words![(length, Digits::Significant(6)), " ", Span::Unit("m")];
     let at = |angle: f64| words![" at ", (angle.to_degrees(), Digits::Fixed(3)), " deg"];
     let end = match of.contact {
         FollowerContact::Point => "a point on a line through the cam's axis".into(),
         FollowerContact::Flat => "a flat face square to its motion".into(),
-        FollowerContact::Roller { roller_radius, offset } => words![
-            "a roller of radius ",
-            length(roller_radius),
-            ", whose centre moves on a line ",
-            length(offset),
-            " beside the cam's axis; the lift is the distance of its centre"
-        ],
+        FollowerContact::Roller { roller_radius, offset } => {
+            let line = match offset {
+                0.0 => "through".into(),
+                offset => words![length(offset), " beside"],
+            };
+            words![
+                "a roller of radius ",
+                length(roller_radius),
+                ", whose centre moves on a line ",
+                line,
+                " the cam's axis; the lift is the distance of its centre"
+            ]
+        }
     };
     let pressed = match of.face_width_m {
         Some(width) => words!["; the cam touches ", length(width), " of the face"],
         None => {
             let angle = (of.pressure_angle_rad.to_degrees(), Digits::Fixed(1));
-            let large = if of.pressure_angle_rad > LARGE { ", large for a guide (above 30 deg)" } else { "" };
+            let most = CamGeometry::LARGE_PRESSURE_ANGLE.to_degrees();
+            let large = if of.is_steep { format!(", large for a guide (above {most:.0} deg)") } else { String::new() };
             words!["; largest pressure angle ", angle, " deg", at(of.pressure_angle_at_rad), large]
         }
     };
     let sharpest = words!["; least radius of curvature of the cam ", length(of.least_radius_m)];
-    let hollow = if of.is_touchable { "" } else { "; it has a hollow that this follower cannot touch" };
-    Block::paragraph(words!["follower: ", end, pressed, sharpest, hollow])
+    let hollow = match (of.hollow_radius_m, of.is_touchable) {
+        (_, false) => "; it has a hollow that this follower cannot touch".into(),
+        (Some(radius), true) => words![", of its hollows ", length(radius)],
+        (None, true) => Words::default(),
+    };
+    Block::paragraph(words!["follower: ", end, pressed, sharpest, hollow, lever])
 }
 
 /// The largest velocity, acceleration and jerk, a line each.

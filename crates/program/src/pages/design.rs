@@ -1,5 +1,6 @@
 //! The page of `design`: the answer in sentences first, then speeds, limits and required changes.
 
+use crate::pages::cam::follower;
 use crate::pages::source;
 use crate::pages::speeds::measured_speed;
 use crate::show::Paged;
@@ -36,6 +37,9 @@ impl Paged for Design {
         page.extend(unknown.map(|why| Block::paragraph(noise_unknown(why))));
         if let Some(words) = margin(self) {
             page.push(Block::paragraph(words));
+        }
+        if self.geometry.is_some() || self.lever_ratio != 1.0 {
+            page.push(follower(self.geometry.as_ref(), self.lever_ratio));
         }
         page.extend(speeds(self));
         page.extend(limits(self));

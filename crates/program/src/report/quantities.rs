@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use corner_impact::flight::Flight;
-use corner_impact::model::{CORNER_ROUNDING, MODEL_NUMBERS, Model, ModelNumber, Units};
+use corner_impact::model::{CORNER_ROUNDING, LEVER_RATIO, MODEL_NUMBERS, Model, ModelNumber, Units};
 
 /// A number of a model.
 #[derive(Clone, Debug, Serialize)]
@@ -33,7 +33,7 @@ impl ReportQuantity {
 
 /// All numbers of the model in the order of its file, then derived ones.
 pub(crate) fn quantities(model: &Model) -> Vec<ReportQuantity> {
-    let is_said = |(field, value): &(&str, f64)| *field != CORNER_ROUNDING || *value != 0.0;
+    let is_said = |number: &(&str, f64)| ![(CORNER_ROUNDING, 0.0), (LEVER_RATIO, 1.0)].contains(number);
     let mut numbers: Vec<(&str, f64)> = model.numbers().filter(is_said).collect();
     // Numbers in the order of the table, then those of lists in the order of the file.
     let place = |field: &str| MODEL_NUMBERS.iter().position(|number| number.path == field);

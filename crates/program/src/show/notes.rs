@@ -48,8 +48,9 @@ fn slips(profile: &TableProfile, strays: &[Stray]) -> Vec<String> {
         let side = if off < 0.0 { "below" } else { "above" };
         let off = Digits::Aligned(2).text(off.abs());
         format!(
-            "{place}: lift {lift} at {cam_angle_deg} deg is {off} {unit} {side} what the rows beside it tell: a slip, or does the cam turn \
-             sharply there?"
+            "{place}: {} {lift} at {cam_angle_deg} deg is {off} {unit} {side} what the rows beside it tell: a slip, or does the cam turn \
+             sharply there?",
+            reading.holds.value()
         )
     };
     let mut slips: Vec<String> = strays.iter().take(NAMED).map(told).collect();

@@ -18,7 +18,7 @@ use corner_impact::covering::UnprovedFlight;
 use corner_impact::covering::prove::Relation;
 use corner_impact::known::Evidence;
 use corner_impact::measured::Measured;
-use corner_impact::model::{Reading, Separator, Units};
+use corner_impact::model::{Holds, Reading, Separator, Units};
 use corner_impact::orbit::Stability;
 use corner_impact::orbit::branch::{self, Bifurcation, Doubt, FirstTouch, GrazeClass};
 use corner_impact::orbit::long_run::{Kind, LongRun};
@@ -454,7 +454,7 @@ pub(crate) fn noise_unknown(why: &str) -> String {
 pub(crate) fn accuracy(measured: &Measured) -> String {
     let reading = &measured.reading;
     match reading.step.filter(|_| measured.is_rounded()) {
-        Some(step) => format!("lift rounded to {step} {}", reading.unit),
+        Some(step) => format!("{} rounded to {step} {}", reading.holds.value(), reading.unit),
         None => known_to(reading, measured.noise_m),
     }
 }
@@ -462,7 +462,12 @@ pub(crate) fn accuracy(measured: &Measured) -> String {
 /// Accuracy of a table that is not rounded, from the spread of its lifts, m. The cause is measurement, or rows too far apart for the cam's
 /// motion.
 pub(crate) fn known_to(reading: &Reading, noise: f64) -> String {
-    format!("lift known to {} {}", Digits::Aligned(2).text(reading.in_model.told(noise)), reading.unit)
+    format!(
+        "{} known to {} {}",
+        reading.holds.value(),
+        Digits::Aligned(2).text(reading.in_model.told(noise)),
+        reading.unit
+    )
 }
 
 /// How the rows of a table were read, in three lines to be checked: its text, its angles and its lifts.
@@ -493,7 +498,9 @@ pub(crate) fn reading(reading: &Reading) -> [String; 3] {
             }
         }
     }
-    let mut angles = vec![format!("{}in {}", column(0), reading.angle_unit)];
+    let are_points = reading.holds == Holds::Points;
+    let unit = reading.part.as_ref().unwrap_or(&reading.unit);
+    let mut angles = vec![format!("{}in {}", column(0), if are_points { unit } else { reading.angle_unit })];
     if let Some(turn) = reading.turn_deg {
         angles.push(format!("{turn} deg are one turn of the cam"));
     }
@@ -516,7 +523,7 @@ pub(crate) fn reading(reading: &Reading) -> [String; 3] {
     if reading.filled > 0 {
         angles.push(format!("{} rows are added on the base circle", reading.filled));
     }
-    let mut lifts = vec![format!("{}in {}", column(1), reading.part.as_ref().unwrap_or(&reading.unit))];
+    let mut lifts = vec![format!("{}in {unit}", column(1))];
     if let Some(layout) = layout.filter(|layout| !layout.left_out.is_empty()) {
         lifts.push(format!("columns left out: {}", layout.left_out.join(", ")));
     }
@@ -526,8 +533,8 @@ pub(crate) fn reading(reading: &Reading) -> [String; 3] {
         lifts
             .push(format!("{number} is read as {decimal}; if {signs} part thousands, it is {whole}, and they must go"));
     }
-    [("table", table), ("angles", angles), ("lifts", lifts)]
-        .map(|(name, parts)| format!("{name}: {}", parts.join("; ")))
+    let [first, second] = if are_points { ["x", "y"] } else { ["angles", reading.holds.values()] };
+    [("table", table), (first, angles), (second, lifts)].map(|(name, parts)| format!("{name}: {}", parts.join("; ")))
 }
 
 /// Hypotheses of the proofs on a page, in one sentence; `None` if there are none.
