@@ -130,6 +130,7 @@ mod temporary;
 mod tolerance;
 mod trapping;
 mod turned_cams;
+mod uncertainty;
 mod units;
 mod verify;
 mod wandering;
