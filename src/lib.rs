@@ -8,6 +8,7 @@
 //!  cam · flight · impact the physical laws; reading, a model whole
 //!    ▼
 //!  measured              how well a cam of measured lifts is known, and the cams that it may as well be
+//!  uncertainty           the machines that the cam's rows and the errors of numbers allow, and the spread of results
 //!    ▼
 //!  simulate              the only event loop: fly, contact, impact or stick, release; the variational flow
 //!    ▼
@@ -96,6 +97,8 @@ pub mod reading;
 
 #[doc(hidden)]
 pub mod measured;
+#[doc(hidden)]
+pub mod uncertainty;
 
 pub mod simulate;
 

@@ -81,6 +81,9 @@ const TABLES: u64 = 16;
 const WITHOUT: usize = 8;
 
 impl PlausibleCams {
+    /// One in this many machines may lack the numbers.
+    pub(crate) const WITHOUT: usize = 8;
+
     /// Estimates the accuracy of a model's cam. None if the cam is not given by a table, or if the table has too few rows.
     ///
     /// A spline through the rows needs no smoothing: if no smooth motion can be fitted to them, only their noise is unknown. So it is where the
@@ -165,15 +168,6 @@ impl PlausibleCams {
     /// Returns the uncertainties of numbers that depend on the cam, with three terms: their distance from the numbers of the best guess,
     /// twice the largest deviation among the equally likely cams, and the effect of corners. `of` returns the numbers of a model, or none;
     /// if more than a few models have none, the result is none.
-    pub fn error<const N: usize>(
-        &self,
-        numbers: [f64; N],
-        of: impl Fn(&Model, &Cam) -> Option<[f64; N]> + Sync,
-    ) -> Option<[f64; N]> {
-        self.errors(&numbers, |model, cam| of(model, cam).map(Vec::from))?.try_into().ok()
-    }
-
-    /// Returns the uncertainties of any count of numbers, as [`Self::error`] does.
     pub fn errors(&self, numbers: &[f64], of: impl Fn(&Model, &Cam) -> Option<Vec<f64>> + Sync) -> Option<Vec<f64>> {
         self.spread(numbers, (self.others.len(), 0, 2.0), of)
     }
@@ -208,12 +202,13 @@ impl PlausibleCams {
             let apart = apart.get(left_out).copied().unwrap_or_default();
             (centre[index] - number).abs() + times * apart + 6.0 * (closer[index] - centre[index]).abs()
         };
-        (all.len() + others.len() / WITHOUT >= others.len()).then(|| numbers.iter().enumerate().map(error).collect())
+        (all.len() + others.len() / Self::WITHOUT >= others.len())
+            .then(|| numbers.iter().enumerate().map(error).collect())
     }
 }
 
 /// Pseudorandom number in [-1, 1] for a table and a row: SplitMix64 (Steele, Lea and Flood 2014), the same on every machine.
-fn even(table: u64, row: u64) -> f64 {
+pub(crate) fn even(table: u64, row: u64) -> f64 {
     let mut bits = ((table << 32) + row + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
     bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use crate::cam::Cam;
 use crate::file;
-use crate::model::{Follower, Model, ModelError, Numeral, OSORIO_2008};
+use crate::model::{Follower, FollowerErrors, Model, ModelError, Numeral, OSORIO_2008};
 use crate::tolerance;
 
 impl Model {
@@ -113,10 +113,25 @@ impl Model {
         Ok(Some(format!("{meant} [units] says what numbers are in")))
     }
 
+    /// Moves the follower's numbers by multiples of their standard deviations. The cam is the same, and `lowest` is its lowest lift.
+    pub(crate) fn moved(&self, lowest: f64, by: &[f64; FollowerErrors::COUNT]) -> Self {
+        let mut model = self.clone();
+        for ((name, error), by) in FollowerErrors::names().zip(self.errors.all()).zip(by) {
+            if let Some(number) = model.of_follower_mut(name).filter(|_| error > 0.0) {
+                *number = FollowerErrors::moved(name, *number, by * error);
+            }
+        }
+        if let Some(preload) = model.preload {
+            model.follower.rest_position = lowest - preload / model.follower.stiffness;
+        }
+        model
+    }
+
     /// Puts this model's follower, with its spring, on the cam of another model.
     pub(crate) fn on_cam_of(&self, other: &Self) -> Result<Self, ModelError> {
         let mut model = other.clone();
         (model.follower, model.preload, model.study) = (self.follower, self.preload, self.study);
+        model.errors = self.errors;
         model.sprung()
     }
 

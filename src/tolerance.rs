@@ -111,6 +111,9 @@ table! {
         smooth release the velocity over the cam is of the size of its square, and known to half of its digits";
     /// Difference of the second term of the sum of infinitely many impacts from the first.
     CHATTER_REMAINDER = 1e-8, "squared, of the sum: of a turn of 1e-7 rad it leaves 1e-15, the rounding of an angle";
+    /// Difference of the slopes of a result that counts as a curve.
+    UNCERTAINTY_SEEN = 1e-6, "of the result, for one standard deviation of a number: an angle where a force is least is known to the root \
+        of an ulp, and no smaller part of a result is shown";
     /// Accuracy of a number that must be changed, or of a speed at which a limit is exceeded, if found by runs.
     NEEDED_BY_RUNS = 1e-3, "of the number or the speed, where runs at some speeds tell: three digits are more than the speeds \
         that are left out allow";

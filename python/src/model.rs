@@ -174,6 +174,18 @@ impl Model {
         Ok(numbers)
     }
 
+    /// The standard deviations of the numbers that have an error, by dotted path, in the units of `numbers`. They come from
+    /// `{"value": ..., "error": ...}` in the place of a number.
+    ///
+    /// >>> Model.paper().with_number("mass.error", 0.01).errors()
+    /// {'follower.mass': 0.01}
+    fn errors<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let errors = PyDict::new(py);
+        let numbers = self.model.numbers().filter_map(|(path, _)| Some((path, self.model.error_of(path)?)));
+        numbers.into_iter().try_for_each(|(path, error)| errors.set_item(path, error))?;
+        Ok(errors)
+    }
+
     /// The unit of a number of `numbers`, or of `rpm`, as the model's answers have it; empty for a pure number.
     ///
     /// >>> Model.paper().unit("follower.stiffness")

@@ -37,6 +37,19 @@ def test_a_dict_is_a_file(path: Path) -> None:
     assert Model.from_dict(fields) == model
 
 
+def test_a_number_may_have_an_error() -> None:
+    fields = tomllib.loads(Model.paper().text)
+    fields["follower"]["mass"] = {"value": 1.221, "error": np.float64(0.004)}
+    model = Model.from_dict(fields)
+    assert model.errors() == {"follower.mass": 0.004} and Model.paper().errors() == {}
+    assert model.numbers() == Model.paper().numbers() and model != Model.paper()
+    assert Model.parse(model.text) == model and pickle.loads(pickle.dumps(model)) == model
+    (found, exact) = (it.verify(external=False).get("uncertainty") for it in (model, model.with_number("mass.error", 0)))
+    assert exact is None and found["speed_parts"]["mass_rpm"] == found["speed_rpm"] > 1
+    with pytest.raises(ModelError, match="follower.mass.error = -1"):
+        Model.from_dict(fields | {"follower": fields["follower"] | {"mass": {"value": 1.2, "error": -1}}})
+
+
 def table(rows: Any, **more: Any) -> dict[str, Any]:
     fields = tomllib.loads(next(path for path in MODELS if path.stem == "table-cubic").read_text())
     del fields["cam"]["file"]

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::fields::{Field, Value};
+use super::fields::{Field, Fields, Value};
 use super::{Model, ModelError, Numeral, SmoothingTolerance, Spline, TableProfile, nearest};
 
 impl Model {
@@ -30,17 +30,24 @@ impl Model {
         }
     }
 
-    /// Copy of the model with another number in `field`, a dotted path. It is checked as the file is, except for what needs the cam.
+    /// Copy of the model with another number in `field`, a dotted path. It is checked as the file is, except for what needs the cam. The
+    /// number becomes exact, as one that a study varies is.
     pub(crate) fn rewritten(&self, field: &str, number: f64) -> Result<Self, ModelError> {
-        Self::from_fields(self.fields.with_number(field, number.into())?)
+        let mut fields = self.fields.with_number(field, number.into())?;
+        fields.drop_error(field);
+        Self::from_fields(fields)
     }
 
-    /// Copy of the model with other numbers, including those of `[study]`, each named as for [`Self::path_of`]. All are checked together as
-    /// the file is, except for what needs the cam. The model's name lists the changes.
+    /// Copy of the model with other numbers, including those of `[study]`, each named as for [`Self::path_of`], or with other errors, each
+    /// named as its number with `.error` behind it. All are checked together as the file is, except for what needs the cam. The model's name
+    /// lists the changes.
     pub(crate) fn renamed(&self, numbers: &[(String, Numeral)]) -> Result<Self, ModelError> {
         let (mut fields, mut new) = (self.fields.clone(), Vec::new());
         for (name, number) in numbers {
-            let path = self.path_in(&["follower", "cam", "study"], name, &[])?.to_owned();
+            let path = match Fields::number_of(name) {
+                Some(number) => self.path_in(&["follower"], number, &[])?.to_owned() + &name[number.len()..],
+                None => self.path_in(&["follower", "cam", "study"], name, &[])?.to_owned(),
+            };
             if new.iter().any(|(changed, _)| *changed == path) {
                 return Err(ModelError::file(self.file(), format!("{path} is set twice")));
             }

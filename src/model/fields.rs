@@ -104,14 +104,18 @@ impl Fields {
             path.split_once('.').is_some_and(|(table, _)| tables.contains(&table)) && !OF_READING.contains(&path)
         };
         self.fields.iter().filter_map(move |(path, field)| match field.value {
-            Value::Number(number) if inside(path) => Some((&**path, number)),
+            Value::Number(number) if inside(path) && !Self::is_error(path) => Some((&**path, number)),
             _ => None,
         })
     }
 
-    /// Copy of the fields with another number at `path`; fails if there is no number there.
+    /// Copy of the fields with another number at `path`; fails if there is no number there. An exact number may get an error.
     pub(super) fn with_number(&self, path: &str, number: Numeral) -> Result<Self, ModelError> {
         let mut fields = self.clone();
+        let is_exact = !self.has(path) && Self::number_of(path).is_some_and(|of| self.has(of));
+        if is_exact {
+            fields.put(path, Value::Number(0.0));
+        }
         match fields.fields.get_mut(path) {
             Some(field @ Field { value: Value::Number(_), .. }) => {
                 field.value = Value::Number(number.number);
@@ -136,17 +140,26 @@ impl Fields {
     /// The number at a path, within what it may be. One that is left out has its default, and can still be changed.
     pub(super) fn number(&mut self, path: &str) -> Result<f64, ModelError> {
         let row = ModelNumber::of(path);
-        let allowed = row.map_or(Allowed::FINITE, |number| number.allowed);
         if let Some(default) = row.and_then(|number| number.default).filter(|_| !self.has(path)) {
             let table = path.rsplit_once('.').and_then(|(table, _)| self.fields.get(table));
             let key = table.map_or(0..0, |table| table.key.clone());
             let (span, written, value) = (key.clone(), default.to_string().into(), Value::Number(default));
             self.fields.insert(path.into(), Field { line: None, is_there: false, key, span, written, value });
         }
+        self.number_within(path, row.map_or(Allowed::FINITE, |number| number.allowed))
+    }
+
+    /// The number at a path, within a range.
+    pub(super) fn number_within(&mut self, path: &str, allowed: Allowed) -> Result<f64, ModelError> {
         match *self.take(path)? {
             Value::Number(number) if allowed.contains(number) => Ok(number),
             _ => Err(self.reject(path, allowed.to_string())),
         }
+    }
+
+    /// Complains where there is nothing at a path.
+    pub(super) fn present(&mut self, path: &str) -> Result<(), ModelError> {
+        self.take(path).map(|_| ())
     }
 
     /// Length of an array, at least one and at most `most`.
@@ -333,7 +346,9 @@ impl Fields {
         // An array is listed once, not once more for each element.
         let listed = |known: &&String| !known.ends_with(']') && table_of(known) == table;
         let siblings = self.known.iter().filter(listed);
-        let tables = tables.iter().filter(|known| !known.is_empty() && listed(known));
+        // A number with an error is a table as well.
+        let is_number = |known: &String| self.known.contains(known);
+        let tables = tables.iter().filter(|known| !known.is_empty() && listed(known) && !is_number(known));
         let allowed: Vec<&str> =
             siblings.chain(tables).map(|known| known.rsplit('.').next().unwrap_or(known)).collect();
         let place = if table.is_empty() { "at the top of the file".to_owned() } else { format!("in [{table}]") };

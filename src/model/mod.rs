@@ -10,6 +10,7 @@ mod complaint;
 mod document;
 mod exact;
 mod fields;
+mod follower_errors;
 mod heading;
 mod lines;
 mod nearest;
@@ -32,6 +33,7 @@ use serde::{Deserialize, Serialize};
 
 pub use complaint::ModelError;
 use fields::Fields;
+pub use follower_errors::FollowerErrors;
 pub use lines::{Holds, Separator};
 pub use nearest::nearest;
 pub use numeral::{Numeral, finite, parted};
@@ -68,6 +70,8 @@ pub struct Model {
     pub units: Units,
     /// Spring force on the base circle, in internal units, where the file gives it instead of `rest_position`.
     pub preload: Option<f64>,
+    /// Standard deviations of the follower's numbers.
+    pub errors: FollowerErrors,
     fields: Fields,
     changes: Vec<(String, f64)>,
 }
@@ -93,6 +97,9 @@ pub struct Follower {
 impl Follower {
     /// Reads the numbers that the table has of a follower, and the preload if the file gives it instead of the rest position.
     fn read(fields: &mut Fields, units: &Units) -> Result<(Self, Option<f64>), ModelError> {
+        for name in FollowerErrors::names() {
+            fields.part_error(&format!("follower.{name}"))?;
+        }
         fields.may_hold("follower.preload");
         let is_preloaded = fields.has("follower.preload");
         let (mut numbers, mut preload) = (Vec::new(), None);
@@ -159,6 +166,7 @@ impl Model {
         let source = fields.text_or("source", "")?;
         let units = Units::read(&mut fields)?;
         let (follower, preload) = Follower::read(&mut fields, &units)?;
+        let errors = FollowerErrors::read(&mut fields, &units)?;
         let cam = profile::read(&mut fields)?;
         fields.may_hold("study.rpm_min");
         let study = if fields.has("study") {
@@ -172,12 +180,18 @@ impl Model {
             None
         };
         fields.finish()?;
-        Ok(Self { name, source, follower, cam, study, units, preload, fields, changes: Vec::new() })
+        errors.check(&mut fields)?;
+        Ok(Self { name, source, follower, cam, study, units, preload, errors, fields, changes: Vec::new() })
     }
 
     /// Numeric fields that shape the motion, by dotted path, with their values. These are the numbers that a study may vary.
     pub fn numbers(&self) -> impl Iterator<Item = (&str, f64)> {
         self.fields.numbers_in(&["follower", "cam"])
+    }
+
+    /// Standard deviation of the number at a dotted path, in its unit in the file; none for an exact number.
+    pub fn error_of(&self, path: &str) -> Option<f64> {
+        self.fields.error_at(path)
     }
 
     /// The `[study]` range, or the complaint that it is missing.

@@ -32,6 +32,11 @@ impl Allowed {
         let above = if self.low_is_allowed { number >= self.low } else { number > self.low };
         number.is_finite() && above && number <= self.high
     }
+
+    /// The number of the closed range that is nearest.
+    pub(super) fn nearest(self, number: f64) -> f64 {
+        number.clamp(self.low, self.high)
+    }
 }
 
 impl fmt::Display for Allowed {

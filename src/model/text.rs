@@ -5,9 +5,18 @@ use std::sync::Arc;
 use std::fmt::Write;
 
 use super::fields::{Fields, Value};
-use super::{Model, SmoothingTolerance, TableProfile};
+use super::{FollowerErrors, Model, SmoothingTolerance, TableProfile};
 
 impl Model {
+    /// Text of the model file with exact numbers, which is the same for models whose machines move alike.
+    pub(crate) fn text_of_values(&self) -> String {
+        let mut exact = self.clone();
+        for name in FollowerErrors::names() {
+            exact.fields.drop_error(&format!("follower.{name}"));
+        }
+        exact.text()
+    }
+
     /// Text of a self-contained model file: the model's name, every number in digits that read back as the same double,
     /// and a table's rows in place of their file. Reading the text gives the same model and the same text.
     pub fn text(&self) -> String {
@@ -92,7 +101,10 @@ impl Fields {
     /// The value in one line; `None` for a table or an array of tables, which have headers of their own.
     fn written(&self, path: &str, value: &Value) -> Option<String> {
         match value {
-            Value::Number(number) => Some(format!("{number:?}")),
+            Value::Number(number) => Some(match self.error_at(path) {
+                Some(error) => format!("{{ value = {number:?}, error = {error:?} }}"),
+                None => format!("{number:?}"),
+            }),
             // TOML escapes as JSON does, except for one character.
             Value::Text(text) => Some(serde_json::Value::String(text.clone()).to_string().replace('\u{7f}', "\\u007f")),
             Value::Rows(rows) => {

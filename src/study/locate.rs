@@ -17,13 +17,14 @@ use crate::corner::range::{FoundCornerImpacts, RangeError, find_corner_impacts};
 use crate::corner::shots::{SHOT_RATIO, VELOCITIES};
 use crate::corner::{CornerImpact, CornerMap, variational};
 use crate::known::Evidence;
-use crate::measured::{Measured, PlausibleCams};
-use crate::model::{Model, ModelError, Study};
+use crate::measured::Measured;
+use crate::model::{FollowerErrors, Model, ModelError, Study};
 use crate::orbit::branch::{Event, GRID_RATIO};
 use crate::progress::{Pieces, Watch};
 use crate::simulate::Machine;
 use crate::study::routes::{self, Log, Skipped};
 use crate::study::{ModelLabel, hypotheses};
+use crate::uncertainty::{PlausibleMachines, SourcedUncertainty, UncertaintyParts};
 
 /// The corner impacts of a range of speeds: the document `corner-impact/locate/1`.
 #[derive(Clone, Debug)]
@@ -42,6 +43,8 @@ pub struct Located {
     pub revolutions: u64,
     /// Accuracy of the cam, if it is measured.
     pub measured: Option<Measured>,
+    /// Standard deviations of the follower's numbers.
+    pub errors: FollowerErrors,
     /// Whether the routes agree at every corner impact; true if there is none.
     pub agrees: bool,
 }
@@ -59,6 +62,7 @@ document!(Located as it {
     undecided: it.looked_at.undecided,
     searched: Searched(&it.looked_at),
     measured if_any: it.measured,
+    uncertain if_any: it.errors.if_any(),
     agrees: it.agrees,
 });
 
@@ -87,8 +91,8 @@ struct Shots {
 pub struct LocatedImpact {
     /// The orbit.
     pub at: CornerImpact,
-    /// Shift of the speed that the noise of a measured cam may cause, rpm; none if the cam is not measured or the shift is unknown.
-    pub speed_error: Option<f64>,
+    /// SourcedUncertainty of the machine in the speed, rpm; none if the machine is exact or the uncertainty is unknown.
+    pub speed_error: Option<SourcedUncertainty>,
     /// Map by the product of propagators and saltation matrices. At a corner of velocity it is valid on `at.side` only.
     pub map: CornerMap,
     /// The event at the corner impact.
@@ -107,7 +111,8 @@ document!(LocatedImpact as it {
     known: Evidence::Computed,
     found_by: it.at.ways,
     speed_rpm: it.at.speed_rpm(),
-    error_rpm if_any: it.speed_error,
+    error_rpm if_any: it.speed_error.map(|error| error.total()),
+    error_parts if_any: it.speed_error.map(|error| UncertaintyParts(error, "_rpm")),
     period_s: it.at.period,
     orbit_period_s: it.at.period * it.at.cycle.revolutions as f64,
     revolutions: it.at.cycle.revolutions,
@@ -216,10 +221,10 @@ pub fn locate(model: &Model, range: Study, revolutions: u64, watch: &dyn Watch) 
     let pieces = Pieces::new(watch, "the map of each corner impact, by every route", looked_at.found.len());
     let found: Vec<LocatedImpact> =
         looked_at.found.par_iter().map(|at| pieces.each(|| located(model, &cam, at))).collect();
-    let likely = if found.is_empty() { None } else { PlausibleCams::of(model)? };
+    let machines = if found.is_empty() { None } else { Some(PlausibleMachines::of(model, &cam)?) };
     let mut found = found;
-    if let Some(likely) = likely.as_ref().filter(|likely| likely.best.is_some()) {
-        found.par_iter_mut().for_each(|found| found.speed_error = speed_error(model, &cam, likely, &found.at));
+    if let Some(machines) = machines.as_ref().and_then(PlausibleMachines::uncertain) {
+        found.par_iter_mut().for_each(|found| found.speed_error = speed_error(model, &cam, machines, &found.at));
     }
     let agrees = found.iter().all(|located| located.agrees);
     let is_proved = looked_at.complete.iter().any(|complete| complete.known == Evidence::Proved);
@@ -230,17 +235,23 @@ pub fn locate(model: &Model, range: Study, revolutions: u64, watch: &dyn Watch) 
         looked_at,
         range,
         revolutions,
-        measured: likely.map(|likely| likely.measured),
+        measured: machines.and_then(PlausibleMachines::measured),
+        errors: model.errors,
         agrees,
     })
 }
 
-/// Shift of a corner impact that the noise of a measured cam may cause, rpm.
-fn speed_error(model: &Model, cam: &Cam, likely: &PlausibleCams, at: &CornerImpact) -> Option<f64> {
+/// SourcedUncertainty of the machine in the speed of a corner impact, rpm.
+fn speed_error(
+    model: &Model,
+    cam: &Cam,
+    machines: &PlausibleMachines<'_>,
+    at: &CornerImpact,
+) -> Option<SourcedUncertainty> {
     let machine = Machine::new(cam.clone(), &model.follower, at.angular_velocity());
     let at_end = at.cycle.impacts.get(at.impact)?.segment != at.corner.segment;
     let event = Event::of_corner(&machine, at.speed_rpm(), &at.cycle, at.impact, at_end);
-    likely.error([at.speed_rpm()], |model, cam| event.moved(model, cam).map(|rpm| [rpm])).map(|[error]| error)
+    machines.error([at.speed_rpm()], |model, cam| event.moved(model, cam).map(|rpm| [rpm])).map(|[error]| error)
 }
 
 /// Computes the map of a corner impact by each route that its corner has.

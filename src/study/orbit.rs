@@ -7,12 +7,13 @@ use crate::cam::{Cam, apart};
 use crate::elementary;
 use crate::flight::State;
 use crate::known::{Complete, Evidence};
-use crate::measured::{Measured, PlausibleCams};
-use crate::model::Model;
+use crate::measured::Measured;
+use crate::model::{FollowerErrors, Model};
 use crate::orbit::near::near;
 use crate::orbit::{PeriodicOrbit, Search, Searched, Undecided, search_all};
 use crate::progress::Watch;
 use crate::simulate::{Event, Machine};
+use crate::uncertainty::{PlausibleMachines, SourcedUncertainty};
 
 /// The periodic orbits of a model at a speed: the document of `orbit --json`.
 #[derive(Clone, Debug, Serialize)]
@@ -35,15 +36,30 @@ pub struct Orbits {
     /// Accuracy of a measured cam, if its rows have noise.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub measured: Option<Measured>,
-    /// Uncertainty of each orbit from the measured cam; none if too few of the cams that are as likely have the orbit.
+    /// Standard deviations of the follower's numbers.
+    #[serde(rename = "uncertain", skip_serializing_if = "FollowerErrors::are_none")]
+    pub deviations: FollowerErrors,
+    /// SourcedUncertainty of each orbit; none if too few of the likely machines have the orbit.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub errors: Vec<Option<OrbitUncertainty>>,
 }
 
-/// Uncertainty of an orbit's numbers from the accuracy of its cam.
+/// SourcedUncertainty of an orbit's numbers.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct OrbitUncertainty {
-    /// Uncertainty of either multiplier, in the complex plane.
+    /// Whole uncertainty.
+    #[serde(flatten)]
+    pub total: OrbitErrors,
+    /// Part of a measured cam.
+    pub cam: OrbitErrors,
+    /// Part of the follower's numbers.
+    pub numbers: OrbitErrors,
+}
+
+/// Uncertainties of an orbit's numbers, or one part of them.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct OrbitErrors {
+    /// SourcedUncertainty of either multiplier, in the complex plane.
     pub multiplier: f64,
     /// Position and velocity of the state, m and m/s.
     pub state: [f64; 2],
@@ -72,16 +88,15 @@ pub fn orbits(model: &Model, speed_rpm: f64, wanted: OrbitQuery, watch: &dyn Wat
             Searched { orbits, complete: Vec::new(), undecided: Vec::new() }
         }
     };
-    let likely =
-        if orbits.is_empty() { None } else { PlausibleCams::of(model)?.filter(|likely| likely.best.is_some()) };
-    let errors = match &likely {
-        Some(likely) => orbits.iter().map(|orbit| error(likely, &machine, orbit)).collect(),
+    let machines = if orbits.is_empty() { None } else { Some(PlausibleMachines::of(model, machine.cam())?) };
+    let errors = match machines.as_ref().and_then(PlausibleMachines::uncertain) {
+        Some(machines) => orbits.iter().map(|orbit| error(machines, &machine, orbit)).collect(),
         None => Vec::new(),
     };
-    let measured = likely.map(|likely| likely.measured);
+    let measured = machines.and_then(PlausibleMachines::measured).filter(|cam| cam.is_noisy);
     let mut known = orbits.iter().map(|orbit| orbit.known).chain(complete.iter().map(|complete| complete.known));
     let hypotheses = if known.any(|known| known == Evidence::Proved) { hypotheses(machine.cam()) } else { Vec::new() };
-    let (schema, model) = ("corner-impact/orbit/1", model.name.clone());
+    let (schema, deviations, model) = ("corner-impact/orbit/1", model.errors, model.name.clone());
     Ok(Orbits {
         schema,
         model,
@@ -92,12 +107,13 @@ pub fn orbits(model: &Model, speed_rpm: f64, wanted: OrbitQuery, watch: &dyn Wat
         undecided,
         orbits,
         measured,
+        deviations,
         errors,
     })
 }
 
-/// Uncertainty of an orbit of `machine`, from the same orbit on the cams that are as likely.
-fn error(likely: &PlausibleCams, machine: &Machine, orbit: &PeriodicOrbit) -> Option<OrbitUncertainty> {
+/// SourcedUncertainty of an orbit of `machine`, from the same orbit of the likely machines.
+fn error(machines: &PlausibleMachines<'_>, machine: &Machine, orbit: &PeriodicOrbit) -> Option<OrbitUncertainty> {
     /// Number of values for the multipliers and the state.
     const OF_ORBIT: usize = 6;
     /// Number of values for each event: an angle and the velocities before and after.
@@ -125,16 +141,24 @@ fn error(likely: &PlausibleCams, machine: &Machine, orbit: &PeriodicOrbit) -> Op
         let found = near(&there, 0.0, state, orbit.revolutions).ok()??;
         numbers(&found).filter(|_| found.revolutions == orbit.revolutions)
     };
-    let errors = likely.errors(&numbers(orbit)?, there)?;
-    let (of_orbit, of_events) = errors.split_at(OF_ORBIT);
-    let most = |of: &[usize]| {
-        let of_one = |one: &[f64]| of.iter().map(|index| one[*index]).fold(0.0, f64::max);
-        of_events.chunks(OF_EVENT).map(of_one).fold(0.0, f64::max)
+    let errors = machines.errors(&numbers(orbit)?, there)?;
+    let part = |of: fn(&SourcedUncertainty) -> f64| {
+        let errors: Vec<f64> = errors.iter().map(of).collect();
+        let (of_orbit, of_events) = errors.split_at(OF_ORBIT);
+        let most = |of: &[usize]| {
+            let of_one = |one: &[f64]| of.iter().map(|index| one[*index]).fold(0.0, f64::max);
+            of_events.chunks(OF_EVENT).map(of_one).fold(0.0, f64::max)
+        };
+        OrbitErrors {
+            multiplier: elementary::hypot(of_orbit[0], of_orbit[1]).max(elementary::hypot(of_orbit[2], of_orbit[3])),
+            state: [of_orbit[4], of_orbit[5]],
+            cam_angle_rad: most(&[0]),
+            velocity_m_s: most(&[1, 2]),
+        }
     };
     Some(OrbitUncertainty {
-        multiplier: elementary::hypot(of_orbit[0], of_orbit[1]).max(elementary::hypot(of_orbit[2], of_orbit[3])),
-        state: [of_orbit[4], of_orbit[5]],
-        cam_angle_rad: most(&[0]),
-        velocity_m_s: most(&[1, 2]),
+        total: part(SourcedUncertainty::total),
+        cam: part(|error| error.cam),
+        numbers: part(|error| error.numbers),
     })
 }

@@ -13,8 +13,8 @@ use crate::corner::candidates::on_branch;
 use crate::elementary;
 use crate::estimate::Estimate;
 use crate::known::Evidence;
-use crate::measured::{Measured, PlausibleCams};
-use crate::model::{Model, ModelError};
+use crate::measured::Measured;
+use crate::model::{FollowerErrors, Model, ModelError};
 use crate::orbit::branch::Event;
 use crate::orbit::cycle::own_speed;
 use crate::orbit::long_run::{Budget, Kind, LongRun};
@@ -30,6 +30,7 @@ use crate::study::machine;
 use crate::study::routes;
 use crate::study::survey::{Attractor, Over, Place, Sample, Spacing, VariedNumber, Wandering};
 use crate::tolerance;
+use crate::uncertainty::{PlausibleMachines, SourcedUncertainty, UncertaintyParts};
 
 /// Survey of a machine over a range of speeds, or of values of another number: the document of `speeds --json`.
 #[derive(Clone, Debug)]
@@ -48,11 +49,15 @@ pub struct SpeedSurvey {
     pub budget: Budget,
     /// Whether runs also began on the stable orbits of two impacts in one revolution.
     pub two_impacts: bool,
-    /// Speed above the lowest at which the follower first leaves the cam, by the contact force. Its error includes that from a measured
-    /// cam. None if the speed does not vary.
+    /// Speed above the lowest at which the follower first leaves the cam, by the contact force. Its error includes the uncertainty of the
+    /// machine. None if the speed does not vary.
     pub separation: Option<Separation>,
+    /// SourcedUncertainty of the machine in that speed, rpm; none if the machine is exact.
+    pub separation_error: Option<SourcedUncertainty>,
     /// Accuracy of the cam, if it is measured.
     pub measured: Option<Measured>,
+    /// Standard deviations of the follower's numbers.
+    pub errors: FollowerErrors,
     /// The attractors, by rising value.
     pub attractors: Vec<AttractorRow>,
     /// Ranges with several attractors.
@@ -84,8 +89,10 @@ document!(SpeedSurvey as it {
     missed_below_share: it.missed(),
     detachment_rpm: it.detachment().filter(|_| it.over.is_speed()).map(|[rpm, _]| rpm),
     detachment if_any: it.detachment().filter(|_| !it.over.is_speed()).map(|[value, _]| value),
-    detachment_error_rpm if_any: it.detachment_error(),
+    detachment_error_rpm if_any: it.detachment_error().map(|error| error.total()),
+    detachment_error_parts if_any: it.detachment_error().map(|error| UncertaintyParts(error, "_rpm")),
     measured if_any: it.measured,
+    uncertain if_any: it.errors.if_any(),
     attractors: it.attractors,
     coexistence: it.coexistence,
     off_for_good if_any: it.off_for_good(),
@@ -297,10 +304,10 @@ impl SpeedSurvey {
         }
     }
 
-    /// Shift of the detachment that the noise of a measured cam may cause, rpm; none for another cam, or if unknown.
-    pub fn detachment_error(&self) -> Option<f64> {
-        Measured::noisy(&self.measured)?;
-        self.detachment().map(|[_, error]| error).filter(|error| error.is_finite())
+    /// SourcedUncertainty of the machine in the detachment, rpm; none for an exact machine, or if unknown.
+    pub fn detachment_error(&self) -> Option<SourcedUncertainty> {
+        self.detachment()?;
+        self.separation_error.filter(|error| error.total().is_finite())
     }
 
     /// Returns the speed of the fastest impact seen on an attractor, m/s relative to the cam, and its value.
@@ -368,17 +375,17 @@ pub fn speeds(
     watch: &dyn Watch,
 ) -> Result<SpeedSurvey, AttractorsError> {
     let Attractors { grid, mut families, coexistence, separation, .. } = attractors(over, range, resolution, watch)?;
-    watch.at("what the measured cam leaves open", 0, 0);
-    let likely = PlausibleCams::of(over.model)?;
-    let noisy = likely.as_ref().filter(|likely| likely.best.is_some());
-    let separation = separation.map(|separation| known(separation, noisy));
-    // If another number varies, an event moves along with the cam, by an unknown amount.
-    if let (Some(likely), Some(separation)) = (noisy, separation) {
-        let lowest = machine(over.model, range[0])?;
+    watch.at("what the uncertainty of the machine leaves open", 0, 0);
+    let lowest = machine(over.model, if over.is_speed() { range[0] } else { over.rpm })?;
+    let machines = PlausibleMachines::of(over.model, lowest.cam())?;
+    let known = separation.map(|separation| known(separation, &machines));
+    let (separation, separation_errors) = known.map_or((None, None), |(found, errors)| (Some(found), errors));
+    let separation_error = separation_errors.map(|[error, _]| error);
+    // If another number varies, an event moves along with the machine, by an unknown amount.
+    if let (Some(machines), Some(_)) = (machines.uncertain(), separation) {
         families.par_iter_mut().for_each(|family| {
-            let errors = [0, 1].map(|side| {
-                error((&lowest, (&resolution.sample, resolution.budget)), (likely, separation), family, side, &grid)
-            });
+            let runs = (&resolution.sample, resolution.budget);
+            let errors = [0, 1].map(|side| error((&lowest, runs), (machines, separation_error), family, side, &grid));
             for (end, error) in family.ends.iter_mut().zip(errors) {
                 end.iter_mut().for_each(|end| end.error = error);
             }
@@ -433,9 +440,11 @@ pub fn speeds(
         budget: resolution.budget,
         two_impacts: resolution.two_impacts,
         separation,
+        separation_error,
         off,
         run: run().count(),
-        measured: likely.map(|likely| likely.measured),
+        measured: machines.measured(),
+        errors: over.model.errors,
         attractors: families.par_iter().enumerate().map(row).collect(),
         coexistence: coexistence
             .iter()
@@ -494,30 +503,26 @@ pub fn passed_once(passed: Vec<(f64, CornerImpact, String)>) -> Vec<(f64, Corner
     found
 }
 
-/// Shift of an attractor's transition that the noise of a measured cam may cause, rpm: by the event's equations, or by runs if it is
-/// known by runs.
+/// SourcedUncertainty of the machine in an attractor's transition, rpm: by the event's equations, or by runs if it is known by runs.
 fn error(
     (machine, runs): (&Machine, StartsAndBudget<'_>),
-    (likely, separation): (&PlausibleCams, Separation),
+    (machines, of_separation): (&PlausibleMachines<'_>, Option<SourcedUncertainty>),
     family: &AttractorFamily,
     side: usize,
     grid: &ValueGrid,
-) -> Option<f64> {
+) -> Option<SourcedUncertainty> {
     let end = family.ends[side].as_ref()?;
     let (rpm, speed) = (end.at.rpm, angular_velocity(end.at.rpm));
     let machine = machine.at_speed(speed);
     let event = end.point.as_ref().and_then(|point| Event::of_point(&machine, point));
     let by_equations = |moved: &(dyn Fn(&Model, &Cam) -> Option<f64> + Sync)| {
-        likely.error([rpm], |model, cam| moved(model, cam).map(|rpm| [rpm])).map(|[error]| error)
+        machines.error([rpm], |model, cam| moved(model, cam).map(|rpm| [rpm])).map(|[error]| error)
     };
     match (end.cause, event) {
         // One detachment speed has one error.
-        (Cause::Detachment, _) => match separation {
-            Separation::At { error, .. } => Some(error).filter(|error| error.is_finite()),
-            _ => None,
-        },
+        (Cause::Detachment, _) => of_separation.filter(|error| error.total().is_finite()),
         (_, Some(event)) => by_equations(&|model, cam| event.moved(model, cam)),
-        (Cause::Runs, None) => likely.error_by_runs(rpm, |model, cam| {
+        (Cause::Runs, None) => machines.error_by_runs(rpm, |model, cam| {
             family.moved(&Machine::new(cam.clone(), &model.follower, speed), grid, runs, side)
         }),
         _ => None,

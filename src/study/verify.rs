@@ -23,14 +23,15 @@ use crate::corner::map::{LinearForm, RouteName, SideMap, Sides};
 use crate::corner::second_order::{CurvedMap, second_order};
 use crate::corner::{self, CornerImpact, CornerMap, LocateError, Route};
 use crate::corner::{closed_form, simulated_orbit, variational};
-use crate::measured::{Measured, PlausibleCams};
-use crate::model::Model;
+use crate::measured::Measured;
+use crate::model::{FollowerErrors, Model};
 use crate::progress::{Unwatched, Watch};
 use crate::published::{PrintedNumber, PublishedError, compare_published};
 use crate::python::PythonError;
 use crate::study::ModelLabel;
 use crate::study::certify::{self, Certificate, CertifyError, Outcome};
 use crate::study::routes::{self, Log, Skipped};
+use crate::uncertainty::{PlausibleMachines, SourcedUncertainty, UncertaintyParts};
 
 /// Results of a verification: the document `corner-impact/verify/1`.
 #[derive(Clone, Debug)]
@@ -43,8 +44,8 @@ pub struct Verification {
     pub others: Vec<CornerImpact>,
     /// The map by the closed form.
     pub map: CornerMap,
-    /// Uncertainty of speed and map from a measured cam, and the cam's accuracy; none if the cam is not measured.
-    pub measured: Option<LeftOpen>,
+    /// SourcedUncertainty of speed and map, and the cam's accuracy; none if the cam is not measured and the follower's numbers are exact.
+    pub uncertainty: Option<LeftOpen>,
     /// Proof of the corner impact, if there is one.
     pub certificate: Option<Certificate>,
     /// The map by each route that ran.
@@ -86,7 +87,7 @@ document!(Verification as found {
     other_corner_impacts: found.others.iter().map(Place).collect::<Vec<_>>(),
     certificate if_any: found.certificate,
     hypotheses if_any: found.certificate.as_ref().map(Certificate::hypotheses),
-    uncertainty if_any: found.measured,
+    uncertainty if_any: found.uncertainty,
     routes: found.routes.iter().map(|route| (route.name, route)).collect::<BTreeMap<_, _>>(),
     orbits: found.orbits.iter().map(|(name, x, period)| (*name, Orbit(x, *period))).collect::<BTreeMap<_, _>>(),
     agreement: found.comparisons,
@@ -109,60 +110,117 @@ struct Orbit<'a>(&'a Vector2<f64>, f64);
 
 document!(Orbit<'_> as it { period_s: it.1, state: it.0.as_slice() });
 
-/// Uncertainty that the accuracy of a measured cam leaves.
+/// SourcedUncertainty of a corner impact and its map.
 #[derive(Clone, Debug)]
 #[doc(hidden)]
 pub struct LeftOpen {
-    /// Accuracy of the cam.
-    pub cam: Measured,
-    /// Uncertainties of the speed, rpm, and of each entry of the map. None if too few of the cams that are as likely have the corner
-    /// impact.
-    pub error: Option<(f64, CornerMap)>,
-    /// Number of the cams that are as likely with each verdict, or with none. Cams without the corner impact are left out.
+    /// Accuracy of the cam, if it is measured.
+    pub cam: Option<Measured>,
+    /// Standard deviations of the follower's numbers.
+    pub errors: FollowerErrors,
+    /// Uncertainties of the speed and the map. None if nothing is uncertain, or if too few of the likely machines have the corner impact.
+    pub error: Option<CornerUncertainty>,
+    /// Number of the likely machines with each verdict, or with none: those with an equally likely cam, and those drawn from the errors of the
+    /// follower's numbers. Machines without the corner impact are left out.
     pub verdicts: Vec<Verdicts>,
 }
 
 document!(LeftOpen as it {
-    speed_rpm: it.error.map(|(speed, _)| speed),
-    minus: it.error.map(|(_, map)| map.minus),
-    plus: it.error.map(|(_, map)| map.plus),
+    speed_rpm: it.error.as_ref().map(|error| error.speed.total()),
+    speed_parts if_any: it.error.as_ref().map(|error| UncertaintyParts(error.speed, "_rpm")),
+    minus: it.error.as_ref().map(|error| error.total().minus),
+    plus: it.error.as_ref().map(|error| error.total().plus),
+    parts if_any: it.error.as_ref().map(CornerUncertainty::parts),
     verdicts: it.verdicts,
-    measured: it.cam,
+    measured if_any: it.cam,
+    uncertain if_any: it.errors.if_any(),
 });
 
-/// A verdict, and the number of cams with it.
+/// Uncertainties of the speed and the map of a corner impact.
+#[derive(Clone, Debug)]
+#[doc(hidden)]
+pub struct CornerUncertainty {
+    /// Of the speed, rpm.
+    pub speed: SourcedUncertainty,
+    /// Of each entry of the map: A by rows, then B.
+    pub entries: Sides<[SourcedUncertainty; 6]>,
+}
+
+impl CornerUncertainty {
+    /// Whole uncertainty of each entry.
+    pub fn total(&self) -> CornerMap {
+        self.of(|error| error.total())
+    }
+
+    /// One part of the uncertainty of each entry.
+    pub fn of(&self, part: impl Fn(&SourcedUncertainty) -> f64) -> CornerMap {
+        self.entries.map(|entries| {
+            let [a, b, c, d, e, f] = entries.each_ref().map(&part);
+            SideMap { a: Matrix2::new(a, b, c, d), b: Vector2::new(e, f) }
+        })
+    }
+
+    /// The map's uncertainty by its sources: the cam, all numbers, and each number that has a part of its own.
+    pub fn parts(&self) -> BTreeMap<&'static str, CornerMap> {
+        let mut parts =
+            BTreeMap::from([("cam", self.of(|error| error.cam)), ("numbers", self.of(|error| error.numbers))]);
+        for (index, name) in FollowerErrors::names().enumerate() {
+            let part = self.of(|error| error.each.map_or(0.0, |each| each[index]));
+            if [part.minus, part.plus].iter().flat_map(SideMap::entries).any(|entry| entry > 0.0) {
+                parts.insert(name, part);
+            }
+        }
+        parts
+    }
+}
+
+/// A verdict, and the number of machines with it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Verdicts {
     /// Scenario at the corner impact; none if its map is refused.
     pub scenario: Option<Scenario>,
-    /// Number of cams.
+    /// Number of machines, each with a likely cam.
     pub cams: usize,
 }
 
 impl LeftOpen {
-    /// Computes the uncertainty of a corner impact and its map from the cams that are as likely.
-    fn new(likely: PlausibleCams, at: &CornerImpact, map: &CornerMap, sticking: Option<Side>) -> Self {
-        let numbers = |speed: f64, map: &CornerMap| -> [f64; 13] {
-            let mut all = [speed; 13];
-            all[1..7].copy_from_slice(&map.minus.entries());
-            all[7..].copy_from_slice(&map.plus.entries());
-            all
-        };
-        let seen = Mutex::new(Vec::new());
-        let there = |model: &Model, cam: &Cam| {
+    /// Computes the uncertainty of a corner impact and its map from the likely machines. None if the cam is not measured and the numbers are
+    /// exact.
+    fn new(
+        machines: PlausibleMachines<'_>,
+        at: &CornerImpact,
+        map: &CornerMap,
+        sticking: Option<Side>,
+    ) -> Option<Self> {
+        let is_uncertain = machines.uncertain().is_some();
+        if !is_uncertain && machines.cams.is_none() {
+            return None;
+        }
+        let numbers =
+            |speed: f64, map: &CornerMap| [&[speed], &map.minus.entries()[..], &map.plus.entries()[..]].concat();
+        let found = |model: &Model, cam: &Cam| {
             let (first, others) = corner::locate(model, cam).ok()?;
             let found = std::iter::once(first).chain(others).find(|found| at.is_near(found))?;
             let map = closed_form::route(model, &found).map;
+            Some((found, map))
+        };
+        let there = |model: &Model, cam: &Cam| found(model, cam).map(|(found, map)| numbers(found.speed_rpm(), &map));
+        let seen = Mutex::new(Vec::new());
+        let judged = |model: &Model, cam: &Cam| {
+            let (found, map) = found(model, cam)?;
             let verdict = routes::classified(&map, variational::border(model, cam, &found), sticking).ok();
             seen.lock().unwrap_or_else(PoisonError::into_inner).push(verdict.map(|kind| kind.scenario));
             Some(numbers(found.speed_rpm(), &map))
         };
-        let side = |error: &[f64]| SideMap {
-            a: Matrix2::new(error[0], error[1], error[2], error[3]),
-            b: Vector2::new(error[4], error[5]),
-        };
-        let error = likely.error(numbers(at.speed_rpm(), map), there);
-        let error = error.filter(|_| likely.best.is_some());
+        let own = numbers(at.speed_rpm(), map);
+        let (of_cam, of_numbers) = (machines.errors_of_cam(&own, judged), machines.errors_of_numbers(&own, there));
+        machines.drawn(judged);
+        let error = of_cam.zip(of_numbers).filter(|_| is_uncertain);
+        let error = error.and_then(|(of_cam, of_numbers)| {
+            let errors = SourcedUncertainty::joined(of_cam, of_numbers);
+            let side = |from: usize| std::array::from_fn(|entry| errors[from + entry]);
+            Some(CornerUncertainty { speed: *errors.first()?, entries: Sides { minus: side(1), plus: side(7) } })
+        });
         let mut verdicts: Vec<Verdicts> = Vec::new();
         for scenario in seen.into_inner().unwrap_or_else(PoisonError::into_inner) {
             match verdicts.iter_mut().find(|known| known.scenario == scenario) {
@@ -172,11 +230,8 @@ impl LeftOpen {
         }
         // The order must not depend on the threads.
         verdicts.sort_by_key(|told| (Reverse(told.cams), told.scenario.map(|scenario| scenario.to_string())));
-        Self {
-            verdicts,
-            error: error.map(|error| (error[0], Sides { minus: side(&error[1..7]), plus: side(&error[7..]) })),
-            cam: likely.measured,
-        }
+        let errors = machines.deviations();
+        Some(Self { verdicts, error, errors, cam: machines.measured() })
     }
 }
 
@@ -318,7 +373,7 @@ pub fn verify_watched(model: &Model, external: External, watch: &dyn Watch) -> R
     let closed = closed_form::route(model, &at);
     let map = closed.map;
     let (mut routes, sticking) = routes::routes(model, &cam, &at, &mut log);
-    let measured = PlausibleCams::of(model)?.map(|likely| LeftOpen::new(likely, &at, &map, sticking));
+    let uncertainty = LeftOpen::new(PlausibleMachines::of(model, &cam)?, &at, &map, sticking);
 
     let mut orbits: Vec<NamedOrbit> = vec![(RouteName::Located, at.x_star(), at.period)];
     if model.follower.stiffness > 0.0 {
@@ -392,7 +447,7 @@ pub fn verify_watched(model: &Model, external: External, watch: &dyn Watch) -> R
         at,
         others,
         map,
-        measured,
+        uncertainty,
         certificate,
         routes,
         orbits,

@@ -375,7 +375,7 @@ fn needs_of_a_measured_cam_hold_those_of_the_true_one() {
     let mut held = 0;
     for (truth, answer) in exact.needs.iter().zip(&found.needs) {
         let (Some(truth), Some(value)) = (truth.value, answer.value) else { continue };
-        let error = answer.error.unwrap();
+        let error = answer.error.unwrap().total();
         assert!((value - truth).abs() < error && error < 0.1 * truth, "{}: {value} ± {error}, {truth}", answer.lever);
         held += 1;
     }

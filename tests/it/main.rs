@@ -132,6 +132,7 @@ mod temporary;
 mod tolerance;
 mod trapping;
 mod turned_cams;
+mod uncertainty;
 mod units;
 mod verify;
 mod wandering;

@@ -18,6 +18,7 @@ use corner_impact::study::orbit::{OrbitQuery, orbits};
 use corner_impact::study::speeds::SpeedSurvey;
 use corner_impact::study::survey::{Axis, Spacing, Values};
 use corner_impact::study::verify::{External, Verification, verify};
+use corner_impact::uncertainty::PlausibleMachines;
 use corner_impact_cli::figures::corner_marks;
 use corner_impact_cli::show::Paged;
 use serde_json::{Value, json};
@@ -148,7 +149,11 @@ fn loads_are_within_their_error() {
                 // Where the exact cam does not separate it has no load but the force.
                 let truth = exact.loads.iter().find(|truth| truth.place == loads.place).map(|truth| truth.numbers());
                 let told = if truth.is_some() { 5 } else { 4 };
-                let numbers = loads.numbers().into_iter().zip(truth.unwrap_or_default()).zip(loads.errors.unwrap());
+                let numbers = loads
+                    .numbers()
+                    .into_iter()
+                    .zip(truth.unwrap_or_default())
+                    .zip(loads.errors.unwrap().map(|it| it.total()));
                 for ((found, truth), error) in numbers.take(told) {
                     let off = (found - truth).abs();
                     assert!(
@@ -194,7 +199,7 @@ fn separation(cam: Value) -> (f64, f64) {
     let model = machine(cam).unwrap();
     let found = first(&model, &Cam::new(&model).unwrap());
     let likely = PlausibleCams::of(&model).unwrap().unwrap();
-    let [error] = likely.error([found], |model, cam| Some([first(model, cam)])).unwrap();
+    let error = likely.errors(&[found], |model, cam| Some(vec![first(model, cam)])).unwrap()[0];
     (found, error)
 }
 
@@ -216,7 +221,7 @@ fn separation_is_known_to_within_what_is_said() {
         let angle = |model: &Model| {
             let cam = Cam::new(model).unwrap();
             let separation = Contact::new(&cam, model.follower).separation();
-            let found = known(separation, PlausibleCams::of(model).unwrap().as_ref());
+            let (found, _) = known(separation, &PlausibleMachines::of(model, &cam).unwrap());
             let Separation::At { cam_angle, angle_error, .. } = found else { panic!("{motion}: {found:?}") };
             (cam_angle, angle_error)
         };
@@ -716,8 +721,9 @@ fn a_measured_corner_impact() {
     let certificate = found.skipped.iter().find(|skipped| skipped.route == "certificate").unwrap();
     assert!(found.agrees && !certificate.failed, "{:?}", found.skipped);
     let truth = verify(&paper, External::LeftOut).unwrap();
-    let open = found.measured.as_ref().unwrap();
-    let (speed, map) = open.error.unwrap();
+    let open = found.uncertainty.as_ref().unwrap();
+    let error = open.error.as_ref().unwrap();
+    let (speed, map) = (error.speed.total(), error.total());
     assert!(
         (found.at.speed_rpm() - truth.at.speed_rpm()).abs() <= speed && speed < 3.0,
         "{} ± {speed}",
@@ -737,7 +743,7 @@ fn a_measured_corner_impact() {
     for (places, is_open) in [(4, true), (6, false)] {
         let model = measured(places);
         let found = verify(&model, External::LeftOut).unwrap();
-        let verdicts = &found.measured.as_ref().unwrap().verdicts;
+        let verdicts = &found.uncertainty.as_ref().unwrap().verdicts;
         assert_eq!(verdicts.iter().map(|told| told.cams).sum::<usize>(), 18);
         assert!(verdicts.iter().any(|told| told.scenario == scenario(&truth)), "{verdicts:?}");
         assert_eq!(scenario(&found) != scenario(&truth), is_open);
@@ -762,7 +768,7 @@ fn a_measured_corner_impact() {
     );
     let located = locate(&model, Study { rpm_min: 600.0, rpm_max: 760.0 }, 1, &Unwatched).unwrap();
     let here = located.found.iter().find(|one| one.at.corner.angle == found.at.corner.angle).unwrap();
-    let error = here.speed_error.unwrap();
+    let error = here.speed_error.unwrap().total();
     // Knots are none of the corners that are looked at.
     let looked_at = &located.looked_at;
     assert!(looked_at.corners.iter().all(|corner| corner.jump_order < 5) && looked_at.left_out > 50, "{looked_at:?}");
@@ -772,7 +778,7 @@ fn a_measured_corner_impact() {
     let ends: Vec<&Transition> = survey.attractors.iter().flat_map(|one| one.birth.iter().chain(&one.death)).collect();
     for (name, rpm) in [("corner-impact", 673.234_445), ("flip", 739.319_780)] {
         let event = ends.iter().find(|end| end.cause.name() == name).unwrap();
-        let open = event.error.unwrap();
+        let open = event.error.unwrap().total();
         assert!((event.value() - rpm).abs() <= open && open < 2.0, "{name}: {} ± {open}", event.value());
     }
     assert!((error - speed).abs() < 0.05 * speed, "{error}, not {speed}");
@@ -785,7 +791,7 @@ fn a_measured_corner_impact() {
     let measured = by_runs(&survey);
     assert_eq!((exact.len(), measured.len()), (2, 2));
     for (end, exact) in measured.iter().zip(&exact) {
-        let open = end.error.unwrap();
+        let open = end.error.unwrap().total();
         assert!((end.value() - exact.value()).abs() <= open && open > 0.0 && open < 5.0, "{} ± {open}", end.value());
         assert_eq!(exact.error, None);
     }
@@ -813,7 +819,7 @@ fn orbits_of_a_measured_cam_are_known_to_within_what_is_said() {
             assert_eq!(found.errors.len(), found.orbits.len());
             assert!(found.errors.iter().any(Option::is_some), "{spline} at {rpm}: {found:?}");
             for (orbit, error) in found.orbits.iter().zip(&found.errors) {
-                let Some(error) = error else { continue };
+                let Some(error) = error.map(|error| error.total) else { continue };
                 // Twice what any of the cams that are as likely differs by, of either multiplier and before and after an impact.
                 for (model, _) in likely
                     .others
@@ -949,15 +955,15 @@ fn needs_of_a_measured_cam_are_known_to_within_what_is_said() {
     let measured = needs(&model, "no separation", 1.1);
     for (found, known) in measured.iter().zip(needs(&exact, "no separation", 1.1)) {
         assert_eq!((found.value.is_some(), known.error), (known.value.is_some(), None), "{found:?}");
-        if let (Some(value), Some(error), Some(known)) = (found.value, found.error, known.value) {
+        if let (Some(value), Some(error), Some(known)) = (found.value, found.error.map(|it| it.total()), known.value) {
             assert!((value - known).abs() < error && error < 0.01 * known, "{found:?}, not {known}");
         }
     }
     assert_eq!(measured.iter().filter(|it| it.error.is_some()).count(), 3);
     for (found, computed) in needs(&model, "impact speed below 0.1 m/s", 1.1).iter().zip(&measured) {
-        if let (Some(value), Some(error)) = (found.value, found.error) {
+        if let (Some(value), Some(error)) = (found.value, found.error.map(|it| it.total())) {
             assert!(
-                error >= 1e-3 * value && error < 1.5 * computed.error.unwrap() + 1e-3 * value,
+                error >= 1e-3 * value && error < 1.5 * computed.error.unwrap().total() + 1e-3 * value,
                 "{found:?}, {computed:?}"
             );
         }
@@ -967,7 +973,7 @@ fn needs_of_a_measured_cam_are_known_to_within_what_is_said() {
     let document = json!({ "follower": exact.follower, "cam": smoothing(&rows, &json!({})) });
     let fine = needs(&Model::of_document("rows", &document).unwrap(), "no separation", 1.1);
     assert!(fine.iter().any(|it| it.error.is_some()));
-    assert!(fine.iter().all(|it| it.error.is_none_or(|error| error < 3e-4 * it.value.unwrap())), "{fine:?}");
+    assert!(fine.iter().all(|it| it.error.is_none_or(|error| error.total() < 3e-4 * it.value.unwrap())), "{fine:?}");
     let open = |it: &Answer| (it.note.is_empty(), it.error.is_some());
     let few: Vec<_> = needs(&model, "no separation", 0.1).iter().map(open).collect();
     assert!(few.contains(&(false, false)) && !few.contains(&(false, true)), "{few:?}");
@@ -1200,7 +1206,7 @@ fn corner_impacts_of_a_measured_cam_are_known_as_well_as_they_were() {
         assert_eq!(found.found.len(), 1);
         for it in &found.found {
             let (speed, angle) = (it.at.speed_rpm(), it.at.corner.angle.to_degrees());
-            let error = it.speed_error.unwrap();
+            let error = it.speed_error.unwrap().total();
             assert!((speed - 673.234_445_003_8).abs() <= error && error < 0.1, "{speed} ± {error}");
             known += &format!("{from}: {speed:.5} ± {error:.3e} rpm at {angle:.4}\n");
         }
@@ -1236,7 +1242,7 @@ fn a_corner_impact_beside_angle_0_is_known_as_well_as_any() {
         let located = locate(&counted_from(zero), Study { rpm_min: 735.5, rpm_max: 736.5 }, 1, &Unwatched).unwrap();
         let [found] = &located.found[..] else { panic!("{zero} {:?}", located.found) };
         let angles: Vec<f64> = found.at.cycle.impacts.iter().map(|impact| impact.cam_angle.to_degrees()).collect();
-        (found.at.speed_rpm(), found.speed_error.unwrap(), angles)
+        (found.at.speed_rpm(), found.speed_error.unwrap().total(), angles)
     };
     let (speed, error, angles) = found(0.0);
     assert!((speed - 736.110_8).abs() <= error && error < 0.5, "{speed} {error}");
@@ -1258,7 +1264,7 @@ fn a_corner_that_noise_moves_over_angle_0_takes_its_impact_along() {
     let from_0 = apart(found.at.corner.angle, 0.0);
     assert!(found.at.cycle.impacts.len() == 2 && from_0 < 1e-5, "{from_0}");
     // The exact cam has it at 355.1545 rpm.
-    let (speed, error) = (found.at.speed_rpm(), found.speed_error.unwrap());
+    let (speed, error) = (found.at.speed_rpm(), found.speed_error.unwrap().total());
     assert!((speed - 355.154_5).abs() <= error && error < 3.0, "{speed} {error}");
 }
 
@@ -1279,7 +1285,7 @@ fn a_flip_of_a_measured_cam_is_known_to_within_what_is_said() {
     let survey = common::speeds(&the_papers_cam(0.0, 1, &json!({})), [739.2, 739.36], &resolution, &Unwatched).unwrap();
     let ends: Vec<&Transition> = survey.attractors.iter().flat_map(|one| one.birth.iter().chain(&one.death)).collect();
     let flip = ends.iter().find(|end| end.cause.name() == "flip").unwrap();
-    let error = flip.error.unwrap();
+    let error = flip.error.unwrap().total();
     assert!((flip.value() - 739.319_780).abs() <= error && error < 1.0, "{} ± {error}", flip.value());
 }
 
@@ -1300,7 +1306,7 @@ fn follower_of_a_ball() -> Value {
 fn the_force_on_a_measured_cam_is_as_far_off_as_is_said() {
     let asked = Asked { rpm: Some([600.0, 800.0]), speeds: 3, ..Asked::default() };
     for at in design(&ball_on_rows(2.5), &asked, &Unwatched).unwrap().forces {
-        let (omega, error) = (at.place.rpm * TAU / 60.0, at.error.unwrap());
+        let (omega, error) = (at.place.rpm * TAU / 60.0, at.error.unwrap().total());
         let off = (at.least.value - (9.81 - 0.001 * omega * omega)).abs();
         assert!(off <= error && error < 5e-3, "{off} {at:?}");
     }
@@ -1318,7 +1324,7 @@ fn a_fold_on_a_measured_cam_is_as_far_off_as_is_said() {
     for model in [ball_on_rows(2.5), ball_on_rows(0.0), through] {
         let found = common::speeds(&model, [555.0, 560.0], resolution(5.0, 2), &Unwatched).unwrap();
         let birth = found.attractors.iter().find(|it| it.impacts == Some(1)).unwrap().birth.as_ref().unwrap();
-        let error = birth.error.unwrap();
+        let error = birth.error.unwrap().total();
         assert_eq!(birth.cause, Cause::Fold);
         assert!((birth.value() - fold).abs() <= error && error < 0.05, "{} {error}", birth.value());
     }
@@ -1333,7 +1339,7 @@ fn an_end_by_runs_on_a_measured_cam_is_as_far_off_as_is_said() {
         let plastic = ball_on_rows(turned_deg).with_number("follower.restitution", 0.0).unwrap();
         let found = common::speeds(&plastic, [1600.0, 1800.0], resolution(100.0, 1), &Unwatched).unwrap();
         let death = found.attractors[0].death.as_ref().unwrap();
-        let error = death.error.unwrap();
+        let error = death.error.unwrap().total();
         assert_eq!(death.cause, Cause::Runs);
         assert!((death.value() - end).abs() <= error && error < 2.0, "{} {error}", death.value());
     }
@@ -1375,8 +1381,8 @@ fn a_corner_impact_of_a_measured_cam_is_as_far_off_as_is_said() {
         "study": { "rpm_min": 600.0, "rpm_max": 760.0 },
     });
     let found = verify(&Model::of_document("paper", &document).unwrap(), External::LeftOut).unwrap();
-    let open = found.measured.unwrap();
-    let (error, _) = open.error.unwrap();
+    let open = found.uncertainty.unwrap();
+    let error = open.error.unwrap().speed.total();
     assert!((found.at.speed_rpm() - 673.234445).abs() <= error && error < 0.5, "{} {error}", found.at.speed_rpm());
     assert!(open.verdicts.iter().map(|told| told.cams).sum::<usize>() > 10, "{:?}", open.verdicts);
 }

@@ -5,6 +5,7 @@ use serde::Serialize;
 use crate::orbit::branch::{BranchPoint, SpecialKind};
 use crate::orbit::{Course, Parameter};
 use crate::study::survey::Place;
+use crate::uncertainty::{SourcedUncertainty, UncertaintyParts};
 
 /// The value at which an attractor begins or ends, with its cause.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,9 +18,8 @@ pub struct Transition {
     pub cause: Cause,
     /// Special point of a branch at which it lies, if any.
     pub point: Option<Box<BranchPoint>>,
-    /// Shift that the noise of a measured cam may cause, rpm. None if the cam is not measured, the shift is unknown, or the speed does
-    /// not vary.
-    pub error: Option<f64>,
+    /// SourcedUncertainty of the machine in the speed, rpm. None if the machine is exact, the uncertainty is unknown, or the speed does not vary.
+    pub error: Option<SourcedUncertainty>,
 }
 
 // `located` is true if the equations of the event were solved, and false for a bracket of runs.
@@ -30,7 +30,8 @@ document!(Transition as it {
     located: it.is_located(),
     bracket_rpm if_any: it.at.value.is_none().then_some(it.bracket),
     bracket if_any: it.at.value.map(|_| it.bracket),
-    error_rpm if_any: it.error,
+    error_rpm if_any: it.error.map(|error| error.total()),
+    error_parts if_any: it.error.map(|error| UncertaintyParts(error, "_rpm")),
     cam_angle_rad if_any: it.cause.corner().map(|(angle, _)| angle),
     jump_order if_any: it.cause.corner().map(|(_, order)| order),
 });

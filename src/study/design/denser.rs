@@ -1,6 +1,7 @@
 //! Values between those of a table, so that a curve through them looks like one.
 
 use crate::study::survey::Spacing;
+use crate::uncertainty::SourcedUncertainty;
 
 /// Number of values from which a curve is drawn: three to a millimetre of a column's width.
 pub const DRAWN: usize = 241;
@@ -18,12 +19,15 @@ pub(super) fn between(values: &[f64], spacing: Spacing, count: usize) -> Vec<f64
 }
 
 /// Uncertainties at `value`, linearly between those at the neighbouring values of a table; none beside a value without them.
-pub(super) fn errors<const N: usize>(known: &[(f64, Option<[f64; N]>)], value: f64) -> Option<[f64; N]> {
+pub(super) fn errors<const N: usize>(
+    known: &[(f64, Option<[SourcedUncertainty; N]>)],
+    value: f64,
+) -> Option<[SourcedUncertainty; N]> {
     let after = known.partition_point(|(at, _)| *at < value);
     if let Some((_, errors)) = known.get(after).filter(|(at, _)| *at == value) {
         return *errors;
     }
     let ((low, one), (high, other)) = (known.get(after.checked_sub(1)?)?, known.get(after)?);
     let ((one, other), part) = ((one.as_ref()?, other.as_ref()?), (value - low) / (high - low));
-    Some(std::array::from_fn(|index| one[index] + (other[index] - one[index]) * part))
+    Some(std::array::from_fn(|index| one[index].towards(&other[index], part)))
 }

@@ -11,6 +11,7 @@ use crate::progress::Unwatched;
 use crate::section::trace;
 use crate::simulate::{EventKind, Machine, Motion, SimulateError};
 use crate::study::survey::{Attractor, Place, Placed, Start, attractors_of};
+use crate::uncertainty::{SourcedUncertainty, UncertaintyParts};
 
 /// A kind of load.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -73,8 +74,8 @@ pub struct Loads {
     pub energy: f64,
     /// Largest contact force without impacts, kg m/s^2 with the model's length.
     pub force: f64,
-    /// Uncertainties of these numbers for a measured cam, in their order; none if there is no uncertainty or it is unknown.
-    pub errors: Option<[f64; 5]>,
+    /// Uncertainties of these numbers, in their order; none if there is no uncertainty or it is unknown.
+    pub errors: Option<[SourcedUncertainty; 5]>,
 }
 
 document!(Loads as it {
@@ -85,11 +86,16 @@ document!(Loads as it {
     off_cam_share: it.off_cam,
     energy_lost_j: it.energy,
     largest_force_n: it.force,
-    impact_speed_error_m_s if_any: it.errors.map(|errors| errors[0]),
-    gap_error_m if_any: it.errors.map(|errors| errors[1]),
-    off_cam_error if_any: it.errors.map(|errors| errors[2]),
-    energy_lost_error_j if_any: it.errors.map(|errors| errors[3]),
-    largest_force_error_n if_any: it.errors.map(|errors| errors[4]),
+    impact_speed_error_m_s if_any: it.error(0),
+    gap_error_m if_any: it.error(1),
+    off_cam_error if_any: it.error(2),
+    energy_lost_error_j if_any: it.error(3),
+    largest_force_error_n if_any: it.error(4),
+    impact_speed_error_parts if_any: it.parts(0, "_m_s"),
+    gap_error_parts if_any: it.parts(1, "_m"),
+    off_cam_error_parts if_any: it.parts(2, ""),
+    energy_lost_error_parts if_any: it.parts(3, "_j"),
+    largest_force_error_parts if_any: it.parts(4, "_n"),
 });
 
 impl Loads {
@@ -103,6 +109,15 @@ impl Loads {
     const MOMENTS: u32 = 360;
     /// Moments per revolution where one run represents all that converge to its motion; each of those would sample other moments.
     const FINE: u32 = 4 * Self::MOMENTS;
+
+    /// SourcedUncertainty of the number at `index`.
+    fn error(&self, index: usize) -> Option<f64> {
+        self.errors.map(|errors| errors[index].total())
+    }
+
+    fn parts(&self, index: usize, unit: &'static str) -> Option<UncertaintyParts> {
+        self.errors.map(|errors| UncertaintyParts(errors[index], unit))
+    }
 
     /// Value of a load.
     pub fn of(&self, load: Load) -> f64 {

@@ -15,17 +15,18 @@ use super::{ModelLabel, StudyError};
 use crate::bracket::{Width, halve};
 use crate::cam::{Cam, Least, nearest_turn};
 use crate::known::Evidence;
-use crate::measured::{LikelyCam, Measured, PlausibleCams};
-use crate::model::{CORNER_ROUNDING, Model, Units};
+use crate::measured::Measured;
+use crate::model::{CORNER_ROUNDING, FollowerErrors, Model, Units};
 use crate::orbit::long_run::Budget;
 use crate::progress::{Pieces, Watch};
 use crate::simulate::{Machine, angular_velocity};
 use crate::study::cam::CamGeometry;
 use crate::study::survey::{Attractor, Axis, Over, Place, Spacing, Start, Values, VariedNumber};
 use crate::tolerance;
+use crate::uncertainty::{PlausibleMachines, SourcedUncertainty, UncertaintyParts};
 use contact::{Contact, Separation};
 use loads::{Load, Loads};
-use needs::{Answer, Changed, Lever, Need};
+use needs::{Answer, Changed, Lever, Need, UncertainMachine};
 
 /// The document of `design --json`.
 #[derive(Clone, Debug)]
@@ -38,12 +39,16 @@ pub struct Design {
     pub geometry: Option<CamGeometry>,
     /// Ratio of the lever between cam and follower, 1 without one. Forces are those on the follower.
     pub lever_ratio: f64,
-    /// Where the follower first leaves the cam; the error includes the uncertainty of a measured cam.
+    /// Where the follower first leaves the cam; the error includes the uncertainty of the machine.
     pub separation: Separation,
+    /// Uncertainty of the machine in the separation's speed, rpm, and cam angle, rad; none if the machine is exact.
+    pub separation_errors: Option<[SourcedUncertainty; 2]>,
     /// Places where the follower may leave the cam first, if a measured cam leaves open which it is by more than 10 degrees.
     pub places: Vec<SeparationPlace>,
     /// Quality of the measured cam; none for an exact cam.
     pub measured: Option<Measured>,
+    /// Standard deviations of the follower's numbers.
+    pub errors: FollowerErrors,
     /// The number that varies in the table.
     pub over: VariedNumber,
     /// Least force at each value, in the internal unit.
@@ -75,8 +80,8 @@ pub struct ForceAt {
     pub place: Place,
     /// Least force and its place.
     pub least: Least,
-    /// Uncertainty of the least force for a measured cam; none if there is none.
-    pub error: Option<f64>,
+    /// SourcedUncertainty of the least force; none if there is none, or if it is unknown.
+    pub error: Option<SourcedUncertainty>,
     /// Largest force round the cam.
     pub largest: f64,
 }
@@ -88,8 +93,8 @@ pub struct LoadCurves {
     pub forces: Vec<ForceAt>,
     /// Loads at values where the follower leaves the cam. Uncertainties between the values of the table are interpolated.
     pub loads: Vec<Loads>,
-    /// Uncertainty of the largest force on the cam at each value of the table.
-    pub largest_errors: Vec<(f64, Option<[f64; 1]>)>,
+    /// SourcedUncertainty of the largest force on the cam at each value of the table.
+    pub largest_errors: Vec<(f64, Option<[SourcedUncertainty; 1]>)>,
 }
 
 impl LoadCurves {
@@ -97,10 +102,11 @@ impl LoadCurves {
     /// motions, without impacts.
     pub fn greatest_forces(&self) -> Vec<(Place, f64, Option<f64>)> {
         let parted = |place: Place| self.loads.iter().any(|loads| loads.place == place);
-        let error = |at: &ForceAt| denser::errors(&self.largest_errors, at.place.across()).map(|[error]| error);
+        let error = |at: &ForceAt| denser::errors(&self.largest_errors, at.place.across()).map(|[error]| error.total());
         let on_cam = self.forces.iter().filter(|at| !parted(at.place));
         let on_cam = on_cam.map(|at| (at.place, at.largest, error(at)));
-        let off_cam = self.loads.iter().map(|loads| (loads.place, loads.force, loads.errors.map(|errors| errors[4])));
+        let off_cam =
+            self.loads.iter().map(|loads| (loads.place, loads.force, loads.errors.map(|errors| errors[4].total())));
         let mut all: Vec<_> = on_cam.chain(off_cam).collect();
         all.sort_by(|(one, ..), (other, ..)| one.across().total_cmp(&other.across()));
         all
@@ -112,7 +118,8 @@ document!(ForceAt as it {
     value if_any: it.place.value,
     least_n: it.least.value,
     cam_angle_rad: it.least.angle,
-    error_n if_any: it.error,
+    error_n if_any: it.error.map(|error| error.total()),
+    error_parts if_any: it.error.map(|error| UncertaintyParts(error, "_n")),
     largest_n: it.largest,
 });
 
@@ -173,13 +180,13 @@ pub struct RequiredPair {
     pub given: f64,
     /// Value of the number that is found.
     pub found: Option<f64>,
-    /// Uncertainty of `found` for a measured cam.
+    /// SourcedUncertainty of `found`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error: Option<f64>,
     /// Limit on the other side, if there is one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub other: Option<f64>,
-    /// Uncertainty of `other`.
+    /// SourcedUncertainty of `other`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub other_error: Option<f64>,
     /// A tried value beyond `other` that meets the need again.
@@ -215,6 +222,7 @@ document!(Design as it {
     separation: it.separated(),
     separates: it.separation.name(),
     measured if_any: it.measured,
+    uncertain if_any: it.errors.if_any(),
     contact_force: it.forces,
     force_round_the_cam: it.told_round(),
     loads: it.loads,
@@ -294,7 +302,11 @@ struct Separated<'a> {
     error_rpm: f64,
     cam_angle_rad: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
+    error_parts: Option<UncertaintyParts>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     cam_angle_error_rad: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    cam_angle_error_parts: Option<UncertaintyParts>,
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
     places: &'a [SeparationPlace],
     located: bool,
@@ -307,7 +319,9 @@ impl Design {
                 speed_rpm: rpm,
                 error_rpm: error,
                 cam_angle_rad: cam_angle,
+                error_parts: self.separation_errors.map(|[of_speed, _]| UncertaintyParts(of_speed, "_rpm")),
                 cam_angle_error_rad: angle_error,
+                cam_angle_error_parts: self.separation_errors.map(|[_, of_angle]| UncertaintyParts(of_angle, "_rad")),
                 places: &self.places,
                 located: true,
             }),
@@ -338,34 +352,37 @@ struct RoundEntry {
     force_n: f64,
 }
 
-/// Adds the uncertainty of a measured cam to a separation's speed and angle; NaN if that uncertainty is unknown.
+/// Adds the uncertainty of the machine to a separation's speed and angle, and returns it by its sources; NaN if it is unknown.
 #[doc(hidden)]
-pub fn known(separation: Separation, likely: Option<&PlausibleCams>) -> Separation {
-    let Some(likely) = likely.filter(|likely| likely.best.is_some()) else { return separation };
-    let Separation::At { rpm, error, cam_angle, .. } = separation else { return separation };
+pub fn known(
+    separation: Separation,
+    machines: &PlausibleMachines<'_>,
+) -> (Separation, Option<[SourcedUncertainty; 2]>) {
+    let (Some(machines), Separation::At { rpm, error, cam_angle, .. }) = (machines.uncertain(), separation) else {
+        return (separation, None);
+    };
     let of = |model: &Model, cam: &Cam| match Contact::new(cam, model.follower).separation() {
         Separation::At { rpm, cam_angle: of_other, .. } => Some([rpm, nearest_turn(of_other, cam_angle)]),
         _ => None,
     };
-    let [open, angle_error] = likely.error([rpm, cam_angle], of).unwrap_or([f64::NAN; 2]);
-    Separation::At { rpm, error: error + open, cam_angle, angle_error: Some(angle_error) }
+    let errors = machines.error([rpm, cam_angle], of).unwrap_or([SourcedUncertainty::UNKNOWN; 2]);
+    let [open, angle_error] = errors.map(|error| error.total());
+    (Separation::At { rpm, error: error + open, cam_angle, angle_error: Some(angle_error) }, Some(errors))
 }
 
-/// The places where likely cams let go first, the likeliest first; none where they agree to 10 degrees.
-fn places(separation: Separation, likely: Option<&PlausibleCams>) -> Vec<SeparationPlace> {
+/// The places where likely machines let go first, the likeliest first; none where they agree to 10 degrees.
+fn places(separation: Separation, machines: &PlausibleMachines<'_>) -> Vec<SeparationPlace> {
     /// Error up to which an angle is one place, and distance from which on two angles are two, rad.
     const ONE: f64 = PI / 18.0;
-    let (Some(likely), Separation::At { cam_angle, angle_error: Some(error), .. }) = (likely, separation) else {
-        return Vec::new();
-    };
+    let Separation::At { cam_angle, angle_error: Some(error), .. } = separation else { return Vec::new() };
     if !(error > ONE) {
         return Vec::new();
     }
-    let of = |(model, cam): &LikelyCam| match Contact::new(cam, model.follower).separation() {
+    let of = |model: &Model, cam: &Cam| match Contact::new(cam, model.follower).separation() {
         Separation::At { cam_angle: of_other, .. } => Some(nearest_turn(of_other, cam_angle)),
         _ => None,
     };
-    let mut angles: Vec<f64> = likely.others.par_iter().filter_map(of).collect();
+    let mut angles: Vec<f64> = machines.each(of);
     angles.sort_by(f64::total_cmp);
     let place = |alike: &[f64]| {
         let from = alike[0].rem_euclid(TAU);
@@ -387,14 +404,15 @@ pub fn design(model: &Model, asked: &Asked, watch: &dyn Watch) -> Result<Design,
     const USUAL: [f64; 2] = [0.5, 1.5];
     let cam = Cam::new(model)?;
     let contact = Contact::new(&cam, model.follower);
-    let likely = PlausibleCams::of(model)?;
-    let separation = known(contact.separation(), likely.as_ref());
-    let places = places(separation, likely.as_ref());
-    // To meet a need for certain, its speed is raised by the relative uncertainty of the separation.
-    let uncertain = match separation {
-        Separation::At { rpm, error, .. } if likely.as_ref().is_some_and(|likely| likely.best.is_some()) => error / rpm,
+    let machines = PlausibleMachines::of(model, &cam)?;
+    let (separation, separation_errors) = known(contact.separation(), &machines);
+    let places = places(separation, &machines);
+    // To meet a need for certain on a measured cam, its speed is raised by the relative uncertainty of the separation.
+    let of_cam = match (separation, separation_errors) {
+        (Separation::At { rpm, .. }, Some([error, _])) => error.cam / rpm,
         _ => 0.0,
     };
+    let uncertain = UncertainMachine { of_cam, machines: machines.uncertain() };
     let range = asked.rpm.or(match separation {
         Separation::At { rpm, .. } => Some(USUAL.map(|part| part * rpm)),
         _ => model.study.map(|study| [study.rpm_min, study.rpm_max]),
@@ -408,11 +426,11 @@ pub fn design(model: &Model, asked: &Asked, watch: &dyn Watch) -> Result<Design,
             (Over::speed(model)?, speeds.all().collect())
         }
     };
-    // If another number varies, the cam changes with it, and the uncertainty of the loads is not known.
-    let noisy = likely.as_ref().filter(|likely| likely.best.is_some() && over.is_speed());
     let parts_at = |contact: &Contact<'_>| if over.is_speed() { separation } else { contact.separation() };
-    let force_at = |value: &f64, noisy: Option<&PlausibleCams>| -> Result<Option<(ForceAt, bool)>, StudyError> {
+    let force_at = |value: &f64, has_error: bool| -> Result<Option<(ForceAt, bool)>, StudyError> {
         let (model, cam) = over.model(*value)?;
+        let here = if over.is_speed() { None } else { Some(machines.elsewhere(&model, &cam)) };
+        let noisy = here.as_ref().unwrap_or(&machines).uncertain().filter(|_| has_error);
         let (contact, place) = (Contact::new(&cam, model.follower), over.place(*value));
         let parts = parts_at(&contact);
         let is_parted = place.rpm > parts.speed();
@@ -421,13 +439,14 @@ pub fn design(model: &Model, asked: &Asked, watch: &dyn Watch) -> Result<Design,
         }
         let least = contact.least(place.rpm);
         let of = |model: &Model, cam: &Cam| Some([Contact::new(cam, model.follower).least(place.rpm).value]);
-        let (error, largest) = (noisy.and_then(|likely| likely.error([least.value], of)), contact.largest(place.rpm));
+        let error = noisy.and_then(|machines| machines.error([least.value], of));
+        let largest = contact.largest(place.rpm);
         // On a dwell rounding is the only uncertainty.
         let rounding = tolerance::JET_ROUNDING.value * largest.abs();
-        let error = error.map(|[error]| error).filter(|error| *error > rounding);
+        let error = error.map(|[error]| error).filter(|error| error.total() > rounding);
         Ok(Some((ForceAt { place, least, error, largest }, is_parted)))
     };
-    let at_each = values.iter().map(|value| force_at(value, noisy)).collect::<Result<Vec<_>, _>>()?;
+    let at_each = values.iter().map(|value| force_at(value, true)).collect::<Result<Vec<_>, _>>()?;
     // Where the cam's velocity jumps there is no contact force, and the follower leaves the cam at any speed.
     let parted = values.iter().zip(&at_each).filter(|(_, at)| at.is_none_or(|(_, is_parted)| is_parted));
     let parted: Vec<f64> = parted.map(|(value, _)| *value).collect();
@@ -452,7 +471,10 @@ pub fn design(model: &Model, asked: &Asked, watch: &dyn Watch) -> Result<Design,
             let machine = Machine::new(cam.clone(), &model.follower, angular_velocity(place.rpm));
             Loads::among(model, &machine, asked.starts.as_deref(), unjudged).ok().map(|(loads, _)| loads.numbers())
         };
-        let errors = noisy.and_then(|likely| likely.error(loads.numbers(), of));
+        let (model, cam) = over.model(*value)?;
+        let here = if over.is_speed() { None } else { Some(machines.elsewhere(&model, &cam)) };
+        let noisy = here.as_ref().unwrap_or(&machines).uncertain();
+        let errors = noisy.and_then(|machines| machines.error(loads.numbers(), of));
         Ok((Loads { errors, ..loads }, AttractorsAt { place, found }))
     };
     let found = parted.par_iter().map(|value| pieces.each(|| with_errors(value))).collect::<Result<Vec<_>, _>>()?;
@@ -465,7 +487,7 @@ pub fn design(model: &Model, asked: &Asked, watch: &dyn Watch) -> Result<Design,
         let known_loads: Vec<_> = loads.iter().map(|loads| (loads.place.across(), loads.errors)).collect();
         let pieces = Pieces::new(watch, "loads between the values of the table", more.len());
         let at = |value: &f64| -> Result<(Option<ForceAt>, Option<Loads>), StudyError> {
-            let found = force_at(value, None)?;
+            let found = force_at(value, false)?;
             let force = found.map(|(at, _)| ForceAt { error: denser::errors(&known, *value).map(|[it]| it), ..at });
             if found.is_some_and(|(_, is_parted)| !is_parted) {
                 return Ok((force, None));
@@ -475,12 +497,15 @@ pub fn design(model: &Model, asked: &Asked, watch: &dyn Watch) -> Result<Design,
         };
         let found: Vec<_> =
             more.par_iter().map(|value| pieces.each(|| at(value))).collect::<Result<Vec<_>, StudyError>>()?;
-        let largest_error = |at: &ForceAt| {
-            let rpm = at.place.rpm;
+        let largest_error = |at: &ForceAt| -> Result<(f64, Option<[SourcedUncertainty; 1]>), StudyError> {
+            let (value, rpm) = (at.place.across(), at.place.rpm);
+            let (model, cam) = over.model(value)?;
+            let here = if over.is_speed() { None } else { Some(machines.elsewhere(&model, &cam)) };
+            let noisy = here.as_ref().unwrap_or(&machines).uncertain();
             let of = |model: &Model, cam: &Cam| Some([Contact::new(cam, model.follower).largest(rpm)]);
-            (at.place.across(), noisy.and_then(|likely| likely.error([at.largest], of)))
+            Ok((value, noisy.and_then(|machines| machines.error([at.largest], of))))
         };
-        let largest_errors = forces.iter().map(largest_error).collect();
+        let largest_errors = forces.iter().map(largest_error).collect::<Result<_, _>>()?;
         let mut curves = LoadCurves { forces: forces.clone(), loads: loads.clone(), largest_errors };
         for (force, loads) in found {
             curves.forces.extend(force);
@@ -523,7 +548,7 @@ pub fn design(model: &Model, asked: &Asked, watch: &dyn Watch) -> Result<Design,
     for (text, need) in &asked.needs {
         for lever in Lever::ALL {
             watch.at(&format!("the {lever} for \"{text}\""), needs.len() as u64, total);
-            needs.push(needs::answer(&changed, (need, text), lever, uncertain)?);
+            needs.push(needs::answer(&changed, (need, text), lever, &uncertain)?);
         }
     }
     let mut trades = Vec::new();
@@ -536,10 +561,11 @@ pub fn design(model: &Model, asked: &Asked, watch: &dyn Watch) -> Result<Design,
                 watch.at(&format!("the {parameter} against the {against} for \"{text}\""), 0, 0);
                 let value = |index: u32| from + (to - from) * f64::from(index) / f64::from(count.max(2) - 1);
                 let pair = |index: u32| -> Result<RequiredPair, StudyError> {
-                    let changed = changed.with(against, inside(value(index)));
-                    let found = needs::answer(&changed, (need, text), parameter, uncertain)?;
+                    let changed = changed.given(against, inside(value(index)));
+                    let found = needs::answer(&changed, (need, text), parameter, &uncertain)?;
                     let given = value(index);
-                    let Answer { value, error, other, other_error, again, .. } = found;
+                    let Answer { value, other, again, .. } = found;
+                    let [error, other_error] = [found.error, found.other_error].map(|it| it.map(|it| it.total()));
                     // For a number with an upper bound, the least value that will do comes first; it is 0 if no lower limit was found.
                     Ok(match found.is_upper_bound && !parameter.is_upper_bound() {
                         true => RequiredPair {
@@ -567,8 +593,10 @@ pub fn design(model: &Model, asked: &Asked, watch: &dyn Watch) -> Result<Design,
         geometry: CamGeometry::of(model, &cam),
         lever_ratio: model.cam.lever_ratio(),
         separation,
+        separation_errors,
         places,
-        measured: likely.map(|likely| likely.measured),
+        measured: machines.measured(),
+        errors: model.errors,
         over: over.varied(spacing),
         forces,
         round,

@@ -9,10 +9,12 @@ use serde::Serialize;
 use super::contact::Contact;
 use super::loads::{Load, Loads};
 use crate::bracket::{Width, halve};
+use crate::cam::Cam;
 use crate::known::Evidence;
 use crate::model::{Follower, Model, finite, parted};
 use crate::simulate::{Machine, SimulateError, angular_velocity};
 use crate::tolerance;
+use crate::uncertainty::{PlausibleMachines, SourcedUncertainty, UncertaintyParts};
 use crate::untrusted;
 
 /// A requirement that a machine must meet up to a speed.
@@ -139,12 +141,25 @@ pub(super) struct Changed<'a> {
     /// Lowest lift; `preload` is the spring force there, if the model fixes it.
     lowest: f64,
     preload: Option<f64>,
+    /// The number that is given with its value, whatever the model has.
+    given: Option<(Lever, f64)>,
 }
 
 impl<'a> Changed<'a> {
     pub fn new(model: &'a Model, contact: &Contact<'a>) -> Self {
         let lowest = contact.cam.lowest().value;
-        Self { model, contact: contact.clone(), lowest, preload: model.preload }
+        Self { model, contact: contact.clone(), lowest, preload: model.preload, given: None }
+    }
+
+    /// Returns a copy with a given value of one number.
+    pub fn given(&self, lever: Lever, value: f64) -> Self {
+        Self { given: Some((lever, value)), ..self.with(lever, value) }
+    }
+
+    /// Places another model on its cam, with the same given value.
+    fn on<'b>(&self, model: &'b Model, contact: &Contact<'b>) -> Changed<'b> {
+        let changed = Changed::new(model, contact);
+        self.given.map_or(changed.clone(), |(lever, value)| changed.given(lever, value))
     }
 
     /// Present value of the lever.
@@ -209,33 +224,28 @@ impl<'a> Changed<'a> {
 const SPEEDS: u32 = 24;
 
 /// The value of one number that meets a need.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 #[doc(hidden)]
 pub struct Answer {
     /// The need, in the user's words.
     pub need: String,
     /// The number to change.
-    #[serde(rename = "parameter")]
     pub lever: Lever,
     /// Present value, in the displayed unit.
     pub now: f64,
     /// Least value that meets the need, or the largest (see `is_upper_bound`); none if no value meets it.
     pub value: Option<f64>,
-    /// Uncertainty of `value` for a measured cam, at least the resolution of the runs for a load.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub error: Option<f64>,
+    /// SourcedUncertainty of `value`, at least the resolution of the runs for a load.
+    pub error: Option<SourcedUncertainty>,
     /// Unit of the values.
     pub unit: String,
     /// Whether `value` is the largest that meets the need.
     pub is_upper_bound: bool,
     /// Limit on the other side, if there is one: a damper that keeps the follower on the cam's rise may throw it off on the return.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub other: Option<f64>,
-    /// Uncertainty of `other`.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub other_error: Option<f64>,
+    /// SourcedUncertainty of `other`.
+    pub other_error: Option<SourcedUncertainty>,
     /// A tried value beyond `other` that meets the load requirement again.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub again: Option<f64>,
     /// Why there is no value, or a further remark.
     pub note: String,
@@ -243,28 +253,71 @@ pub struct Answer {
     pub known: Evidence,
 }
 
-/// Finds the value of one number that meets a need, the others kept. `uncertain` is the relative uncertainty of the separation speed.
+document!(Answer as it {
+    need: it.need,
+    parameter: it.lever,
+    now: it.now,
+    value: it.value,
+    error if_any: it.error.map(|error| error.total()),
+    error_parts if_any: it.error.map(|error| UncertaintyParts(error, "")),
+    unit: it.unit,
+    is_upper_bound: it.is_upper_bound,
+    other if_any: it.other,
+    other_error if_any: it.other_error.map(|error| error.total()),
+    other_error_parts if_any: it.other_error.map(|error| UncertaintyParts(error, "")),
+    again if_any: it.again,
+    note: it.note,
+    known: it.known,
+});
+
+/// What is uncertain about the machine whose needs are answered.
+pub(super) struct UncertainMachine<'a> {
+    /// Relative uncertainty of the separation speed that a measured cam causes.
+    pub of_cam: f64,
+    /// The machines that may be there; none if the machine is exact.
+    pub machines: Option<&'a PlausibleMachines<'a>>,
+}
+
+/// Finds the value of one number that meets a need, the others kept.
 pub(super) fn answer(
     of: &Changed<'_>,
     (need, text): (&Need, &str),
     lever: Lever,
-    uncertain: f64,
+    uncertain: &UncertainMachine<'_>,
 ) -> Result<Answer, SimulateError> {
     let known = need.known();
     let found = find(of, need, lever)?;
     let told = |value: f64| of.told(lever, value).0;
     // Where the least possible value will do, nothing is uncertain.
-    let certain = match found.value {
-        Some(_) if uncertain > 0.0 && found.note.is_empty() => {
-            Some(find(of, &Need { rpm: need.rpm * (1.0 + uncertain), ..*need }, lever)?)
+    let machines = uncertain.machines.filter(|_| found.value.is_some() && found.note.is_empty());
+    let certain = match uncertain.of_cam {
+        of_cam if of_cam > 0.0 && machines.is_some() => {
+            Some(find(of, &Need { rpm: need.rpm * (1.0 + of_cam), ..*need }, lever)?)
         }
         _ => None,
     };
-    let error = |of: fn(&Found) -> Option<f64>| {
-        let apart = (of(certain.as_ref()?)? - of(&found)?).abs();
+    let ends = |found: &Found| [found.value, found.other].into_iter().flatten().collect::<Vec<f64>>();
+    let there = |model: &Model, cam: &Cam| {
+        let found = find(&of.on(model, &Contact::new(cam, model.follower)), need, lever).ok()?;
+        Some(ends(&found)).filter(|found_there| found_there.len() == ends(&found).len())
+    };
+    let of_numbers = machines.and_then(|machines| machines.errors_of_numbers(&ends(&found), there));
+    let error = |of: fn(&Found) -> Option<f64>, index: usize| {
+        let of_cam = match (&certain, uncertain.of_cam) {
+            (_, 0.0) => 0.0,
+            (certain, _) => (of(certain.as_ref()?)? - of(&found)?).abs(),
+        };
+        let of_numbers = of_numbers.as_ref()?.get(index)?;
+        let error = SourcedUncertainty { cam: of_cam, ..*of_numbers };
         // At least as wide as the resolution of the runs.
         let width = if known == Evidence::Sampled { tolerance::NEEDED_BY_RUNS.value * of(&found)?.abs() } else { 0.0 };
-        Some(told(apart.max(width)))
+        let error = match error.total() {
+            0.0 if uncertain.of_cam == 0.0 => None,
+            0.0 => Some(SourcedUncertainty { cam: width, ..error }),
+            total if total < width => Some(error.times(width / total)),
+            _ => Some(error),
+        };
+        error.map(|error| error.times(told(1.0)))
     };
     let (now, unit) = of.told(lever, of.value(lever));
     let stuck = found
@@ -277,10 +330,10 @@ pub(super) fn answer(
         lever,
         now,
         value: found.value.map(told),
-        error: error(|found| found.value),
+        error: error(|found| found.value, 0),
         is_upper_bound: found.is_upper_bound,
         other: found.other.map(told),
-        other_error: error(|found| found.other),
+        other_error: error(|found| found.other, 1),
         again: found.again.map(told),
         unit,
         note: notes.collect::<Vec<_>>().join("; "),

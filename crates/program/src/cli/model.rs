@@ -25,7 +25,7 @@ pub(super) struct ModelArgument {
 /// Which numbers of the model are others than in its file.
 #[derive(clap::Args, Clone, Default)]
 pub(super) struct Changes {
-    /// Take VALUE for a number of the model: restitution=0.7, or a whole path, follower.mass=2 (may be repeated).
+    /// Take VALUE for a number of the model: restitution=0.7, a whole path, follower.mass=2, or an error, mass.error=0.1 (may be repeated).
     #[arg(long = "set", value_name = "NAME=VALUE", value_parser = change)]
     numbers: Vec<Change>,
     #[command(flatten)]
@@ -136,12 +136,19 @@ impl Changes {
     /// The model with the numbers changed, in its own units.
     pub(super) fn of(&self, model: &Model) -> Result<Model, CommandError> {
         let own = |change: Change| -> Result<(String, Numeral), CommandError> {
-            let path = if change.unit.is_empty() { "" } else { model.path_of(&change.name, &[])? };
+            // An error is in the unit of its number.
+            let name = error_of(&change.name).unwrap_or(&change.name);
+            let path = if change.unit.is_empty() { "" } else { model.path_of(name, &[])? };
             Ok((change.name.clone(), change.inside(path, &model.units)?))
         };
         let numbers: Vec<_> = self.all()?.into_iter().map(own).collect::<Result<_, _>>()?;
         Ok(model.changed(&numbers)?)
     }
+}
+
+/// Name of the number whose error is called by this name, if one is.
+fn error_of(name: &str) -> Option<&str> {
+    name.strip_suffix(".error")
 }
 
 /// `NAME=VALUE`.
@@ -239,7 +246,9 @@ impl ModelArgument {
     pub(super) fn varied(&self, model: &Model, name: &str, option: &str) -> Result<Parameter, CommandError> {
         let parameter = Parameter::named(model, name)?;
         let changes = self.changes.all()?;
-        let set = changes.iter().map(|change| Parameter::named(model, &change.name));
+        // The number that varies is exact, whatever its error.
+        let values = changes.iter().filter(|change| error_of(&change.name).is_none());
+        let set = values.map(|change| Parameter::named(model, &change.name));
         if set.collect::<Result<Vec<_>, _>>()?.contains(&parameter) {
             let name = parameter.name();
             let words = format!("--set {name}: no point would have that value, as {option} goes through others");

@@ -3,7 +3,7 @@
 use crate::figures::Across;
 use crate::figures::impacts::WHOLE_CAM;
 use crate::show::digits::with_error;
-use corner_impact::measured::Measured;
+use crate::show::sources::Sources;
 use corner_impact::model::Units;
 use corner_impact::study::design::contact::Separation;
 use corner_impact::study::design::loads::{Load, Loads};
@@ -52,10 +52,12 @@ fn speeds(found: &Design) -> Figure {
         (x(place), found.force(value), error.map(|error| found.force(error)))
     };
     let mut panels = Vec::new();
-    let least: Vec<Known> = curves.forces.iter().map(|at| known((at.place, at.least.value, at.error))).collect();
+    let least: Vec<Known> =
+        curves.forces.iter().map(|at| known((at.place, at.least.value, at.error.map(|it| it.total())))).collect();
     let greatest: Vec<Known> = curves.greatest_forces().into_iter().map(known).collect();
-    let first = band(OPEN, &least);
-    let second = band(if first.is_some() { "" } else { OPEN }, &greatest);
+    let open = open(found);
+    let first = band(&open, &least);
+    let second = band(if first.is_some() { "" } else { &open }, &greatest);
     let mut series: Vec<Series> = first.into_iter().chain(second).collect();
     series.extend(Series::line("greatest", Colour::Vermilion, Stroke::Dashed, plain(&greatest)).if_any());
     series.extend(Series::line("least", Colour::Blue, Stroke::Solid, plain(&least)).if_any());
@@ -73,19 +75,20 @@ fn speeds(found: &Design) -> Figure {
         // In the order of `Loads::numbers`.
         panels.extend(quantities.into_iter().enumerate().map(|(index, (name, unit, scale, load))| {
             let value = |loads: &Loads| {
-                let error = loads.errors.map(|errors| scale * errors[index]);
+                let error = loads.errors.map(|errors| scale * errors[index].total());
                 (x(loads.place), scale * loads.numbers()[index], error)
             };
             let values: Vec<Known> = curves.loads.iter().map(value).collect();
             let line = Series::line("", Colour::Vermilion, Stroke::Solid, plain(&values));
             let limits = load.map(|load| limit(found, &across, range, load)).unwrap_or_default();
-            let series = band("", &values).into_iter().chain([line]).chain(limits).collect();
+            // No load is below 0.
+            let series = band_above(0.0, "", &values).into_iter().chain([line]).chain(limits).collect();
             Panel::new(FigureAxis::new(name, unit), 0.15, series).with_zero()
         }));
     }
     let at = found.separation.speed();
     let label = || match found.separation {
-        Separation::At { rpm, error, .. } if Measured::noisy(&found.measured).is_some() => {
+        Separation::At { rpm, error, .. } if found.separation_errors.is_some() => {
             let (digits, error) = with_error(error);
             format!("separation, {} ± {} rpm", digits.text(rpm), digits.text(error))
         }
@@ -116,12 +119,18 @@ fn plain(values: &[Known]) -> impl Iterator<Item = [f64; 2]> {
     values.iter().map(|(x, y, _)| [*x, *y])
 }
 
-/// The band that the uncertainty due to a measured cam leaves around values; `None` where there is no uncertainty.
+/// The band that the uncertainty of the machine leaves around values; `None` where there is no uncertainty.
 fn band(label: &str, values: &[Known]) -> Option<Series> {
+    band_above(f64::NEG_INFINITY, label, values)
+}
+
+/// The band of values that are not below `least`.
+fn band_above(least: f64, label: &str, values: &[Known]) -> Option<Series> {
     let is_open = values.iter().any(|(.., error)| error.is_some_and(|error| error > 0.0));
     let edges = values.iter().map(|(x, y, error)| {
         let error = error.unwrap_or(f64::NAN);
-        [*x, y - error, y + error]
+        let low = y - error;
+        [*x, if low < least { least } else { low }, y + error]
     });
     is_open.then(|| Series::band(label, Colour::Grey, edges))
 }
@@ -157,7 +166,7 @@ fn trades(found: &Design) -> Figure {
         let [bound, beyond] = if trade.parameter.is_upper_bound() { ["most", "least"] } else { ["least", "most"] };
         let error = |pair: &RequiredPair| Some((pair.given, pair.found?, pair.error));
         let known: Vec<Known> = trade.pairs.iter().filter_map(error).collect();
-        let mut series: Vec<Series> = band(OPEN, &known).into_iter().collect();
+        let mut series: Vec<Series> = band(&open(found), &known).into_iter().collect();
         series.push(line(if is_range { bound } else { "" }, Stroke::Solid, |pair| pair.found));
         if is_range {
             let error = |pair: &RequiredPair| Some((pair.given, pair.other?, pair.other_error));
@@ -177,5 +186,9 @@ fn trades(found: &Design) -> Figure {
     Figure::new(&title, FigureAxis::new(&against, unit).over(range), panels.collect())
 }
 
-/// Label, once in a panel, of the band that shows the uncertainty due to a measured cam.
-const OPEN: &str = "± what the cam leaves open";
+/// Label, once in a panel, of the band that shows the uncertainty of the machine.
+fn open(found: &Design) -> String {
+    let sources = Sources::of(&found.measured, found.errors);
+    let leave = if sources.errors.are_none() { "leaves" } else { "leave" };
+    format!("± what {} {leave} open", sources.name())
+}

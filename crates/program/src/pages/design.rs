@@ -2,17 +2,17 @@
 
 use crate::pages::cam::follower;
 use crate::pages::source;
-use crate::pages::speeds::measured_speed;
 use crate::show::Paged;
 use crate::show::block::{Block, Column, Span, Table, TextMark, Words, words};
 use crate::show::digits::{Digits, with_error};
 use crate::show::page::text;
+use crate::show::sources::Sources;
 use crate::show::words::noise_unknown;
 use corner_impact::known::Evidence;
-use corner_impact::measured::Measured;
 use corner_impact::study::design::contact::Separation;
 use corner_impact::study::design::needs::Answer;
 use corner_impact::study::design::{Design, RequiredPair, SeparationPlace, Trade};
+use corner_impact::uncertainty::SourcedUncertainty;
 
 /// A column of numbers with a gap before it.
 fn number(head: impl Into<Words>) -> Column {
@@ -46,15 +46,21 @@ impl Paged for Design {
         page.extend(needs(self));
         page.extend(rounded(self));
         page.extend(self.trades.iter().flat_map(trade));
+        page.extend(sources(self).map(|sources| Block::Note(sources.note().into())));
         page
     }
+}
+
+/// What is uncertain about the machine.
+fn sources(found: &Design) -> Option<Sources<'_>> {
+    Sources::of(&found.measured, found.errors).if_any()
 }
 
 /// States in a sentence where the follower leaves the cam.
 pub(crate) fn separation(found: &Design) -> Words {
     let degrees = |angle: f64| (angle.to_degrees(), Digits::Fixed(3));
     match found.separation {
-        Separation::At { rpm, error, cam_angle, angle_error } => match Measured::noisy(&found.measured) {
+        Separation::At { rpm, cam_angle, angle_error, .. } => match sources(found) {
             None => words![
                 "The follower leaves the cam first at ",
                 (rpm, Digits::Fixed(6)),
@@ -62,14 +68,14 @@ pub(crate) fn separation(found: &Design) -> Words {
                 degrees(cam_angle),
                 " deg (computed from the contact force)."
             ],
-            Some(cam) if !found.places.is_empty() => words![
+            Some(sources) if !found.places.is_empty() => words![
                 "The follower leaves the cam first at ",
-                measured_speed(rpm, Digits::Fixed(6), error.is_finite().then_some(error), Some(cam)),
+                sources.speed(rpm, Digits::Fixed(6), found.separation_errors.map(|[error, _]| error)),
                 ". Where is open: ",
                 Words::joined(found.places.iter().map(place).collect::<Vec<_>>(), ", "),
                 " (computed from the contact force)."
             ],
-            Some(cam) => words![
+            Some(sources) => words![
                 "The follower leaves the cam at ",
                 with_open(
                     cam_angle.to_degrees(),
@@ -77,7 +83,7 @@ pub(crate) fn separation(found: &Design) -> Words {
                     Digits::Fixed(3)
                 ),
                 " deg first (computed from the contact force), at ",
-                measured_speed(rpm, Digits::Fixed(6), error.is_finite().then_some(error), Some(cam)),
+                sources.speed(rpm, Digits::Fixed(6), found.separation_errors.map(|[error, _]| error)),
                 "."
             ],
         },
@@ -127,14 +133,14 @@ pub(crate) fn margin(found: &Design) -> Option<Words> {
     }
     let below = BELOW * found.separation.speed();
     let last = found.forces.iter().rfind(|at| at.place.rpm < below)?;
-    let force = with_open(found.force(last.least.value), last.error.map(|error| found.force(error)), SIX);
+    let force = with_open(found.force(last.least.value), last.error.map(|error| found.force(error.total())), SIX);
     let (rpm, angle) = ((last.place.rpm, SIX), (last.least.angle.to_degrees(), Digits::Fixed(3)));
     let unit = found.units.force.name();
     Some(words!["At ", rpm, " rpm the cam presses with ", force, format!(" {unit} at least, at "), angle, " deg."])
 }
 
 pub(crate) fn speeds(found: &Design) -> Vec<Block> {
-    let is_open = Measured::noisy(&found.measured).is_some();
+    let is_open = sources(found).is_some();
     let force = found.units.force.name();
     let mut columns =
         vec![number(found.over.head()), number(format!("least force {force}")), number("at deg").missable(2)];
@@ -158,7 +164,7 @@ pub(crate) fn speeds(found: &Design) -> Vec<Block> {
         let mut cells = vec![words![(value, SIX)]];
         match found.forces.iter().find(|at| at.place.across() == value) {
             Some(at) => cells.extend([
-                with_open(found.force(at.least.value), at.error.map(|error| found.force(error)), SIX),
+                with_open(found.force(at.least.value), at.error.map(|error| found.force(error.total())), SIX),
                 words![(at.least.angle.to_degrees(), Digits::Fixed(2))],
             ]),
             None => cells.extend([Words::default(), Words::default()]),
@@ -167,7 +173,7 @@ pub(crate) fn speeds(found: &Design) -> Vec<Block> {
             let three = |value: f64| words![(value, Digits::Aligned(3))];
             match found.loads.iter().find(|loads| loads.place.across() == value) {
                 Some(loads) => {
-                    let error = |index: usize| loads.errors.map(|errors| errors[index]);
+                    let error = |index: usize| loads.errors.map(|errors| errors[index].total());
                     // In per cent, which no document field has.
                     let off_cam = error(2).map(|error| 100.0 * error);
                     let force = error(4).map(|error| found.force(error));
@@ -204,21 +210,52 @@ pub(crate) fn speeds(found: &Design) -> Vec<Block> {
         );
         blocks.push(Block::Note(words.as_str().into()));
         if found.loads.iter().any(|loads| loads.errors.is_some()) {
-            let words = "± is the uncertainty of the measured cam, from runs with cams that fit its rows as well. A load that may be 0 shows its \
-                         upper bound. The last three columns are rounded to their uncertainty; --json has the ± of each.";
-            blocks.push(Block::Note(words.into()));
+            let words = match sources(found) {
+                Some(Sources { cam: Some(_), errors }) if errors.are_none() => {
+                    "the uncertainty of the measured cam, from runs with cams that fit its rows as well".to_owned()
+                }
+                Some(sources) => {
+                    format!("the uncertainty of {}, from runs with machines that are as likely", sources.name())
+                }
+                None => String::new(),
+            };
+            let words = format!(
+                "± is {words}. A load that may be 0 shows its upper bound. The last three columns are rounded to their uncertainty; --json has \
+                 the ± of each."
+            );
+            blocks.push(Block::Note(words.as_str().into()));
+            blocks.extend(hardest(found).map(|words| Block::Note(words)));
         }
     }
     blocks
 }
 
+/// Where the uncertainty of the impact speed comes from, at the last value with loads.
+fn hardest(found: &Design) -> Option<Words> {
+    let sources = sources(found).filter(|sources| !sources.errors.are_none())?;
+    let loads = found.loads.iter().rfind(|loads| loads.impact_speed > 0.0 && loads.errors.is_some())?;
+    let error = loads.errors.map(|errors| errors[0])?;
+    let at = if found.over.is_speed() { " rpm" } else { "" };
+    let (digits, total) = with_error(error.total());
+    Some(words![
+        "± of the impact at ",
+        (loads.place.across(), SIX),
+        format!("{at}: "),
+        (total, digits),
+        format!(", {}.", sources.parts(&error))
+    ])
+}
+
 fn limits(found: &Design) -> Vec<Block> {
-    let is_open = Measured::noisy(&found.measured).is_some();
+    let open = match sources(found) {
+        Some(Sources { cam: Some(_), errors }) if errors.are_none() => "; for the cam as drawn, with the ± above",
+        Some(_) => "; for the machine as it is given, with the ± above",
+        None => "",
+    };
     let sentence = |passed: &corner_impact::study::design::Passed| {
         let name = passed.limit.to_string().replace('-', " ");
         let limit = words![format!("{name} of "), (passed.value, SIX), format!(" {}: ", passed.unit)];
         let values = if found.over.is_speed() { "speeds" } else { "values" };
-        let open = if is_open { "; for the cam as drawn, with the ± above" } else { "" };
         let lowest = found.loads.first().map(|loads| loads.place.across());
         match passed.at {
             Some(at) => {
@@ -253,7 +290,8 @@ fn limits(found: &Design) -> Vec<Block> {
 }
 
 fn needs(found: &Design) -> Vec<Block> {
-    let is_open = Measured::noisy(&found.measured).is_some();
+    let sources = sources(found);
+    let total = |error: Option<SourcedUncertainty>| error.map(|error| error.total());
     let mut blocks = Vec::new();
     for of_need in found.needs.chunk_by(|one, two| one.need == two.need) {
         let columns = [
@@ -271,9 +309,9 @@ fn needs(found: &Design) -> Vec<Block> {
             let digits = if *known == Evidence::Computed { Digits::Significant(9) } else { Digits::Significant(3) };
             let bound = if answer.is_upper_bound { "at most" } else { "at least" };
             // If any value will do, there is no uncertainty, and the note says so.
-            let unknown = if is_open && answer.error.is_none() && note.is_empty() { " ± ?" } else { "" };
-            let value = answer.value.map(|value| words![with_open(value, answer.error, digits), unknown]);
-            let other = answer.other.map(|other| with_open(other, answer.other_error, digits));
+            let unknown = if sources.is_some() && answer.error.is_none() && note.is_empty() { " ± ?" } else { "" };
+            let value = answer.value.map(|value| words![with_open(value, total(answer.error), digits), unknown]);
+            let other = answer.other.map(|other| with_open(other, total(answer.other_error), digits));
             let (bound, to) = match (value, other) {
                 (None, _) => ("", "none".into()),
                 (Some(value), None) => (bound, value),
@@ -293,6 +331,14 @@ fn needs(found: &Design) -> Vec<Block> {
         blocks.push(Block::Heading(of_need[0].need.as_str().into()));
         blocks.push(Block::Table(table));
         blocks.push(Block::Note("Each alone, with the others kept.".into()));
+        if let Some(sources) = sources.filter(|sources| !sources.errors.are_none()) {
+            let part = |answer: &Answer| {
+                let error = answer.error?;
+                let (digits, total) = with_error(error.total());
+                Some(words![format!("{} ± ", answer.lever), (total, digits), format!(": {}", sources.parts(&error))])
+            };
+            blocks.push(Block::List(of_need.iter().filter_map(part).collect()));
+        }
     }
     blocks
 }
@@ -317,7 +363,7 @@ fn rounded(found: &Design) -> Vec<Block> {
     vec![Block::Heading("Jumps of the acceleration".into()), Block::paragraph(words), Block::Table(table)]
 }
 
-/// A load with its uncertainty due to the cam, or in the digits that this leaves. A load that may be zero is shown as an upper bound.
+/// A load with its uncertainty, or in the digits that this leaves. A load that may be zero is shown as an upper bound.
 fn load(value: f64, error: Option<f64>, digits: Digits, is_told: bool) -> Words {
     /// Relative uncertainty that leaves a value three digits.
     const KNOWN: f64 = 0.005;
@@ -335,7 +381,7 @@ fn load(value: f64, error: Option<f64>, digits: Digits, is_told: bool) -> Words 
     }
 }
 
-/// A value with its uncertainty due to the cam.
+/// A value with its uncertainty.
 fn with_open(value: f64, error: Option<f64>, digits: Digits) -> Words {
     match error.map(with_error) {
         Some((digits, error)) => words![(value, digits), " ± ", (error, digits)],

@@ -1,16 +1,15 @@
 //! The page of `locate`: the corner impacts in a range of speeds, and the scenario at each.
 
-use crate::pages::speeds::measured_speed;
 use crate::show::Paged;
 use crate::show::block::{Block, Column, Table, TextMark, Words, words};
 use crate::show::digits::Digits;
+use crate::show::sources::Sources;
 use crate::show::words;
 use corner_impact::border_collision::Classification;
 use corner_impact::corner::Way;
 use corner_impact::corner::candidates::{MOST_IMPACTS, NEAREST_OTHER};
 use corner_impact::corner::range::{FoundCornerImpacts, Recaptured, UndecidedSpeeds};
 use corner_impact::corner::shots::{SHOT_RATIO, VELOCITIES};
-use corner_impact::measured::Measured;
 use corner_impact::orbit::branch::GRID_RATIO;
 use corner_impact::study::locate::{Happens, Located, LocatedImpact};
 
@@ -34,11 +33,12 @@ impl Paged for Located {
             let words = format!("{}: {}. {}", index + 1, verdict(impact), disagreement(impact));
             page.extend([Block::Gap, Block::paragraph(words)]);
         }
-        for (index, impact) in self.found.iter().enumerate() {
-            if let Some(cam) = Measured::noisy(&self.measured) {
-                let speed = measured_speed(impact.at.speed_rpm(), Digits::Fixed(9), impact.speed_error, Some(cam));
+        if let Some(sources) = Sources::of(&self.measured, self.errors).if_any().filter(|_| !self.found.is_empty()) {
+            for (index, impact) in self.found.iter().enumerate() {
+                let speed = sources.speed(impact.at.speed_rpm(), Digits::Fixed(9), impact.speed_error);
                 page.extend([Block::Gap, Block::paragraph(words![format!("{}: ", index + 1), speed])]);
             }
+            page.extend([Block::Gap, Block::paragraph(sources.note())]);
         }
         page.push(Block::Heading("What happens there".into()));
         page.extend(meanings(&self.found));

@@ -1,14 +1,14 @@
 //! The page of `orbit`: each periodic orbit, its multipliers, and its impacts on the cam.
 
 use corner_impact::known::{Complete, Evidence};
-use corner_impact::measured::Measured;
 
 use crate::pages::some_of;
 use crate::show::block::{Block, Span, TextMark, Words, words};
 use crate::show::digits::{Digits, with_error};
+use crate::show::sources::Sources;
 use crate::show::{Paged, words};
 use corner_impact::orbit::{Course, Eigenvalue, PeriodicOrbit, Stability, Undecided};
-use corner_impact::study::orbit::{OrbitUncertainty, Orbits};
+use corner_impact::study::orbit::{OrbitErrors, OrbitUncertainty, Orbits};
 
 impl Paged for Orbits {
     fn blocks(&self) -> Vec<Block> {
@@ -21,8 +21,8 @@ impl Paged for Orbits {
         let mut page = vec![Block::Line((TextMark::Heading, title.as_str()).into())];
         for (index, orbit) in self.orbits.iter().enumerate() {
             let error = self.errors.get(index).copied().flatten();
-            page.extend(one(index + 1, orbit, error.as_ref()));
-            page.extend(self.measured.as_ref().map(|cam| left_open(cam, error.as_ref())));
+            page.extend(one(index + 1, orbit, error.as_ref().map(|error| &error.total)));
+            page.extend(sources(self).map(|sources| left_open(sources, error.as_ref())));
         }
         if self.orbits.iter().any(|orbit| orbit.impacts().next().is_some()) {
             page.push(Block::paragraph(
@@ -33,6 +33,7 @@ impl Paged for Orbits {
         page.extend(some_of(&self.undecided, "place", undecided));
         page.extend(how_known(&self.orbits));
         page.extend(words::hypotheses(&self.hypotheses).map(Block::paragraph));
+        page.extend(sources(self).map(|sources| Block::paragraph(sources.note())));
         if self.measured.is_some() && !self.complete.is_empty() {
             page.push(Block::paragraph("What is proved is proved of the cam as it is drawn through the rows."));
         }
@@ -66,12 +67,17 @@ fn how_known(orbits: &[PeriodicOrbit]) -> Option<Block> {
     })
 }
 
+/// What is uncertain about the machine of the orbits.
+fn sources(found: &Orbits) -> Option<Sources<'_>> {
+    Sources::of(&found.measured, found.deviations).if_any().filter(|_| !found.errors.is_empty())
+}
+
 /// Uncertainty of an orbit's numbers, and its cause.
-fn left_open(cam: &Measured, error: Option<&OrbitUncertainty>) -> Block {
-    let why = words::accuracy(cam);
-    let Some(error) = error else {
+fn left_open(sources: Sources<'_>, error: Option<&OrbitUncertainty>) -> Block {
+    let (why, machines) = (sources.why(), sources.machines());
+    let Some(OrbitUncertainty { total: error, cam, numbers }) = error else {
         return Block::paragraph(format!(
-            "How far that is off is not known: cams that are as likely have no such orbit nearby ({why})."
+            "How far that is off is not known: {machines} that are as likely have no such orbit nearby ({why})."
         ));
     };
     let of = |error: f64| Digits::Aligned(2).text(error);
@@ -92,10 +98,14 @@ fn left_open(cam: &Measured, error: Option<&OrbitUncertainty>) -> Block {
         ]);
     }
     text.push(format!(": {why}."));
+    if sources.cam.is_some() && !sources.errors.are_none() {
+        let [cam, numbers] = [cam, numbers].map(|part| of(part.multiplier));
+        text.push(format!(" Of a multiplier's ±, {cam} is from the cam and {numbers} from the numbers."));
+    }
     Block::paragraph(text)
 }
 
-/// The given number of places, or fewer if the uncertainty due to the cam is larger.
+/// The given number of places, or fewer if the uncertainty is larger.
 fn known(places: usize, error: Option<f64>) -> Digits {
     match error.filter(|error| *error > 0.0).map(|error| with_error(error).0) {
         Some(Digits::Fixed(left)) => Digits::Fixed(left.min(places)),
@@ -103,7 +113,7 @@ fn known(places: usize, error: Option<f64>) -> Digits {
     }
 }
 
-fn one(number: usize, orbit: &PeriodicOrbit, error: Option<&OrbitUncertainty>) -> Vec<Block> {
+fn one(number: usize, orbit: &PeriodicOrbit, error: Option<&OrbitErrors>) -> Vec<Block> {
     /// Most impacts that are shown of an orbit.
     const SHOWN: usize = 8;
     let impacts = orbit.impacts().count();
@@ -118,7 +128,7 @@ fn one(number: usize, orbit: &PeriodicOrbit, error: Option<&OrbitUncertainty>) -
     let stable = match stability {
         Stability::Neutral => (TextMark::Doubtful, words::stability(stability)),
         _ if error.is_some_and(|error| (largest - 1.0).abs() <= error.multiplier) => {
-            (TextMark::Doubtful, "stable or unstable, which the cam leaves open")
+            (TextMark::Doubtful, "stable or unstable, which its ± leaves open")
         }
         Stability::Stable => (TextMark::Good, words::stability(stability)),
         Stability::Unstable => (TextMark::Doubtful, words::stability(stability)),

@@ -3,9 +3,9 @@
 use crate::show::Paged;
 use crate::show::block::{Block, Column, Table, TextMark, Words, words};
 use crate::show::digits::{Digits, with_error};
+use crate::show::sources::Sources;
 use crate::show::words;
 use corner_impact::elementary;
-use corner_impact::measured::Measured;
 use corner_impact::orbit::long_run::{Budget, Kind};
 use corner_impact::study::attractors::Transition;
 use corner_impact::study::speeds::{AttractorRow, SpeedSurvey, kinds};
@@ -32,7 +32,7 @@ impl Paged for SpeedSurvey {
         page.extend(self.off_for_good().map(|off| Block::paragraph(off.words)));
         page.extend(dangers(self));
         page.push(Block::paragraph(how(self)));
-        page.extend(self.measured.iter().filter_map(cam));
+        page.extend(uncertainty(self));
         page.extend(self.failed.iter().map(|failed| {
             let what = match failed.starts {
                 Some(1) => "one start".to_owned(),
@@ -64,7 +64,7 @@ fn ends(found: &SpeedSurvey) -> impl Iterator<Item = &Transition> {
     found.attractors.iter().flat_map(|attractor| attractor.birth.iter().chain(&attractor.death))
 }
 
-/// A value at which an attractor begins or ends, in the digits that the uncertainty of a measured cam leaves.
+/// A value at which an attractor begins or ends, in the digits that its uncertainty leaves.
 fn open_to(found: &SpeedSurvey, value: f64) -> Words {
     let usual = if found.over.is_speed() { Digits::Fixed(2) } else { Digits::Significant(5) };
     let end = ends(found).find(|end| end.value() == value);
@@ -76,12 +76,13 @@ fn unit(found: &SpeedSurvey) -> String {
     found.over.words("").trim_end().to_owned()
 }
 
-/// Uncertainty of an end due to a measured cam, for the choice of digits, rpm. An end of unknown uncertainty gets the smallest known
+/// Uncertainty of an end, for the choice of digits, rpm. An end of unknown uncertainty gets the smallest known
 /// one. If none is known, it gets no decimals.
 fn open(found: &SpeedSurvey, end: &Transition) -> Option<f64> {
     const WHOLE: f64 = 10.0;
-    let best = || ends(found).filter_map(|end| end.error).reduce(f64::min);
-    end.error.or_else(|| Measured::noisy(&found.measured).map(|_| best().unwrap_or(WHOLE)))
+    let best = || ends(found).filter_map(|end| end.error).map(|error| error.total()).reduce(f64::min);
+    let total = end.error.map(|error| error.total());
+    total.or_else(|| sources(found).map(|_| best().unwrap_or(WHOLE)))
 }
 
 /// Speed at which the follower first leaves the cam.
@@ -93,24 +94,17 @@ pub(crate) fn detachment(found: &SpeedSurvey) -> Words {
         };
     };
     match found.detachment() {
-        Some([rpm, _]) => measured_speed(rpm, Digits::Fixed(6), found.detachment_error(), found.measured.as_ref()),
+        Some([rpm, _]) => {
+            Sources::of(&found.measured, found.errors).speed(rpm, Digits::Fixed(6), found.detachment_error())
+        }
         None if separation.speed() > found.range[1] => "no speed in between".into(),
         None => format!("{} rpm already, or below", found.range[0]).into(),
     }
 }
 
-/// A speed with its uncertainty due to a measured cam, and the cause.
-pub(crate) fn measured_speed(rpm: f64, digits: Digits, error: Option<f64>, cam: Option<&Measured>) -> Words {
-    match (error, cam.filter(|cam| cam.is_noisy)) {
-        (Some(error), Some(cam)) => {
-            let (digits, error) = with_error(error);
-            words![(rpm, digits), " ± ", (error, digits), format!(" rpm: {}", words::accuracy(cam))]
-        }
-        (None, Some(cam)) => {
-            words![(rpm, digits), format!(" rpm, and how far off is not known: {}", words::accuracy(cam))]
-        }
-        _ => words![(rpm, digits), " rpm"],
-    }
+/// What is uncertain about the machine.
+fn sources(found: &SpeedSurvey) -> Option<Sources<'_>> {
+    Sources::of(&found.measured, found.errors).if_any()
 }
 
 /// Method of the search, and what it can miss.
@@ -118,7 +112,7 @@ pub(crate) fn how(found: &SpeedSurvey) -> String {
     const LOCATED: &str = " A speed with six decimals was located by its equations; others are known from runs alone, to the digits shown.";
     const VALUE_LOCATED: &str = " A value with nine digits was located by its equations; others are known from runs alone, to the \
                                  digits shown.";
-    let located = match (Measured::noisy(&found.measured), found.over.is_speed()) {
+    let located = match (sources(found), found.over.is_speed()) {
         (Some(_), _) => "",
         (None, true) => LOCATED,
         (None, false) => VALUE_LOCATED,
@@ -145,17 +139,34 @@ pub(crate) fn how(found: &SpeedSurvey) -> String {
     )
 }
 
-/// Meaning of the errors if the cam is measured.
-pub(crate) fn cam(measured: &Measured) -> Option<Block> {
-    if let Some(why) = &measured.noise_unknown {
-        return Some(Block::paragraph(words::noise_unknown(why)));
+/// Meaning of the errors, and where those of each event come from.
+pub(crate) fn uncertainty(found: &SpeedSurvey) -> Vec<Block> {
+    let unknown = found.measured.as_ref().and_then(|measured| measured.noise_unknown.as_deref());
+    let mut blocks: Vec<Block> = unknown.map(|why| Block::paragraph(words::noise_unknown(why))).into_iter().collect();
+    let Some(sources) = sources(found) else { return blocks };
+    let (name, machines) = (sources.name(), sources.machines());
+    let leave = if machines == "cams" { "leaves" } else { "leave" };
+    blocks.push(Block::paragraph(format!(
+        "± is what {name} {leave} open, {}: how far the event moves among {machines} that are as likely. It is ? where that is not known: the \
+         event is not there on each of those {machines}, or runs could not tell.",
+        sources.why()
+    )));
+    if !sources.errors.are_none() {
+        blocks.push(Block::List(found.attractors.iter().flat_map(|attractor| parts(sources, attractor)).collect()));
     }
-    let words = format!(
-        "± is what the cam leaves open, {}: how far the event moves among cams that are as likely. It is ? where that is not known: \
-         the event is not there on each of those cams, or runs could not tell.",
-        words::accuracy(measured)
-    );
-    measured.is_noisy.then(|| Block::paragraph(words))
+    blocks.push(Block::paragraph(sources.note()));
+    blocks
+}
+
+/// Parts of the uncertainty of an attractor's ends.
+fn parts(sources: Sources<'_>, attractor: &AttractorRow) -> impl Iterator<Item = Words> {
+    let of_end = move |(what, end): (&'static str, &Option<Transition>)| {
+        let (end, error) = end.as_ref().and_then(|end| Some((end, end.error?)))?;
+        let (digits, total) = with_error(error.total());
+        let [id, from] = [format!("{} {what} ", attractor.id), format!(" rpm: {}", sources.parts(&error))];
+        Some(words![id, (end.value(), digits), " ± ", (total, digits), from])
+    };
+    [("from", &attractor.birth), ("to", &attractor.death)].into_iter().filter_map(of_end)
 }
 
 /// Frequency of rests of a motion that bounces chaotically in between; for how long chaos was seen, where runs were too short for that.

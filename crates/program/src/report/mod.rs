@@ -15,7 +15,7 @@ use crate::show::command::command;
 use crate::show::words;
 use corner_impact::agreement::by_quantity;
 use corner_impact::cam::{Cam, Jet, Side};
-use corner_impact::measured::{Measured, PlausibleCams};
+use corner_impact::measured::Measured;
 use corner_impact::model::{Model, ModelError, Units};
 use corner_impact::paper::{Claims, Context, LedgerError};
 use corner_impact::progress::Watch;
@@ -27,6 +27,7 @@ use corner_impact::study::design::{Asked, Design, design, known};
 use corner_impact::study::speeds::{SpeedSurvey, speeds, usual_range};
 use corner_impact::study::survey::{Over, Spacing};
 use corner_impact::study::verify::{ComparisonTally, External, Verification, verify_watched};
+use corner_impact::uncertainty::{PlausibleMachines, SourcedUncertainty};
 use corner_impact_plot::Look;
 use corner_impact_plot::layout::WIDTH;
 
@@ -47,6 +48,8 @@ pub struct Report {
     pub claims: Option<Claims>,
     /// Speed at which the follower first leaves the cam, from the contact force.
     pub separation: Separation,
+    /// Uncertainty of the machine in the separation speed, rpm; none if the machine is exact.
+    pub separation_error: Option<SourcedUncertainty>,
     /// Accuracy of the cam, if it is measured.
     pub measured: Option<Measured>,
     /// Contact force below separation; `None` if the follower leaves the cam at any speed, or never.
@@ -254,8 +257,8 @@ impl Report {
         };
         let commands = commands(model, range, verification.is_ok());
         let contact = Contact::new(&cam, model.follower);
-        let likely = PlausibleCams::of(model)?;
-        let separation = known(contact.separation(), likely.as_ref());
+        let machines = PlausibleMachines::of(model, &cam)?;
+        let (separation, separation_errors) = known(contact.separation(), &machines);
         let (margin, units) = (margin(&contact, &model.units), model.units.clone());
         Ok(Self {
             agrees,
@@ -265,7 +268,8 @@ impl Report {
             through,
             claims,
             separation,
-            measured: likely.map(|likely| likely.measured),
+            separation_error: separation_errors.map(|[error, _]| error),
+            measured: machines.measured(),
             margin,
             look: Look::default(),
             units,

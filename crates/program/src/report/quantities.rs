@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use corner_impact::flight::Flight;
-use corner_impact::model::{CORNER_ROUNDING, LEVER_RATIO, MODEL_NUMBERS, Model, ModelNumber, Units};
+use corner_impact::model::{CORNER_ROUNDING, LEVER_RATIO, MODEL_NUMBERS, Model, ModelNumber};
 
 /// A number of a model.
 #[derive(Clone, Debug, Serialize)]
@@ -16,6 +16,9 @@ pub struct ReportQuantity {
     pub meaning: String,
     /// Value of the number.
     pub value: f64,
+    /// Standard deviation of the value; none for an exact number.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub error: Option<f64>,
     /// Unit; empty for a pure number.
     pub unit: String,
 }
@@ -42,13 +45,14 @@ pub(crate) fn quantities(model: &Model) -> Vec<ReportQuantity> {
         model.study.iter().flat_map(|study| [("study.rpm_min", study.rpm_min), ("study.rpm_max", study.rpm_max)]),
     );
     let mut quantities: Vec<ReportQuantity> =
-        numbers.into_iter().map(|(field, value)| written(&model.units, field, value)).collect();
+        numbers.into_iter().map(|(field, value)| written(model, field, value)).collect();
     let flight = Flight::new(&model.follower);
     let follows = |symbol, meaning: &str, value, unit: &str| ReportQuantity {
         field: String::new(),
         symbol,
         meaning: meaning.into(),
         value,
+        error: None,
         unit: unit.into(),
     };
     quantities.push(follows("ζ", "damping over twice the mass", flight.zeta(), "1/s"));
@@ -56,7 +60,8 @@ pub(crate) fn quantities(model: &Model) -> Vec<ReportQuantity> {
     quantities
 }
 
-fn written(units: &Units, field: &str, value: f64) -> ReportQuantity {
+fn written(model: &Model, field: &str, value: f64) -> ReportQuantity {
     let (symbol, meaning) = ModelNumber::of(field).map_or(("", ""), |number| (number.symbol, number.meaning));
-    ReportQuantity { field: field.into(), symbol, meaning: meaning.into(), value, unit: units.of_number(field) }
+    let (error, unit) = (model.error_of(field), model.units.of_number(field));
+    ReportQuantity { field: field.into(), symbol, meaning: meaning.into(), value, error, unit }
 }

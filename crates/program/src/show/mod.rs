@@ -12,6 +12,7 @@ pub mod markdown;
 pub(crate) mod matplotlib;
 pub mod notes;
 pub(crate) mod page;
+pub(crate) mod sources;
 pub(crate) mod words;
 
 pub use page::{Page, Paged};

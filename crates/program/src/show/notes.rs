@@ -1,7 +1,7 @@
 //! Remarks on a model before any computation, a sentence each.
 
 use crate::show::digits::Digits;
-use crate::show::words::{accuracy, known_to, noise_unknown};
+use crate::show::words::{accuracy, known_to, listed, noise_unknown, spoken};
 use corner_impact::cam::Stray;
 use corner_impact::measured::{CamUncertainty, Remarks};
 use corner_impact::model::{Model, ModelError, TableProfile};
@@ -60,8 +60,23 @@ fn slips(profile: &TableProfile, strays: &[Stray]) -> Vec<String> {
     slips
 }
 
-/// Uncertainty of the cam, for an answer without a ± of its own; `None` if the rows have no noise.
+/// Uncertainty of the machine, for an answer without a ± of its own; `None` if the rows have no noise and the numbers no errors.
 pub fn as_drawn(model: &Model) -> Result<Option<String>, ModelError> {
+    let numbers: Vec<String> = model.errors.uncertain().map(|(name, _)| spoken(name)).collect();
+    let exact = (!numbers.is_empty()).then(|| {
+        let numbers = listed(&numbers);
+        format!(
+            "what follows is of the values of {numbers}, whose errors give it no ±: `speeds`, `design`, `locate`, `verify` and `orbit` have one"
+        )
+    });
+    let drawn = cam_as_drawn(model)?;
+    Ok(match (drawn, exact) {
+        (Some(drawn), Some(exact)) => Some(format!("{drawn}; {exact}")),
+        (drawn, exact) => drawn.or(exact),
+    })
+}
+
+fn cam_as_drawn(model: &Model) -> Result<Option<String>, ModelError> {
     let Some((open, profile)) = CamUncertainty::of(model)?.zip(model.table()) else { return Ok(None) };
     let (accuracy, open) = match open {
         CamUncertainty::Told(cam) => {

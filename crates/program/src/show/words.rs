@@ -260,8 +260,8 @@ pub(crate) fn unproved(why: UnprovedFlight) -> &'static str {
 }
 
 /// List of numbers.
-pub(crate) fn listed(numbers: &[u64]) -> String {
-    let numbers: Vec<String> = numbers.iter().map(u64::to_string).collect();
+pub(crate) fn listed(items: &[impl ToString]) -> String {
+    let numbers: Vec<String> = items.iter().map(ToString::to_string).collect();
     match numbers.split_last() {
         Some((last, before)) if !before.is_empty() => format!("{} and {last}", before.join(", ")),
         _ => numbers.concat(),

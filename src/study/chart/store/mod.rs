@@ -283,7 +283,8 @@ pub fn attributes(chart: &Chart) -> Value {
         "Conventions": "CF-1.10",
         "title": format!("{}: what a run comes to", chart.model.name),
         "model": chart.model.name,
-        "model_toml": chart.model.text(),
+        // Errors of its numbers move no point of a chart.
+        "model_toml": chart.model.text_of_values(),
         "rpm": chart.speed(),
         "axes": axes,
         "start": start(&chart.start),

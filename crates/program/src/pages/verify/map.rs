@@ -1,7 +1,9 @@
 //! The page section on the map: the results of every route side by side, errors of estimates, and agreement of the routes.
 
+use super::uncertain;
 use crate::show::block::{Block, Column, Span, Table, TextMark, Words, about, words};
 use crate::show::digits::Digits;
+use crate::show::sources::Sources;
 use crate::show::words;
 use corner_impact::agreement::{Agreement, Quantity, by_quantity, shared_decimals, worse};
 use corner_impact::cam::Side;
@@ -41,7 +43,7 @@ pub(crate) fn map(found: &Verification) -> Vec<Block> {
     let (e, f) = found.border;
     let side = words!["minus where e dx + f dT < 0:  e = (", (e[0], ten), ", ", (e[1], ten), "),  f = ", (f, ten)];
     blocks.extend([Block::Entries(0, vec![("".into(), about("border", side))]), Block::Gap]);
-    blocks.extend(found.measured.iter().flat_map(measured));
+    blocks.extend(uncertain(found).into_iter().flat_map(left_open));
     blocks.extend(found.routes_by_name().filter_map(known_to).flatten());
     blocks
 }
@@ -89,11 +91,36 @@ fn digits(entries: impl Iterator<Item = f64>) -> Digits {
     }
 }
 
-/// The entries' uncertainty due to a measured cam.
-fn measured(open: &LeftOpen) -> Vec<Block> {
-    let Some((_, map)) = &open.error else { return Vec::new() };
-    let text = format!("What the measured cam leaves open of each entry, {}:", words::accuracy(&open.cam));
-    vec![Block::paragraph(text), Block::Table(errors(map)).about("measured_error"), Block::Gap]
+/// The entries' uncertainty, with the parts of the cam and of each number.
+fn left_open((open, sources): (&LeftOpen, Sources<'_>)) -> Vec<Block> {
+    let Some(error) = &open.error else { return vec![Block::paragraph(sources.note())] };
+    let table = |text: String, map: &CornerMap| {
+        [Block::paragraph(text), Block::Table(errors(map)).about("measured_error"), Block::Gap]
+    };
+    let title = match sources {
+        Sources { cam: Some(cam), errors } if errors.are_none() => {
+            format!("What the measured cam leaves open of each entry, {}:", words::accuracy(cam))
+        }
+        sources => format!("What {} leave open of each entry, {}:", sources.name(), sources.why()),
+    };
+    let mut blocks: Vec<Block> = table(title, &error.total()).into();
+    if !sources.errors.are_none() {
+        let parts = error.parts();
+        let of_one = |name: &&str| match *name {
+            "cam" => sources.cam.is_some(),
+            "numbers" => sources.cam.is_some() || parts.len() == 2,
+            _ => true,
+        };
+        let names = parts.keys().copied().filter(|name| of_one(&name));
+        blocks.extend(names.flat_map(|name| table(format!("Part of {}:", source(name)), &parts[name])));
+    }
+    blocks.extend([Block::paragraph(sources.note()), Block::Gap]);
+    blocks
+}
+
+/// A source of uncertainty in words.
+fn source(name: &str) -> String {
+    format!("the {}", words::spoken(name))
 }
 
 /// A route's own estimate of its error.

@@ -4,10 +4,10 @@ mod map;
 
 use crate::pages::local_map;
 use crate::pages::source;
-use crate::pages::speeds::measured_speed;
 use crate::show::Paged;
 use crate::show::block::{Block, Column, Span, Table, TextMark, Words, about, words};
 use crate::show::digits::Digits;
+use crate::show::sources::Sources;
 use crate::show::words;
 use corner_impact::agreement::{Agreement, Quantity, shared_decimals};
 use corner_impact::border_collision::feigin::{Scenario, SideCounts};
@@ -77,10 +77,10 @@ pub(crate) fn orbit(found: &Verification) -> Vec<Block> {
         let place = about("other_corner_impacts", words![speed, " rpm at ", angle, " deg"]);
         ("also".into(), words![place, ": narrow [study] to verify that one"])
     }));
-    if let Some(open) = found.measured.as_ref().filter(|open| open.cam.is_noisy) {
-        let speed =
-            measured_speed(at.speed_rpm(), Digits::Fixed(9), open.error.map(|(speed, _)| speed), Some(&open.cam));
-        entries.push(("cam".into(), about("measured_error", speed)));
+    if let Some((open, sources)) = uncertain(found) {
+        let speed = sources.speed(at.speed_rpm(), Digits::Fixed(9), open.error.as_ref().map(|error| error.speed));
+        let name = if sources.errors.are_none() { "cam" } else { "machine" };
+        entries.push((name.into(), about("measured_error", speed)));
     }
     if let Some(certificate) = &found.certificate {
         let words = format!(
@@ -122,7 +122,7 @@ pub(crate) fn bifurcation(found: &Verification) -> Vec<Block> {
         Ok(kind) => entries.extend(classification(kind, found.danger.as_ref())),
         Err(refusal) => entries.push(("verdict".into(), none(refusal))),
     }
-    entries.extend(found.measured.as_ref().and_then(|open| left_open(found, open)));
+    entries.extend(uncertain(found).and_then(|(open, sources)| left_open(found, open, sources)));
     entries.extend(local_map::conditions(found));
     let mut full: Vec<Block> = found.classification.iter().flat_map(fixed_points).collect();
     full.extend(
@@ -136,8 +136,14 @@ pub(crate) fn bifurcation(found: &Verification) -> Vec<Block> {
     vec![Block::Heading("What happens there".into()), Block::Entries(20, entries), Block::Full(full)]
 }
 
-/// Verdict on equally likely cams, if the cam is measured; shows whether the verdict is certain.
-fn left_open(found: &Verification, open: &LeftOpen) -> Option<(Words, Words)> {
+/// The uncertainty of the corner impact and what it comes from, if anything is uncertain.
+fn uncertain(found: &Verification) -> Option<(&LeftOpen, Sources<'_>)> {
+    let open = found.uncertainty.as_ref()?;
+    Some((open, Sources::of(&open.cam, open.errors).if_any()?))
+}
+
+/// Verdict on equally likely machines; shows whether the verdict is certain.
+fn left_open(found: &Verification, open: &LeftOpen, sources: Sources<'_>) -> Option<(Words, Words)> {
     let own = found.classification.as_ref().ok().map(|kind| kind.scenario);
     let all: usize = open.verdicts.iter().map(|told| told.cams).sum();
     let others: Vec<String> = open
@@ -146,15 +152,15 @@ fn left_open(found: &Verification, open: &LeftOpen) -> Option<(Words, Words)> {
         .filter(|told| told.scenario != own)
         .map(|told| format!("{} say {}", told.cams, told.scenario.map_or("none".into(), |kind| kind.to_string())))
         .collect();
-    let why = words::accuracy(&open.cam);
+    let (why, machines) = (sources.why(), sources.machines());
     let said = match others.is_empty() {
-        true => format!("the same of {all} cams that are as likely ({why})").into(),
+        true => format!("the same of {all} {machines} that are as likely ({why})").into(),
         false => words![
             (TextMark::Doubtful, "not known"),
-            format!(": of {all} cams that are as likely ({why}) {}", others.join(", "))
+            format!(": of {all} {machines} that are as likely ({why}) {}", others.join(", "))
         ],
     };
-    (all > 0).then(|| ("on likely cams".into(), said))
+    (all > 0).then(|| (format!("on likely {machines}").into(), said))
 }
 
 fn normal_form(form: &NormalForm) -> Words {

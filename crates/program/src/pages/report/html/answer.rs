@@ -3,12 +3,12 @@
 
 use crate::figures::chaotic_set;
 use crate::pages::report::html::{HtmlError, plates};
-use crate::pages::speeds::{measured_speed, together};
+use crate::pages::speeds::together;
 use crate::report::Report;
 use crate::show::block::{Block, PageSection, Span, TextMark, Words, about, words};
 use crate::show::digits::Digits;
-use crate::show::words::{accuracy, hypotheses};
-use corner_impact::measured::Measured;
+use crate::show::sources::Sources;
+use crate::show::words::hypotheses;
 use corner_impact::study::design::contact::Separation;
 
 pub(crate) fn section(report: &Report) -> Result<PageSection, HtmlError> {
@@ -18,17 +18,22 @@ pub(crate) fn section(report: &Report) -> Result<PageSection, HtmlError> {
     Ok(PageSection { id: "answer", title: "In brief".into(), blocks })
 }
 
+/// What is uncertain about the machine.
+fn sources(report: &Report) -> Sources<'_> {
+    Sources::of(&report.measured, report.parsed.errors)
+}
+
 fn headed(head: &str, what: &str, sentence: Words) -> Words {
     words![(TextMark::Strong, head), " ", about(what, sentence)]
 }
 
 fn separates(report: &Report) -> Words {
     let sentence = match (&report.separation, &report.margin) {
-        (Separation::At { rpm, error, .. }, Some(margin)) => words![
+        (Separation::At { rpm, .. }, Some(margin)) => words![
             "The follower leaves the cam for the first time where that has turned by ",
             (margin.separation_deg, Digits::Fixed(2)),
             "°, at ",
-            measured_speed(*rpm, Digits::Fixed(3), error.is_finite().then_some(*error), report.measured.as_ref()),
+            sources(report).speed(*rpm, Digits::Fixed(3), report.separation_error),
             "."
         ],
         (Separation::Never, _) => {
@@ -62,10 +67,11 @@ fn margin(report: &Report) -> Option<Words> {
 fn impacts(report: &Report) -> Option<Words> {
     let found = report.speeds.as_ref().ok()?;
     let [low, high] = found.range;
-    let open = match Measured::noisy(&found.measured) {
-        Some(cam) => {
+    let open = match sources(report).if_any() {
+        Some(sources) => {
             let loads = if report.loads.is_some() { "; the loads below have their ±" } else { "" };
-            format!(" It is of the cam as it is drawn ({}){loads}.", accuracy(cam))
+            let drawn = if sources.cam.is_some() { "cam as it is drawn" } else { "machine as it is given" };
+            format!(" It is of the {drawn} ({}){loads}.", sources.why())
         }
         None => String::new(),
     };

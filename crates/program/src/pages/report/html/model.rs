@@ -41,10 +41,14 @@ fn numbers(report: &Report) -> Table {
             "" => (Digits::Significant(12), "follows".into()),
             field => (Digits::All, Span::Code(field.into()).into()),
         };
+        let mut value = words![(quantity.value, digits)];
+        if let Some(error) = quantity.error {
+            value.push(words![" ± ", (error, digits)]);
+        }
         table.row([
             (&quantity.meaning).into(),
             Span::Formula(quantity.symbol.into()).into(),
-            about(quantity.name(), (quantity.value, digits)),
+            about(quantity.name(), value),
             (&quantity.unit).into(),
             field,
         ]);

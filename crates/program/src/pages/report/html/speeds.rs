@@ -2,7 +2,7 @@
 
 use crate::pages::report::html::HtmlError;
 use crate::pages::report::html::plates::plate;
-use crate::pages::speeds::{cam, dangers, detachment, how, remarks, table, together};
+use crate::pages::speeds::{dangers, detachment, how, remarks, table, together, uncertainty};
 use crate::report::Report;
 use crate::show::block::{self, Block, PageSection, Words, words};
 use corner_impact::study::speeds::SpeedSurvey;
@@ -31,6 +31,6 @@ fn attractors(found: &SpeedSurvey) -> Vec<Block> {
     blocks.extend(remarks(found));
     blocks.extend(dangers(found));
     blocks.push(Block::paragraph(how(found)));
-    blocks.extend(found.measured.iter().filter_map(cam));
+    blocks.extend(uncertainty(found));
     vec![Block::About("attractors".into(), blocks)]
 }

@@ -1,0 +1,127 @@
+//! Where the ± of a page comes from: the measured cam, and the errors of the follower's numbers.
+
+use corner_impact::measured::Measured;
+use corner_impact::model::FollowerErrors;
+use corner_impact::uncertainty::SourcedUncertainty;
+
+use super::block::{Words, words};
+use super::digits::{Digits, with_error};
+use super::words::{accuracy, listed, spoken};
+
+/// What is uncertain about the machine of a page.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sources<'a> {
+    /// Accuracy of the cam, if its rows have noise.
+    pub cam: Option<&'a Measured>,
+    /// Standard deviations of the follower's numbers.
+    pub errors: FollowerErrors,
+}
+
+impl<'a> Sources<'a> {
+    pub(crate) fn of(measured: &'a Option<Measured>, errors: FollowerErrors) -> Self {
+        Self { cam: Measured::noisy(measured), errors }
+    }
+
+    /// The sources, if there are any.
+    pub(crate) fn if_any(self) -> Option<Self> {
+        (self.cam.is_some() || !self.errors.are_none()).then_some(self)
+    }
+
+    /// Name of the sources: the cam, the numbers, or both.
+    pub(crate) fn name(self) -> &'static str {
+        match (self.cam, self.errors.are_none()) {
+            (Some(_), true) => "the cam",
+            (Some(_), false) => "the cam and the numbers",
+            (None, _) => "the numbers",
+        }
+    }
+
+    /// Name of machines that the sources allow.
+    pub(crate) fn machines(self) -> &'static str {
+        if self.errors.are_none() { "cams" } else { "machines" }
+    }
+
+    /// UncertaintyParts of an uncertainty: `13 from the cam (lift rounded to 0.001 mm), 45 from the numbers (stiffness 40, mass 20)`. For a cam alone only its
+    /// accuracy.
+    pub(crate) fn parts(self, error: &SourcedUncertainty) -> String {
+        let (digits, _) = with_error(error.total());
+        let shown = |part: f64| digits.text(part);
+        let each = error.of_each().into_iter().map(|(name, part)| (spoken(name), shown(part)));
+        let each: Vec<String> =
+            each.filter(|(_, part)| is_seen(part)).map(|(name, part)| format!("{name} {part}")).collect();
+        let each = match (each.as_slice(), error.each) {
+            ([], None) => " (together)".to_owned(),
+            ([], Some(_)) => String::new(),
+            (each, _) => format!(" ({})", each.join(", ")),
+        };
+        match (self.cam, self.errors.are_none()) {
+            (Some(cam), true) => accuracy(cam),
+            (Some(cam), false) => format!(
+                "{} from the cam ({}), {} from the numbers{each}",
+                shown(error.cam),
+                accuracy(cam),
+                shown(error.numbers)
+            ),
+            (None, _) => format!("from the numbers{each}"),
+        }
+    }
+
+    /// Why something is uncertain, where the uncertainty itself is unknown.
+    pub(crate) fn why(self) -> String {
+        let numbers = self.numbers();
+        match (self.cam, self.errors.are_none()) {
+            (Some(cam), true) => accuracy(cam),
+            (Some(cam), false) => format!("{}, and errors of {numbers}", accuracy(cam)),
+            (None, _) => format!("errors of {numbers}"),
+        }
+    }
+
+    /// What the ± of the page takes into account, and what it takes as exact.
+    pub(crate) fn note(self) -> String {
+        /// Numbers of a follower: the spring has a preload or a rest position.
+        const NUMBERS: usize = FollowerErrors::COUNT - 1;
+        let others = match (self.cam, self.errors.uncertain().count()) {
+            (Some(_), NUMBERS) => "",
+            (Some(_), _) => " The follower's other numbers are taken as exact.",
+            (None, NUMBERS) => " The cam is taken as exact.",
+            (None, _) => " The cam and the follower's other numbers are taken as exact.",
+        };
+        let numbers = self.numbers();
+        match (self.cam, self.errors.are_none()) {
+            (Some(_), true) => {
+                "± is of the cam alone: the model gives no error of the mass, the stiffness and the other numbers of the follower, which are \
+                 taken as exact."
+                    .into()
+            }
+            (Some(_), false) => format!(
+                "± is the root of the sum of two squares: the part of the cam, and two standard deviations by the errors of {numbers}.{others}"
+            ),
+            (None, _) => format!("± is two standard deviations, by the errors of {numbers}.{others}"),
+        }
+    }
+
+    /// The uncertain numbers of the follower.
+    fn numbers(self) -> String {
+        listed(&self.errors.uncertain().map(|(name, _)| spoken(name)).collect::<Vec<_>>())
+    }
+
+    /// A speed with its uncertainty and where that comes from.
+    pub(crate) fn speed(self, rpm: f64, digits: Digits, error: Option<SourcedUncertainty>) -> Words {
+        match (error.filter(|error| error.total().is_finite()), self.if_any()) {
+            (Some(error), Some(sources)) => {
+                let (digits, total) = with_error(error.total());
+                let from = if sources.cam.is_some() { ": " } else { ", " };
+                words![(rpm, digits), " ± ", (total, digits), format!(" rpm{from}{}", sources.parts(&error))]
+            }
+            (None, Some(sources)) => {
+                words![(rpm, digits), format!(" rpm, and how far off is not known: {}", sources.why())]
+            }
+            _ => words![(rpm, digits), " rpm"],
+        }
+    }
+}
+
+/// Whether digits are not those of 0.
+fn is_seen(digits: &str) -> bool {
+    digits.bytes().any(|letter| (b'1'..=b'9').contains(&letter))
+}
