@@ -222,7 +222,7 @@ fn the_contour_of_an_offset_roller_gives_its_motion_back() {
     // The rounding of the rows is what the ± is of.
     let likely = PlausibleCams::of(&contour).unwrap().unwrap();
     assert_relative_eq!(likely.measured.step_m.unwrap(), 1e-5, max_relative = 1e-9);
-    let [error] = likely.error([own], |model, cam| Some([speed(model, cam)])).unwrap();
+    let error = likely.errors(&[own], |model, cam| Some(vec![speed(model, cam)])).unwrap()[0];
     assert!((own - expected).abs() <= error && error < 0.02 * own, "{own} ± {error}, {expected}");
     // Without the follower, the radius alone leaves the cam elsewhere.
     let (radius, point) = read(&csv, "spline = \"smoothing\"").unwrap();
