@@ -270,7 +270,7 @@ fn laws_of_the_cam() {
         (
             harmonic("amplitudes = [1e308]\nphases_deg = [0]\nk = [1]"),
             &[
-                ":19: cam.k = [1]: unknown field; allowed in [cam]: amplitudes, corner_rounding_deg, law, offset, phases_deg",
+                ":19: cam.k = [1]: unknown field; allowed in [cam]: amplitudes, corner_rounding_deg, law, lever_ratio, offset, phases_deg",
             ],
         ),
         (
