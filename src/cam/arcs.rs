@@ -50,6 +50,7 @@ pub(super) fn build(model: &Model, profile: &ArcsProfile) -> Result<Cam, ModelEr
     }
     let circles = Circles { flank_distance, flank_radius, nose_distance, nose_radius };
     let ends = [flank_start, nose_end];
+    profile.contact.fits(model, nose_distance + nose_radius)?;
     match profile.contact {
         FollowerContact::Point => Ok(circles.met_by_point(ends, base_radius, 0.0)),
         FollowerContact::Flat => Ok(circles.met_by_face(ends, base_radius)),

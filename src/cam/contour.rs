@@ -2,7 +2,7 @@
 
 use super::{Cam, Lift};
 use crate::elementary;
-use crate::model::FollowerContact;
+use crate::model::{FollowerContact, Model, ModelError};
 
 /// Where the follower touches the cam at an angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,6 +25,18 @@ impl FollowerContact {
             Self::Point | Self::Flat => [0.0; 2],
             Self::Roller { roller_radius, offset } => [offset, roller_radius],
         }
+    }
+
+    /// Refuses a roller that is larger than the cam, whose largest radius is `largest`.
+    pub(super) fn fits(self, model: &Model, largest: f64) -> Result<(), ModelError> {
+        let [_, radius] = self.line_and_radius();
+        if radius <= largest {
+            return Ok(());
+        }
+        let unit = model.units.length.name();
+        let words =
+            format!("must be at most {largest:.6} {unit}, the largest radius of the cam: a roller is no larger");
+        Err(model.reject("cam.contact.roller_radius", words))
     }
 
     /// Where the follower touches the cam at an angle, rad, with this lift.

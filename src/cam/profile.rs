@@ -101,7 +101,10 @@ fn contour(model: &Model, profile: &ContourProfile) -> Result<Cam, ModelError> {
             }
         }
     };
-    table::build(model, table)?.enveloped(profile.contact, reject)
+    let radius = table::build(model, table)?;
+    let largest = radius.highest().value;
+    let cam = radius.enveloped(profile.contact, reject)?;
+    profile.contact.fits(model, largest).map(|()| cam)
 }
 
 /// One smooth segment all round.

@@ -267,6 +267,7 @@ fn what_the_geometry_forbids_is_refused_with_its_place() {
         (&hollow, cubic(FLAT), "cam.contact = \"flat\": must not be a flat face here: the contour is hollow"),
         (&hollow, cubic(&roller((40.0, 0.0))), "cam.contact.roller_radius = 40.0: must be below"),
         (&round, cubic(&roller((5.0, 18.0))), ""),
+        (&round, cubic(&roller((50.0, 0.0))), "cam.contact.roller_radius = 50.0: must be at most"),
         (&round, cubic(&roller((5.0, 20.0))), "cam.contact.offset = 20.0: is too large"),
         (&round, cubic(&roller((5.0, -40.0))), "cam.contact.offset = -40.0: is too large"),
         (&heart, cubic(""), "the contour crosses itself"),

@@ -301,6 +301,7 @@ fn what_no_follower_is_is_refused() {
         ("contact = { roller_radius = 0.0 }", "cam.contact.roller_radius = 0.0: must be a finite number above 0"),
         ("contact = { roller_radius = -1.0 }", "cam.contact.roller_radius = -1.0: must be a finite number above 0"),
         ("contact = { roller_radius = nan }", "cam.contact.roller_radius = nan: must be a finite number above 0"),
+        ("contact = { roller_radius = 0.6 }", "cam.contact.roller_radius = 0.6: must be at most 0.553"),
         ("contact = { roller_radius = 0.1, ofset = 0.1 }", "did you mean offset?"),
         ("contact = { roller_radius = 0.1, offset = 0.5 }", "cam.contact.offset = 0.5: must be between -0.5 and 0.5"),
         ("contact = { roller_radius = 0.1, offset = -0.5 }", "cam.contact.offset = -0.5: must be between"),

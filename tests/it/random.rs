@@ -293,7 +293,7 @@ fn law_with_followers() -> impl Strategy<Value = Law> {
             if kind < 0.3 {
                 added += "contact = \"flat\"\n";
             } else if kind < 0.7 {
-                let radius = base * spread(part(), 0.01, 3.0);
+                let radius = base * spread(part(), 0.01, 1.0);
                 // Half of them in line with the axis.
                 let offset = if part() < 0.5 { 0.0 } else { around(part(), 0.7 * (base + radius)) };
                 added += &format!("contact.roller_radius = {radius:?}\ncontact.offset = {offset:?}\n");
