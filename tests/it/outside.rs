@@ -66,7 +66,7 @@ fn cams() -> Vec<(String, Model)> {
     }
     let contacts = [json!("flat"), json!({ "roller_radius": 0.2 }), json!({ "roller_radius": 0.1, "offset": 0.05 })];
     models.extend(contacts.map(|contact| (format!("arcs, {contact}"), followed_by(&contact))));
-    models.push(("arcs, lever".into(), levered()));
+    models.push(("arcs, lever, rounded".into(), levered()));
     models.push(("contour, flat".into(), measured(&json!({ "law": "contour", "contact": "flat" }))));
     models.push(("smoothed".into(), measured(&json!({}))));
     models.push(("smoothed, a corner given".into(), measured(&json!({ "corners_deg": [150.3], "dwells_deg": [] }))));
