@@ -158,10 +158,10 @@ fn machines_drawn_at_random_spread_as_far_as_is_said() {
     }
     let found = verify(&model, External::LeftOut).unwrap();
     let error = found.uncertainty.as_ref().unwrap().error.as_ref().unwrap();
-    near(error.speed.total(), spread(&speeds), 0.15);
+    near(error.speed.total(), spread(&speeds), 0.1);
     for (index, error) in error.entries.plus.iter().enumerate() {
         let drawn: Vec<f64> = entries.iter().map(|entries| entries[index]).collect();
-        near(error.total(), spread(&drawn), 0.15);
+        near(error.total(), spread(&drawn), 0.1);
     }
 }
 
