@@ -1,7 +1,7 @@
-//! SourcedUncertainty of results, by its sources: the noise of a measured cam, and the errors of the follower's numbers.
+//! Uncertainty of results, by its sources: the noise of a measured cam, and the errors of the follower's numbers.
 //!
 //! The cam's part is estimated from equally likely cams, see [`crate::measured`]. The part of a number is two standard deviations: twice half
-//! the difference of the results with the number one error larger and one error smaller. UncertaintyParts are independent, and the whole is the root of
+//! the difference of the results with the number one error larger and one error smaller. Parts are independent, and the whole is the root of
 //! the sum of their squares. A result that is not linear in the numbers has one part of all numbers together, from an ensemble of machines.
 
 use rayon::prelude::*;
@@ -16,7 +16,7 @@ use crate::tolerance;
 /// Standard deviations that ± is of a number of the follower.
 const DEVIATIONS: f64 = 2.0;
 
-/// SourcedUncertainty of a result, by its sources.
+/// Uncertainty of a result, by its sources.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SourcedUncertainty {
     /// Part of a measured cam.
@@ -68,7 +68,7 @@ impl SourcedUncertainty {
     }
 }
 
-/// UncertaintyParts of an uncertainty in a document: the names of the sources, each with the unit that its number is in, such as `_rpm`.
+/// Parts of an uncertainty in a document: the names of the sources, each with the unit that its number is in, such as `_rpm`.
 pub struct UncertaintyParts(pub SourcedUncertainty, pub &'static str);
 
 impl Serialize for UncertaintyParts {
@@ -206,7 +206,8 @@ impl<'a> PlausibleMachines<'a> {
         }
         // A column of signs for each number, orthogonal to each other: Sylvester's Hadamard matrix without its first column.
         let runs = (uncertain.len() + 1).next_power_of_two();
-        let sign = |run: usize, column: usize| if (run & (column + 1)).count_ones() % 2 == 0 { 1.0 } else { -1.0 };
+        let sign =
+            |run: usize, column: usize| if (run & (column + 1)).count_ones().is_multiple_of(2) { 1.0 } else { -1.0 };
         let moves = |run: usize| {
             let mut moves = Moves::default();
             uncertain.iter().enumerate().for_each(|(column, index)| moves[*index] = sign(run, column));

@@ -91,7 +91,7 @@ struct Shots {
 pub struct LocatedImpact {
     /// The orbit.
     pub at: CornerImpact,
-    /// SourcedUncertainty of the machine in the speed, rpm; none if the machine is exact or the uncertainty is unknown.
+    /// Uncertainty of the machine in the speed, rpm; none if the machine is exact or the uncertainty is unknown.
     pub speed_error: Option<SourcedUncertainty>,
     /// Map by the product of propagators and saltation matrices. At a corner of velocity it is valid on `at.side` only.
     pub map: CornerMap,
@@ -241,7 +241,7 @@ pub fn locate(model: &Model, range: Study, revolutions: u64, watch: &dyn Watch) 
     })
 }
 
-/// SourcedUncertainty of the machine in the speed of a corner impact, rpm.
+/// Uncertainty of the machine in the speed of a corner impact, rpm.
 fn speed_error(
     model: &Model,
     cam: &Cam,

@@ -39,12 +39,12 @@ pub struct Orbits {
     /// Standard deviations of the follower's numbers.
     #[serde(rename = "uncertain", skip_serializing_if = "FollowerErrors::are_none")]
     pub deviations: FollowerErrors,
-    /// SourcedUncertainty of each orbit; none if too few of the likely machines have the orbit.
+    /// Uncertainty of each orbit; none if too few of the likely machines have the orbit.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub errors: Vec<Option<OrbitUncertainty>>,
 }
 
-/// SourcedUncertainty of an orbit's numbers.
+/// Uncertainty of an orbit's numbers.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct OrbitUncertainty {
     /// Whole uncertainty.
@@ -59,7 +59,7 @@ pub struct OrbitUncertainty {
 /// Uncertainties of an orbit's numbers, or one part of them.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct OrbitErrors {
-    /// SourcedUncertainty of either multiplier, in the complex plane.
+    /// Uncertainty of either multiplier, in the complex plane.
     pub multiplier: f64,
     /// Position and velocity of the state, m and m/s.
     pub state: [f64; 2],
@@ -112,7 +112,7 @@ pub fn orbits(model: &Model, speed_rpm: f64, wanted: OrbitQuery, watch: &dyn Wat
     })
 }
 
-/// SourcedUncertainty of an orbit of `machine`, from the same orbit of the likely machines.
+/// Uncertainty of an orbit of `machine`, from the same orbit of the likely machines.
 fn error(machines: &PlausibleMachines<'_>, machine: &Machine, orbit: &PeriodicOrbit) -> Option<OrbitUncertainty> {
     /// Number of values for the multipliers and the state.
     const OF_ORBIT: usize = 6;

@@ -52,7 +52,7 @@ pub struct SpeedSurvey {
     /// Speed above the lowest at which the follower first leaves the cam, by the contact force. Its error includes the uncertainty of the
     /// machine. None if the speed does not vary.
     pub separation: Option<Separation>,
-    /// SourcedUncertainty of the machine in that speed, rpm; none if the machine is exact.
+    /// Uncertainty of the machine in that speed, rpm; none if the machine is exact.
     pub separation_error: Option<SourcedUncertainty>,
     /// Accuracy of the cam, if it is measured.
     pub measured: Option<Measured>,
@@ -304,7 +304,7 @@ impl SpeedSurvey {
         }
     }
 
-    /// SourcedUncertainty of the machine in the detachment, rpm; none for an exact machine, or if unknown.
+    /// Uncertainty of the machine in the detachment, rpm; none for an exact machine, or if unknown.
     pub fn detachment_error(&self) -> Option<SourcedUncertainty> {
         self.detachment()?;
         self.separation_error.filter(|error| error.total().is_finite())
@@ -503,7 +503,7 @@ pub fn passed_once(passed: Vec<(f64, CornerImpact, String)>) -> Vec<(f64, Corner
     found
 }
 
-/// SourcedUncertainty of the machine in an attractor's transition, rpm: by the event's equations, or by runs if it is known by runs.
+/// Uncertainty of the machine in an attractor's transition, rpm: by the event's equations, or by runs if it is known by runs.
 fn error(
     (machine, runs): (&Machine, StartsAndBudget<'_>),
     (machines, of_separation): (&PlausibleMachines<'_>, Option<SourcedUncertainty>),

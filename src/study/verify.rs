@@ -44,7 +44,7 @@ pub struct Verification {
     pub others: Vec<CornerImpact>,
     /// The map by the closed form.
     pub map: CornerMap,
-    /// SourcedUncertainty of speed and map, and the cam's accuracy; none if the cam is not measured and the follower's numbers are exact.
+    /// Uncertainty of speed and map, and the cam's accuracy; none if the cam is not measured and the follower's numbers are exact.
     pub uncertainty: Option<LeftOpen>,
     /// Proof of the corner impact, if there is one.
     pub certificate: Option<Certificate>,
@@ -110,7 +110,7 @@ struct Orbit<'a>(&'a Vector2<f64>, f64);
 
 document!(Orbit<'_> as it { period_s: it.1, state: it.0.as_slice() });
 
-/// SourcedUncertainty of a corner impact and its map.
+/// Uncertainty of a corner impact and its map.
 #[derive(Clone, Debug)]
 #[doc(hidden)]
 pub struct LeftOpen {

@@ -912,7 +912,7 @@ fn an_answer_without_an_error_says_how_well_its_cam_is_known() {
     // It loses its stability within what the cam leaves open of where this speed is.
     for (rpm, is_open) in [(12009, true), (11900, false)] {
         let page = crate::common::text(run(&format!("orbit valve.toml --rpm {rpm}")).stdout);
-        assert_eq!(page.contains("stable or unstable, which the cam leaves open"), is_open, "{page}");
+        assert_eq!(page.contains("stable or unstable, which its ± leaves open"), is_open, "{page}");
     }
     // The same cam with all digits, and with more rows than are looked at in a blink.
     let (model, rows) = (folder.path().join("valve.toml"), folder.path().join("valve.csv"));

@@ -18,7 +18,7 @@ pub struct Transition {
     pub cause: Cause,
     /// Special point of a branch at which it lies, if any.
     pub point: Option<Box<BranchPoint>>,
-    /// SourcedUncertainty of the machine in the speed, rpm. None if the machine is exact, the uncertainty is unknown, or the speed does not vary.
+    /// Uncertainty of the machine in the speed, rpm. None if the machine is exact, the uncertainty is unknown, or the speed does not vary.
     pub error: Option<SourcedUncertainty>,
 }
 

@@ -110,7 +110,7 @@ impl Loads {
     /// Moments per revolution where one run represents all that converge to its motion; each of those would sample other moments.
     const FINE: u32 = 4 * Self::MOMENTS;
 
-    /// SourcedUncertainty of the number at `index`.
+    /// Uncertainty of the number at `index`.
     fn error(&self, index: usize) -> Option<f64> {
         self.errors.map(|errors| errors[index].total())
     }

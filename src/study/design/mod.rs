@@ -80,7 +80,7 @@ pub struct ForceAt {
     pub place: Place,
     /// Least force and its place.
     pub least: Least,
-    /// SourcedUncertainty of the least force; none if there is none, or if it is unknown.
+    /// Uncertainty of the least force; none if there is none, or if it is unknown.
     pub error: Option<SourcedUncertainty>,
     /// Largest force round the cam.
     pub largest: f64,
@@ -93,7 +93,7 @@ pub struct LoadCurves {
     pub forces: Vec<ForceAt>,
     /// Loads at values where the follower leaves the cam. Uncertainties between the values of the table are interpolated.
     pub loads: Vec<Loads>,
-    /// SourcedUncertainty of the largest force on the cam at each value of the table.
+    /// Uncertainty of the largest force on the cam at each value of the table.
     pub largest_errors: Vec<(f64, Option<[SourcedUncertainty; 1]>)>,
 }
 
@@ -180,13 +180,13 @@ pub struct RequiredPair {
     pub given: f64,
     /// Value of the number that is found.
     pub found: Option<f64>,
-    /// SourcedUncertainty of `found`.
+    /// Uncertainty of `found`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error: Option<f64>,
     /// Limit on the other side, if there is one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub other: Option<f64>,
-    /// SourcedUncertainty of `other`.
+    /// Uncertainty of `other`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub other_error: Option<f64>,
     /// A tried value beyond `other` that meets the need again.
@@ -321,7 +321,9 @@ impl Design {
                 cam_angle_rad: cam_angle,
                 error_parts: self.separation_errors.map(|[of_speed, _]| UncertaintyParts(of_speed, "_rpm")),
                 cam_angle_error_rad: angle_error,
-                cam_angle_error_parts: self.separation_errors.map(|[_, of_angle]| UncertaintyParts(of_angle, "_rad")),
+                cam_angle_error_parts: angle_error
+                    .and(self.separation_errors)
+                    .map(|[_, of_angle]| UncertaintyParts(of_angle, "_rad")),
                 places: &self.places,
                 located: true,
             }),
@@ -367,7 +369,9 @@ pub fn known(
     };
     let errors = machines.error([rpm, cam_angle], of).unwrap_or([SourcedUncertainty::UNKNOWN; 2]);
     let [open, angle_error] = errors.map(|error| error.total());
-    (Separation::At { rpm, error: error + open, cam_angle, angle_error: Some(angle_error) }, Some(errors))
+    // An angle at a corner of an exact cam stays there.
+    let angle_error = Some(angle_error).filter(|error| !(*error <= tolerance::UNCERTAINTY_SEEN.value));
+    (Separation::At { rpm, error: error + open, cam_angle, angle_error }, Some(errors))
 }
 
 /// The places where likely machines let go first, the likeliest first; none where they agree to 10 degrees.

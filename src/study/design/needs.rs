@@ -235,7 +235,7 @@ pub struct Answer {
     pub now: f64,
     /// Least value that meets the need, or the largest (see `is_upper_bound`); none if no value meets it.
     pub value: Option<f64>,
-    /// SourcedUncertainty of `value`, at least the resolution of the runs for a load.
+    /// Uncertainty of `value`, at least the resolution of the runs for a load.
     pub error: Option<SourcedUncertainty>,
     /// Unit of the values.
     pub unit: String,
@@ -243,7 +243,7 @@ pub struct Answer {
     pub is_upper_bound: bool,
     /// Limit on the other side, if there is one: a damper that keeps the follower on the cam's rise may throw it off on the return.
     pub other: Option<f64>,
-    /// SourcedUncertainty of `other`.
+    /// Uncertainty of `other`.
     pub other_error: Option<SourcedUncertainty>,
     /// A tried value beyond `other` that meets the load requirement again.
     pub again: Option<f64>,

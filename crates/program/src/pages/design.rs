@@ -224,7 +224,7 @@ pub(crate) fn speeds(found: &Design) -> Vec<Block> {
                  the ± of each."
             );
             blocks.push(Block::Note(words.as_str().into()));
-            blocks.extend(hardest(found).map(|words| Block::Note(words)));
+            blocks.extend(hardest(found).map(Block::Note));
         }
     }
     blocks

@@ -41,7 +41,7 @@ impl<'a> Sources<'a> {
         if self.errors.are_none() { "cams" } else { "machines" }
     }
 
-    /// UncertaintyParts of an uncertainty: `13 from the cam (lift rounded to 0.001 mm), 45 from the numbers (stiffness 40, mass 20)`. For a cam alone only its
+    /// Parts of an uncertainty: `13 from the cam (lift rounded to 0.001 mm), 45 from the numbers (stiffness 40, mass 20)`. For a cam alone only its
     /// accuracy.
     pub(crate) fn parts(self, error: &SourcedUncertainty) -> String {
         let (digits, _) = with_error(error.total());

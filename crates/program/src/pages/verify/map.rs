@@ -111,7 +111,7 @@ fn left_open((open, sources): (&LeftOpen, Sources<'_>)) -> Vec<Block> {
             "numbers" => sources.cam.is_some() || parts.len() == 2,
             _ => true,
         };
-        let names = parts.keys().copied().filter(|name| of_one(&name));
+        let names = parts.keys().copied().filter(of_one);
         blocks.extend(names.flat_map(|name| table(format!("Part of {}:", source(name)), &parts[name])));
     }
     blocks.extend([Block::paragraph(sources.note()), Block::Gap]);
