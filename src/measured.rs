@@ -35,6 +35,9 @@ pub struct Measured {
     pub corners_deg: Vec<f64>,
     /// Whether the corners were found in the rows, not given.
     pub corners_are_found: bool,
+    /// Places that may be corners and are left out of the cam; none where there is no doubt.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub doubtful_corners: Option<DoubtfulCorners>,
     /// Dwells of a smoothing spline, from and to, degrees.
     pub dwells_deg: Vec<[f64; 2]>,
     /// Whether the dwells were found in the rows, not given.
@@ -56,6 +59,33 @@ impl Measured {
         /// Noise above which it is more than rounding, in standard deviations of the rounding.
         const MORE: f64 = 1.5;
         self.step_m.is_some_and(|step| self.noise_m <= MORE * step / 12.0_f64.sqrt())
+    }
+}
+
+/// Places where a jump of the acceleration fits the rows better than a smooth motion, but not by enough to be certain.
+#[derive(Clone, Debug, Serialize)]
+pub struct DoubtfulCorners {
+    /// Places, degrees.
+    pub at_deg: Vec<f64>,
+    /// Line of the model file that rules them out.
+    pub ruled_out_by: String,
+    /// Line of the model file that makes them corners.
+    pub ruled_in_by: String,
+}
+
+impl DoubtfulCorners {
+    /// Doubtful corners of a fitted spline.
+    fn of(fitted: &Fit) -> Option<Self> {
+        let at_deg = Some(fitted.doubtful_deg()).filter(|doubtful| !doubtful.is_empty())?;
+        let line = |mut corners: Vec<f64>| {
+            corners.sort_by(f64::total_cmp);
+            let corners: Vec<String> =
+                corners.iter().map(|corner| ((corner * 1000.0).round() / 1000.0).to_string()).collect();
+            format!("corners_deg = [{}]", corners.join(", "))
+        };
+        let certain = fitted.corners_deg();
+        let (ruled_out_by, ruled_in_by) = (line(certain.clone()), line([certain, at_deg.clone()].concat()));
+        Some(Self { at_deg, ruled_out_by, ruled_in_by })
     }
 }
 
@@ -106,6 +136,7 @@ impl PlausibleCams {
             is_smoothed: false,
             corners_deg: Vec::new(),
             corners_are_found: false,
+            doubtful_corners: None,
             dwells_deg: Vec::new(),
             dwells_are_found: false,
             largest_curvature: largest,
@@ -253,6 +284,7 @@ fn measured(
         is_smoothed: own.is_some(),
         corners_deg: if own.is_some() { fitted.corners_deg() } else { Vec::new() },
         corners_are_found: own.is_some_and(|own| own.corners_deg.is_none()),
+        doubtful_corners: own.and_then(|_| DoubtfulCorners::of(fitted)),
         dwells_deg: if own.is_some() { fitted.dwells_deg() } else { Vec::new() },
         dwells_are_found: own.is_some_and(|own| own.dwells_deg.is_none()),
         largest_curvature: own_curvatures.into_iter().fold(0.0, |most, one| most.max(one.abs())),
