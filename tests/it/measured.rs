@@ -1512,6 +1512,13 @@ fn two_places_that_may_be_left_first_are_both_named() {
     middles.sort_by(f64::total_cmp);
     assert!((middles[0] - 167.0).abs() < 4.0 && (middles[1] - 193.0).abs() < 4.0, "{middles:?}");
     let page = crate::common::in_one_line(&found.text().unwrap());
-    assert!(page.contains("Where is open: ") && page.matches("% of the likely cams").count() == 2, "{page}");
+    assert!(page.contains("Where is open: ") && page.matches(" % of 16 likely cams").count() == 2, "{page}");
     assert!(!page.split("Where is open").next().unwrap().contains(" deg"), "{page}");
+    // The report says the same.
+    let sentence = page.split("The follower leaves").nth(1).unwrap().split(" (computed").next().unwrap();
+    let words = ["report", "twofold.toml", "--no-external", "--rpm", "1000:1100", "--out", "twofold.html"];
+    common::program(words).current_dir(folder.path()).output().unwrap();
+    let report = std::fs::read_to_string(folder.path().join("twofold.html")).unwrap();
+    let open = sentence.split("Where is open").nth(1).unwrap();
+    assert!(common::in_one_line(&report).contains(&format!("Where is open{open}")), "{open}");
 }

@@ -279,6 +279,8 @@ pub struct SeparationPlace {
     pub cam_angles: [f64; 2],
     /// Share of the likely cams that let go here first.
     pub share: f64,
+    /// Number of likely cams that the share is of.
+    pub cams: usize,
 }
 
 #[derive(Serialize)]
@@ -344,8 +346,8 @@ pub fn known(separation: Separation, likely: Option<&PlausibleCams>) -> Separati
     Separation::At { rpm, error: error + open, cam_angle, angle_error: Some(angle_error) }
 }
 
-/// The places where likely cams let go first, the likeliest first; none where they agree to 10 degrees.
-fn places(separation: Separation, likely: Option<&PlausibleCams>) -> Vec<SeparationPlace> {
+/// Returns the places where likely cams let go first, the likeliest first; none where they agree to 10 degrees.
+pub fn separation_places(separation: Separation, likely: Option<&PlausibleCams>) -> Vec<SeparationPlace> {
     /// Error up to which an angle is one place, and distance from which on two angles are two, rad.
     const ONE: f64 = PI / 18.0;
     let (Some(likely), Separation::At { cam_angle, angle_error: Some(error), .. }) = (likely, separation) else {
@@ -365,6 +367,7 @@ fn places(separation: Separation, likely: Option<&PlausibleCams>) -> Vec<Separat
         SeparationPlace {
             cam_angles: [from, from + alike[alike.len() - 1] - alike[0]],
             share: alike.len() as f64 / angles.len() as f64,
+            cams: angles.len(),
         }
     };
     let mut places: Vec<SeparationPlace> = angles.chunk_by(|one, two| two - one <= ONE).map(place).collect();
@@ -382,7 +385,7 @@ pub fn design(model: &Model, asked: &Asked, watch: &dyn Watch) -> Result<Design,
     let contact = Contact::new(&cam, model.follower);
     let likely = PlausibleCams::of(model)?;
     let separation = known(contact.separation(), likely.as_ref());
-    let places = places(separation, likely.as_ref());
+    let places = separation_places(separation, likely.as_ref());
     // To meet a need for certain, its speed is raised by the relative uncertainty of the separation.
     let uncertain = match separation {
         Separation::At { rpm, error, .. } if likely.as_ref().is_some_and(|likely| likely.best.is_some()) => error / rpm,

@@ -48,9 +48,14 @@ impl Paged for Design {
 
 /// States in a sentence where the follower leaves the cam.
 pub(crate) fn separation(found: &Design) -> Words {
+    leaves(found.separation, &found.places, &found.measured)
+}
+
+/// Sentence about a separation, with the angle or the places that compete.
+pub(crate) fn leaves(separation: Separation, places: &[SeparationPlace], measured: &Option<Measured>) -> Words {
     let degrees = |angle: f64| (angle.to_degrees(), Digits::Fixed(3));
-    match found.separation {
-        Separation::At { rpm, error, cam_angle, angle_error } => match Measured::noisy(&found.measured) {
+    match separation {
+        Separation::At { rpm, error, cam_angle, angle_error } => match Measured::noisy(measured) {
             None => words![
                 "The follower leaves the cam first at ",
                 (rpm, Digits::Fixed(6)),
@@ -58,11 +63,11 @@ pub(crate) fn separation(found: &Design) -> Words {
                 degrees(cam_angle),
                 " deg (computed from the contact force)."
             ],
-            Some(cam) if !found.places.is_empty() => words![
+            Some(cam) if !places.is_empty() => words![
                 "The follower leaves the cam first at ",
                 measured_speed(rpm, Digits::Fixed(6), error.is_finite().then_some(error), Some(cam)),
                 ". Where is open: ",
-                Words::joined(found.places.iter().map(place).collect::<Vec<_>>(), ", "),
+                Words::joined(places.iter().map(place).collect::<Vec<_>>(), ", "),
                 " (computed from the contact force)."
             ],
             Some(cam) => words![
@@ -98,18 +103,11 @@ pub(crate) fn separation(found: &Design) -> Words {
 /// One of the places that the follower may leave first.
 fn place(place: &SeparationPlace) -> Words {
     let [from, to] = place.cam_angles.map(f64::to_degrees);
-    let share = (100.0 * place.share, Digits::Fixed(0));
+    let share = words![(100.0 * place.share, Digits::Fixed(0)), format!(" % of {} likely cams", place.cams)];
     let turn = if to >= 360.0 { to - 360.0 } else { to };
     match to - from {
-        width if width < 1.0 => words!["about ", (from, Digits::Fixed(0)), " deg for ", share, " % of the likely cams"],
-        _ => words![
-            (from, Digits::Fixed(0)),
-            " to ",
-            (turn, Digits::Fixed(0)),
-            " deg for ",
-            share,
-            " % of the likely cams"
-        ],
+        width if width < 1.0 => words!["about ", (from, Digits::Fixed(0)), " deg for ", share],
+        _ => words![(from, Digits::Fixed(0)), " to ", (turn, Digits::Fixed(0)), " deg for ", share],
     }
 }
 

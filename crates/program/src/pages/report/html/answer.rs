@@ -2,8 +2,9 @@
 //! proofs.
 
 use crate::figures::chaotic_set;
+use crate::pages::design::leaves;
 use crate::pages::report::html::{HtmlError, plates};
-use crate::pages::speeds::{measured_speed, together};
+use crate::pages::speeds::together;
 use crate::report::Report;
 use crate::show::block::{Block, PageSection, Span, TextMark, Words, about, words};
 use crate::show::digits::Digits;
@@ -24,13 +25,7 @@ fn headed(head: &str, what: &str, sentence: Words) -> Words {
 
 fn separates(report: &Report) -> Words {
     let sentence = match (&report.separation, &report.margin) {
-        (Separation::At { rpm, error, .. }, Some(margin)) => words![
-            "The follower leaves the cam for the first time where that has turned by ",
-            (margin.separation_deg, Digits::Fixed(2)),
-            "°, at ",
-            measured_speed(*rpm, Digits::Fixed(3), error.is_finite().then_some(*error), report.measured.as_ref()),
-            "."
-        ],
+        (Separation::At { .. }, _) => leaves(report.separation, &report.separation_places, &report.measured),
         (Separation::Never, _) => {
             "The follower stays on the cam at every speed: nowhere does the cam fall away from it.".into()
         }
