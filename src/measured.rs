@@ -299,6 +299,8 @@ pub struct Remarks {
     pub strays: Vec<Stray>,
     /// A tolerance and the spread of the rows, m, if the spread is far smaller.
     pub loose: Option<[f64; 2]>,
+    /// Largest distance of the smoothed cam from a row and a tolerance that the rows allow, m, if the distance is far larger.
+    pub smoothed_away: Option<[f64; 2]>,
     /// Where the rows contradict the given corners or dwells.
     pub contradicted: Option<Contradicted>,
 }
@@ -317,19 +319,42 @@ pub struct Contradicted {
 impl Remarks {
     /// Checks the cam of a model; no remarks on a cam that is not a table.
     pub fn on(model: &Model) -> Result<Self, ModelError> {
+        /// Distance of a smoothed cam from a row, over the spread of the rows, that no noise makes.
+        const FAR_SMOOTHED: f64 = 4.5;
         let Some(profile) = model.table() else { return Ok(Self::default()) };
         let Some(own) = profile.spline.smoothing() else {
             return Ok(Self { strays: strays(profile), ..Self::default() });
         };
         let spread = spread(profile);
         let within = if let SmoothingTolerance::Within(within) = own.tolerance { Some(within) } else { None };
+        let smoothed_away = match own.tolerance {
+            SmoothingTolerance::Auto => {
+                let fitted = fit(model, profile, own)?;
+                let distance = fitted.distance();
+                let allowed = (2.0 * profile.reading.half_step()).max(tolerance::ULP.value * profile.rise());
+                // Rows that are one number on a dwell have no noise beyond their decimals.
+                let is_still = fitted.dwells_deg().iter().any(|dwell| range(profile, dwell) <= allowed);
+                let is_noise = !is_still && distance <= FAR_SMOOTHED * spread;
+                let is_far = !is_noise && allowed < tolerance::SMOOTHED_AWAY.value * distance;
+                is_far.then_some([distance, allowed])
+            }
+            _ => None,
+        };
         let loose = within.filter(|within| spread < tolerance::SMOOTHED_AWAY.value * within);
         Ok(Self {
             strays: strays(profile),
             loose: loose.map(|within| [within, spread]),
+            smoothed_away,
             contradicted: contradicted(model, profile, own, within.unwrap_or(spread))?,
         })
     }
+}
+
+/// Range of the lifts of rows on a dwell, m.
+fn range(profile: &TableProfile, [from, to]: &[f64; 2]) -> f64 {
+    let is_inside = |row: &&TableRow| (row.angle_deg - from).rem_euclid(360.0) <= to - from;
+    let lifts = profile.rows.iter().filter(is_inside).map(|row| row.lift);
+    lifts.clone().fold(f64::NEG_INFINITY, f64::max) - lifts.fold(f64::INFINITY, f64::min)
 }
 
 /// Finds where a smoothing spline is far from the rows; it is meant to be within `within` m of them.
@@ -348,10 +373,17 @@ fn contradicted(
     };
     let cam = Cam::new(model)?;
     let off = |row: &TableRow| (cam.lift(row.angle_deg.to_radians()).value - row.lift).abs();
-    let worst = profile.rows.iter().map(|row| (row.angle_deg, off(row))).max_by(|one, two| one.1.total_cmp(&two.1));
+    let worst = profile.rows.iter().map(|row| (row, off(row))).max_by(|one, two| one.1.total_cmp(&two.1));
     let least = tolerance::NOISE_SEEN.value * profile.rise();
-    let is_far = |(_, off): &(f64, f64)| *off > FAR * within.max(least);
-    Ok(worst.filter(is_far).map(|(cam_angle_deg, off_m)| Contradicted { field, cam_angle_deg, off_m }))
+    let Some((row, off_m)) = worst.filter(|(_, off)| *off > FAR * within.max(least)) else { return Ok(None) };
+    // A row that is as far from the spline without them is not far because of them.
+    let found = Smoothing { corners_deg: None, dwells_deg: None, ..own.clone() };
+    let without = fit(model, profile, &found).and_then(|fit| {
+        let index = profile.rows.iter().position(|other| other == row).unwrap_or_default();
+        Ok(fit.lifts(profile)[index])
+    });
+    let is_theirs = without.map_or(true, |lift| 2.0 * (lift - row.lift).abs() < off_m);
+    Ok(is_theirs.then_some(Contradicted { field, cam_angle_deg: row.angle_deg, off_m }))
 }
 
 /// Uncertainty of a cam from the noise of its table.

@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use approx::assert_abs_diff_eq;
 use corner_impact::cam::{Cam, Corner, Law, Segment, Side, apart};
-use corner_impact::measured::PlausibleCams;
+use corner_impact::measured::{PlausibleCams, Remarks};
 use corner_impact::model::{Model, Study};
 use corner_impact::orbit::long_run::Budget;
 use corner_impact::orbit::{Parameter, PeriodicOrbit, Search};
@@ -1521,4 +1521,25 @@ fn two_places_that_may_be_left_first_are_both_named() {
     let report = std::fs::read_to_string(folder.path().join("twofold.html")).unwrap();
     let open = sentence.split("Where is open").nth(1).unwrap();
     assert!(common::in_one_line(&report).contains(&format!("Where is open{open}")), "{open}");
+}
+
+/// Coarse rows with four decimals of an exact motion: the note advises the tolerance that the decimals allow, with which the answer is right, and
+/// dwells that are given are not blamed for what the smoothing does elsewhere.
+#[test]
+fn clean_coarse_rows_are_told_which_tolerance_they_allow() {
+    let truth = machine(program("poly345", 60.0, 100.0, 30.0)).unwrap();
+    let exact = Cam::new(&truth).unwrap();
+    let rows: Vec<(f64, f64)> = rounded(&exact, 4).into_iter().step_by(5).collect();
+    let leaves = first(&truth, &exact);
+    let noted = |more: &Value| {
+        let model = machine(smoothing(&rows, more)).unwrap();
+        (Remarks::on(&model).unwrap(), separation(smoothing(&rows, more)))
+    };
+    let (remarks, _) = noted(&json!({}));
+    let [distance, allowed] = remarks.smoothed_away.unwrap();
+    assert!(distance > 30.0 * allowed && (allowed - 1e-4).abs() < 1e-9, "{distance} {allowed}");
+    let (remarks, (found, error)) = noted(&json!({ "tolerance": allowed }));
+    assert!(remarks.smoothed_away.is_none() && (found - leaves).abs() <= error, "{found} ± {error}, not {leaves}");
+    let (remarks, _) = noted(&json!({ "dwells_deg": [[250.0, 100.0], [160.0, 190.0]] }));
+    assert!(remarks.contradicted.is_none(), "{:?}", remarks.contradicted);
 }
