@@ -40,9 +40,9 @@ quick: $(VENV) ## the tests that answer at once, after each change: within a min
 test: $(VENV) ## run every test
 	$(CARGO) test $(RELEASE) -- --include-ignored
 
-properties: $(VENV) ## attractors and corner impacts of many models over parts of ranges and at two resolutions, all answers of 200 machines in other units, separation of 500, and a search for orbits that complete lists lack
+properties: $(VENV) ## attractors and corner impacts of many models over parts of ranges and at two resolutions, all answers of 200 machines in other units, separation of 500, corners of 5000 cams without any, and a search for orbits that complete lists lack
 	PROPERTIES=all $(CARGO) test $(RELEASE) --test it -- --include-ignored --nocapture a_part_of_a_range parts_of_ranges all_answers_are_the_same \
-	    the_force_tells adversary::
+	    the_force_tells without_corners bend_the_cam adversary::
 
 # In the same .venv, where what the routes need is. The package is built by the maturin in it: in a place of its own, which pip makes
 # anew each time, cargo would compile everything that asks for the interpreter again.

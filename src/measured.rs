@@ -35,6 +35,9 @@ pub struct Measured {
     pub corners_deg: Vec<f64>,
     /// Whether the corners were found in the rows, not given.
     pub corners_are_found: bool,
+    /// Places that may be corners and are left out of the cam; none where there is no doubt.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub doubtful_corners: Option<DoubtfulCorners>,
     /// Dwells of a smoothing spline, from and to, degrees.
     pub dwells_deg: Vec<[f64; 2]>,
     /// Whether the dwells were found in the rows, not given.
@@ -56,6 +59,33 @@ impl Measured {
         /// Noise above which it is more than rounding, in standard deviations of the rounding.
         const MORE: f64 = 1.5;
         self.step_m.is_some_and(|step| self.noise_m <= MORE * step / 12.0_f64.sqrt())
+    }
+}
+
+/// Places where a jump of the acceleration fits the rows better than a smooth motion, but not by enough to be certain.
+#[derive(Clone, Debug, Serialize)]
+pub struct DoubtfulCorners {
+    /// Places, degrees.
+    pub at_deg: Vec<f64>,
+    /// Line of the model file that rules them out.
+    pub ruled_out_by: String,
+    /// Line of the model file that makes them corners.
+    pub ruled_in_by: String,
+}
+
+impl DoubtfulCorners {
+    /// Doubtful corners of a fitted spline.
+    fn of(fitted: &Fit) -> Option<Self> {
+        let at_deg = Some(fitted.doubtful_deg()).filter(|doubtful| !doubtful.is_empty())?;
+        let line = |mut corners: Vec<f64>| {
+            corners.sort_by(f64::total_cmp);
+            let corners: Vec<String> =
+                corners.iter().map(|corner| ((corner * 1000.0).round() / 1000.0).to_string()).collect();
+            format!("corners_deg = [{}]", corners.join(", "))
+        };
+        let certain = fitted.corners_deg();
+        let (ruled_out_by, ruled_in_by) = (line(certain.clone()), line([certain, at_deg.clone()].concat()));
+        Some(Self { at_deg, ruled_out_by, ruled_in_by })
     }
 }
 
@@ -112,6 +142,7 @@ impl PlausibleCams {
             is_smoothed: false,
             corners_deg: Vec::new(),
             corners_are_found: false,
+            doubtful_corners: None,
             dwells_deg: Vec::new(),
             dwells_are_found: false,
             largest_curvature: largest,
@@ -255,6 +286,7 @@ fn measured(
         is_smoothed: own.is_some(),
         corners_deg: if own.is_some() { fitted.corners_deg() } else { Vec::new() },
         corners_are_found: own.is_some_and(|own| own.corners_deg.is_none()),
+        doubtful_corners: own.and_then(|_| DoubtfulCorners::of(fitted)),
         dwells_deg: if own.is_some() { fitted.dwells_deg() } else { Vec::new() },
         dwells_are_found: own.is_some_and(|own| own.dwells_deg.is_none()),
         largest_curvature: own_curvatures.into_iter().fold(0.0, |most, one| most.max(one.abs())),
@@ -269,6 +301,8 @@ pub struct Remarks {
     pub strays: Vec<Stray>,
     /// A tolerance and the spread of the rows, m, if the spread is far smaller.
     pub loose: Option<[f64; 2]>,
+    /// Largest distance of the smoothed cam from a row and a tolerance that the rows allow, m, if the distance is far larger.
+    pub smoothed_away: Option<[f64; 2]>,
     /// Where the rows contradict the given corners or dwells.
     pub contradicted: Option<Contradicted>,
 }
@@ -287,19 +321,42 @@ pub struct Contradicted {
 impl Remarks {
     /// Checks the cam of a model; no remarks on a cam that is not a table.
     pub fn on(model: &Model) -> Result<Self, ModelError> {
+        /// Distance of a smoothed cam from a row, over the spread of the rows, that no noise makes.
+        const FAR_SMOOTHED: f64 = 4.5;
         let Some(profile) = model.table() else { return Ok(Self::default()) };
         let Some(own) = profile.spline.smoothing() else {
             return Ok(Self { strays: strays(profile), ..Self::default() });
         };
         let spread = spread(profile);
         let within = if let SmoothingTolerance::Within(within) = own.tolerance { Some(within) } else { None };
+        let smoothed_away = match own.tolerance {
+            SmoothingTolerance::Auto => {
+                let fitted = fit(model, profile, own)?;
+                let distance = fitted.distance();
+                let allowed = (2.0 * profile.reading.half_step()).max(tolerance::ULP.value * profile.rise());
+                // Rows that are one number on a dwell have no noise beyond their decimals.
+                let is_still = fitted.dwells_deg().iter().any(|dwell| range(profile, dwell) <= allowed);
+                let is_noise = !is_still && distance <= FAR_SMOOTHED * spread;
+                let is_far = !is_noise && allowed < tolerance::SMOOTHED_AWAY.value * distance;
+                is_far.then_some([distance, allowed])
+            }
+            _ => None,
+        };
         let loose = within.filter(|within| spread < tolerance::SMOOTHED_AWAY.value * within);
         Ok(Self {
             strays: strays(profile),
             loose: loose.map(|within| [within, spread]),
+            smoothed_away,
             contradicted: contradicted(model, profile, own, within.unwrap_or(spread))?,
         })
     }
+}
+
+/// Range of the lifts of rows on a dwell, m.
+fn range(profile: &TableProfile, [from, to]: &[f64; 2]) -> f64 {
+    let is_inside = |row: &&TableRow| (row.angle_deg - from).rem_euclid(360.0) <= to - from;
+    let lifts = profile.rows.iter().filter(is_inside).map(|row| row.lift);
+    lifts.clone().fold(f64::NEG_INFINITY, f64::max) - lifts.fold(f64::INFINITY, f64::min)
 }
 
 /// Finds where a smoothing spline is far from the rows; it is meant to be within `within` m of them.
@@ -319,10 +376,17 @@ fn contradicted(
     // Of the rows, whatever follows on them.
     let cam = spline_of_rows(model, profile)?;
     let off = |row: &TableRow| (cam.lift(row.angle_deg.to_radians()).value - row.lift).abs();
-    let worst = profile.rows.iter().map(|row| (row.angle_deg, off(row))).max_by(|one, two| one.1.total_cmp(&two.1));
+    let worst = profile.rows.iter().map(|row| (row, off(row))).max_by(|one, two| one.1.total_cmp(&two.1));
     let least = tolerance::NOISE_SEEN.value * profile.rise();
-    let is_far = |(_, off): &(f64, f64)| *off > FAR * within.max(least);
-    Ok(worst.filter(is_far).map(|(cam_angle_deg, off_m)| Contradicted { field, cam_angle_deg, off_m }))
+    let Some((row, off_m)) = worst.filter(|(_, off)| *off > FAR * within.max(least)) else { return Ok(None) };
+    // A row that is as far from the spline without them is not far because of them.
+    let found = Smoothing { corners_deg: None, dwells_deg: None, ..own.clone() };
+    let without = fit(model, profile, &found).and_then(|fit| {
+        let index = profile.rows.iter().position(|other| other == row).unwrap_or_default();
+        Ok(fit.lifts(profile)[index])
+    });
+    let is_theirs = without.map_or(true, |lift| 2.0 * (lift - row.lift).abs() < off_m);
+    Ok(is_theirs.then_some(Contradicted { field, cam_angle_deg: row.angle_deg, off_m }))
 }
 
 /// Uncertainty of a cam from the noise of its table.

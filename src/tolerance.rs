@@ -75,9 +75,15 @@ table! {
     /// Largest distance of rows from two cubics that meet at a corner, for rows with less noise than that.
     CORNER_MISFIT = 0.01, "of what the largest second derivative bends from one row to the next, twice over: two cubics follow a \
         designed motion over six rows on either side that closely, and leave several times as much of a steep rise of the acceleration";
-    /// Squared noise of the rows over the squared misfit that a corner removes, compared with a smooth motion.
-    CORNER_NOISE = 1.0 / 64.0, "of it, both squared: eight standard deviations, so that no steep rise of the acceleration that coarse \
-        rows half hide is taken for a corner";
+    /// Inverse of the evidence from which a corner in rows is certain.
+    CORNER_CERTAIN = 1.0 / 25.0, "of the evidence, in squared standard deviations: five of them, which hardly any simulated cam has whose acceleration \
+        takes more than four rows, and four degrees, to change by its largest value";
+    /// Inverse of the evidence from which a corner in rows is doubtful.
+    CORNER_DOUBTFUL = 1.0 / 12.0, "of the evidence, in squared standard deviations: a few of a thousand such cams have as much; below that a smooth \
+        motion fits almost as well";
+    /// Inverse of the trend of rows from which a stretch is no dwell.
+    DWELL_TREND = 1.0 / 25.0, "of the trend, in squared standard deviations, of the four coefficients of a polynomial together: noise gives more to one \
+        dwell in 20000, and a base circle that runs out by three times its noise over thirty rows gives more";
     /// Width by which the ranges of a segment's lift and derivatives may exceed the true ranges.
     RANGE_WIDTH = 1e-3, "of the range, which is halved into pieces until what is added for what lies between the samples is \
         below this: closer ranges would save a search for contacts less than they cost";

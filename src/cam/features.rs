@@ -1,17 +1,19 @@
 //! Corners and dwells, found in the rows of a table.
 //!
-//! A dwell is a stretch over which rows stay within their noise. It must be so long that a curvature hidden by noise is a small part
-//! of the cam's largest. It is taken to end a little inside: a motion leaves it too slowly to be seen at first.
+//! A dwell is a stretch over which rows stay within their noise, without a trend. It must be so long that a curvature hidden by noise is a
+//! small part of the cam's largest, and the lift must move on where it ends: a base circle that runs out is none. It is taken to end a
+//! little inside: a motion leaves it too slowly to be seen at first.
 //!
-//! At a corner the rows on both sides fit a cubic plus a jump of its second and third derivatives. Elsewhere a quartic with a
-//! jump of the third alone, which has as many coefficients, fits equally well. A corner is where the first fit leaves much less than the
-//! second, each with its jump where it leaves the least. The jump must also be no small part of the largest curvature.
+//! A corner is where the rows on both sides fit a jump of the second derivative better than any smooth motion, by a test
+//! (`corner_test`). The jump must also be no small part of the largest curvature. A corner with less evidence is doubtful.
 
 use std::f64::consts::TAU;
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 use serde::Serialize;
 
+use super::corner_test::{self, Jump, Scales};
+use super::orthonormal::Orthonormal;
 pub(super) use super::smoothing::Features;
 use crate::elementary;
 use crate::model::{Smoothing, TableProfile, TableRow};
@@ -32,26 +34,42 @@ struct Rows<'a> {
 /// With more rows than this, one in so many is examined: the features are some degrees long.
 const MOST_ROWS: usize = 1000;
 
-/// The features that a model gives, and those that it leaves to be found; `half_step` is half of the rounding step of the lifts.
-pub(super) fn of(smoothing: &Smoothing, angles: &[f64], lifts: &[f64], half_step: f64) -> Features {
+/// Corners that were looked for in rows, rad, ascending.
+#[derive(Clone, Debug, Default)]
+struct FoundCorners {
+    /// Corners that no smooth motion explains.
+    certain: Vec<f64>,
+    /// Corners with less evidence, which are left out of the cam.
+    doubtful: Vec<f64>,
+}
+
+/// Features that a model gives and those that it leaves to be found, with doubtful corners; `half_step` is half of the rounding step of the
+/// lifts.
+pub(super) fn of(smoothing: &Smoothing, angles: &[f64], lifts: &[f64], half_step: f64) -> (Features, Vec<f64>) {
     let given = |degrees: &Vec<f64>| degrees.iter().map(|angle| angle.to_radians()).collect();
-    let mut corners: Option<Vec<f64>> = smoothing.corners_deg.as_ref().map(given);
+    let corners: Option<Vec<f64>> = smoothing.corners_deg.as_ref().map(given);
     let given = |degrees: &Vec<[f64; 2]>| degrees.iter().map(|dwell| dwell.map(f64::to_radians)).collect();
-    let mut dwells: Option<Vec<[f64; 2]>> = smoothing.dwells_deg.as_ref().map(given);
-    if corners.is_none() || dwells.is_none() {
-        let every = angles.len().div_ceil(MOST_ROWS);
-        let thin = |all: &[f64]| all.iter().copied().step_by(every).collect::<Vec<_>>();
-        let (angles, lifts) = (thin(angles), thin(lifts));
-        let rows = Rows::new(&angles, &lifts, half_step);
-        let found = corners.get_or_insert_with(|| rows.corners());
-        if dwells.is_none() {
-            dwells = Some(rows.dwells(found));
-        }
-        if smoothing.corners_deg.is_none() {
-            found.retain(|corner| !dwells.iter().flatten().any(|dwell| is_inside(*corner, dwell)));
+    let dwells: Option<Vec<[f64; 2]>> = smoothing.dwells_deg.as_ref().map(given);
+    let (corners, dwells) = match (corners, dwells) {
+        (Some(corners), Some(dwells)) => return (Features { corners, dwells }, Vec::new()),
+        open => open,
+    };
+    let every = angles.len().div_ceil(MOST_ROWS);
+    let thin = |all: &[f64]| all.iter().copied().step_by(every).collect::<Vec<_>>();
+    let (angles, lifts) = (thin(angles), thin(lifts));
+    let rows = Rows::new(&angles, &lifts, half_step);
+    let is_given = corners.is_some();
+    let mut found = match corners {
+        Some(certain) => FoundCorners { certain, doubtful: Vec::new() },
+        None => rows.corners(),
+    };
+    let dwells = dwells.unwrap_or_else(|| rows.dwells(&found.certain));
+    if !is_given {
+        for corners in [&mut found.certain, &mut found.doubtful] {
+            corners.retain(|corner| !dwells.iter().any(|dwell| is_inside(*corner, dwell)));
         }
     }
-    Features { corners: corners.unwrap_or_default(), dwells: dwells.unwrap_or_default() }
+    (Features { corners: found.certain, dwells }, found.doubtful)
 }
 
 /// Whether a corner is inside of a dwell; both in radians.
@@ -185,56 +203,101 @@ impl<'a> Rows<'a> {
         const FEWEST: isize = 6;
         /// Angle in which the acceleration of a motion rises to its largest, rad.
         const RISE: f64 = 0.2;
+        /// Longest way over which a motion that has left a dwell stays within the room once more, over the way that it needed to leave.
+        const LEAVING: f64 = 0.6;
+        /// Length over that way from which a stretch without a trend is a dwell, however slowly it is left.
+        const LONG: f64 = 10.0;
         let count = self.angles.len() as isize;
         let room = FAR * self.noise;
         // From where the lift changes most, so that no dwell is cut in two.
         let change = |row: &isize| (self.row(row + 1).1 - self.row(*row).1).abs();
         let first = (0..count).max_by(|one, two| change(one).total_cmp(&change(two))).map_or(0, |row| row + 1);
-        let mut found = Vec::new();
+        // Off by the room: what leaves at a corner after c'' x^2/2 = 2 room, what leaves smoothly after c''' x^3/6.
+        let sudden = (4.0 * room / self.curvature).sqrt();
+        let smooth = elementary::cbrt(12.0 * room * RISE / self.curvature).max(sudden);
+        let mut stretches: Vec<[isize; 2]> = Vec::new();
         let mut row = first;
         while row < first + count {
-            let mut range = [self.row(row).1; 2];
-            let mut end = row;
-            while end + 1 < first + count {
-                let lift = self.row(end + 1).1;
-                let wider = [range[0].min(lift), range[1].max(lift)];
-                if wider[1] - wider[0] > 2.0 * room {
-                    break;
-                }
-                (range, end) = (wider, end + 1);
-            }
+            let end = self.stays(row, 1, first + count - 1 - row, room);
             let [from, to] = [row, end].map(|row| self.row(row).0);
             // A parabola that stays within the room over the stretch: c'' (length/2)^2 / 2 = 2 room.
             let hidden = 16.0 * room / (to - from).powi(2);
             if end - row + 1 >= FEWEST && hidden <= tolerance::HIDDEN_CURVATURE.value * self.curvature {
-                // What leaves at a corner is off by the room after c'' x^2/2 = 2 room, what leaves smoothly after c''' x^3/6.
-                let sudden = (4.0 * room / self.curvature).sqrt();
-                let smooth = elementary::cbrt(12.0 * room * RISE / self.curvature).max(sudden);
-                let snap = |end: f64, inward: f64| {
-                    let near = |corner: &f64| {
-                        let away = (corner - end + 0.5 * TAU).rem_euclid(TAU) - 0.5 * TAU;
-                        (away.abs() <= smooth + 2.0 * self.gap).then_some(end + away)
-                    };
-                    corners.iter().find_map(near).unwrap_or(end + inward * smooth)
+                // Noise may part a dwell: two stretches that meet at one lift are one, or are none if they have a trend together.
+                let meets = |before: &&mut [isize; 2]| {
+                    let apart = (self.mean(**before) - self.mean([row, end])).abs();
+                    from - self.row(before[1]).0 <= smooth + 2.0 * self.gap && apart <= 2.0 * room
                 };
-                let [from, to] = [snap(from, 1.0), snap(to, -1.0)];
-                if to - from > 0.0 {
-                    let start = from.rem_euclid(TAU);
-                    found.push([start, start + to - from]);
+                match stretches.last_mut().filter(meets) {
+                    Some(before) => before[1] = end,
+                    None => stretches.push([row, end]),
                 }
             }
             row = end + 1;
+        }
+        let mut found = Vec::new();
+        for ends in stretches {
+            let [start, end] = ends.map(|row| self.row(row).0);
+            let snap = |end: f64, inward: f64| {
+                let near = |corner: &f64| {
+                    let away = (corner - end + 0.5 * TAU).rem_euclid(TAU) - 0.5 * TAU;
+                    (away.abs() <= smooth + 2.0 * self.gap).then_some(end + away)
+                };
+                corners.iter().find_map(near).unwrap_or(end + inward * smooth)
+            };
+            let [from, to] = [snap(start, 1.0), snap(end, -1.0)];
+            // The top or the bottom of a wave stays long as well, but moves on slowly.
+            let moves_on = |row: isize, way: isize| {
+                let last = self.stays(row + way, way, count, room);
+                (self.row(last).0 - self.row(row + way).0).abs() <= LEAVING * smooth + 1.5 * self.gap
+            };
+            let is_left = end - start > LONG * smooth || moves_on(ends[0], -1) && moves_on(ends[1], 1);
+            if to - from > 0.0 && is_left && self.is_level(ends, [from, to]) {
+                let start = from.rem_euclid(TAU);
+                found.push([start, start + to - from]);
+            }
         }
         found.sort_by(|one, two| one[0].total_cmp(&two[0]));
         found
     }
 
-    /// Where the second derivative jumps, by rising angle.
-    fn corners(&self) -> Vec<f64> {
+    /// The last row from `row` on, forwards or backwards and `most` rows away at most, up to which the lifts stay within twice the room.
+    fn stays(&self, row: isize, way: isize, most: isize, room: f64) -> isize {
+        let mut range = [self.row(row).1; 2];
+        let within = |away: &isize| {
+            let lift = self.row(row + way * away).1;
+            range = [range[0].min(lift), range[1].max(lift)];
+            range[1] - range[0] <= 2.0 * room
+        };
+        row + way * (1..=most).take_while(within).last().unwrap_or(0)
+    }
+
+    /// The mean lift from one row to another.
+    fn mean(&self, [start, end]: [isize; 2]) -> f64 {
+        (start..=end).map(|row| self.row(row).1).sum::<f64>() / (end - start + 1) as f64
+    }
+
+    /// Whether rows between two angles show no trend: no polynomial of fourth degree takes more from their squares than noise gives it.
+    fn is_level(&self, [start, end]: [isize; 2], [from, to]: [f64; 2]) -> bool {
+        const DEGREE: i32 = 4;
+        let inside = (start..=end).map(|row| self.row(row)).filter(|(angle, _)| (from..=to).contains(angle));
+        let (angles, lifts): (Vec<f64>, Vec<f64>) =
+            inside.map(|(angle, lift)| (2.0 * (angle - from) / (to - from) - 1.0, lift)).unzip();
+        let Some(polynomials) = Orthonormal::new(&angles, DEGREE).filter(|_| angles.len() > DEGREE as usize + 1) else {
+            return true;
+        };
+        let mut lifts = DVector::from_iterator(lifts.len(), lifts.iter().map(|lift| lift - lifts[0]));
+        let trend: f64 = polynomials.take(&mut lifts)[1..].iter().sum();
+        tolerance::DWELL_TREND.value * trend <= self.noise * self.noise
+    }
+
+    /// Places where the second derivative jumps.
+    fn corners(&self) -> FoundCorners {
         /// Rows examined on either side, a scale at a time.
         const SCALES: [isize; 3] = [6, 12, 24];
         let count = self.angles.len() as isize;
-        let mut found: Vec<f64> = Vec::new();
+        let is_certain = |jump: &Jump| tolerance::CORNER_CERTAIN.value * jump.evidence >= 1.0;
+        let mut found: Vec<Jump> = Vec::new();
         let apart = |one: f64, two: f64| ((one - two + 0.5 * TAU).rem_euclid(TAU) - 0.5 * TAU).abs();
         for reach in SCALES.into_iter().filter(|reach| 4 * reach < count) {
             let half = reach / 2;
@@ -245,78 +308,29 @@ impl<'a> Rows<'a> {
                 let here = differ(*row);
                 here >= least && (1..=half).all(|away| here >= differ(row - away) && here > differ(row + away))
             };
-            let mut seen: Vec<(f64, f64)> =
-                (0..count).filter(is_most).filter_map(|row| self.corner(row, reach)).collect();
-            seen.sort_by(|one, two| two.0.total_cmp(&one.0));
-            for (_, at) in seen {
-                if found.iter().all(|other| apart(*other, at) > half as f64 * self.gap) {
-                    found.push(at);
+            let mut seen: Vec<Jump> = (0..count).filter(is_most).filter_map(|row| self.corner(row, reach)).collect();
+            seen.sort_by(|one, two| two.evidence.total_cmp(&one.evidence));
+            for jump in seen {
+                match found.iter_mut().find(|other| apart(other.at, jump.at) <= half as f64 * self.gap) {
+                    // Rows over a longer stretch may settle a doubt.
+                    Some(other) if !is_certain(other) && is_certain(&jump) => *other = jump,
+                    Some(_) => {}
+                    None => found.push(jump),
                 }
             }
         }
-        found.iter_mut().for_each(|corner| *corner = corner.rem_euclid(TAU) % TAU);
-        found.sort_by(f64::total_cmp);
-        found
-    }
-
-    /// Advantage of a corner over a jump of the third derivative, or over a steep rise of the second, in the squares that it leaves of the
-    /// rows around one, over the squares of the noise; and its place. None where the advantage or the corner is too small.
-    fn corner(&self, row: isize, reach: isize) -> Option<(f64, f64)> {
-        /// Parts of the rows on one side, over half of which the acceleration may as well rise.
-        const RISES: [f64; 2] = [0.25, 0.5];
-        let [(with, at, jump), (without, ..)] = [0.0, f64::NAN].map(|rise| self.best(row, reach, rise));
-        let rising = RISES.iter().filter_map(|rise| Some(self.fitted(at, row, reach, *rise)?.0));
-        let without = rising.fold(without, f64::min);
-        // The rows less two polynomials and where they meet.
-        let freedom = (2 * reach - 6) as f64;
-        let gained = (without - with) / (with / freedom).max(self.noise * self.noise);
-        // What two cubics cannot follow is no noise, and hides more than one jump.
-        let coarse = tolerance::CORNER_MISFIT.value * self.curvature * self.gap * self.gap;
-        let noise = self.noise.max(coarse);
-        let is_clear =
-            with / freedom <= 4.0 * noise * noise && noise * noise <= tolerance::CORNER_NOISE.value * (without - with);
-        let is_one = is_clear && jump.abs() >= tolerance::CORNER_SHARE.value * self.curvature;
-        is_one.then_some((gained, at))
-    }
-
-    /// The least sum of squares left of the rows around one, the place of the jump then, and the jump.
-    fn best(&self, row: isize, reach: isize, rise: f64) -> (f64, f64, f64) {
-        /// Parts of the stretch that are tried, at first and after each round.
-        const PARTS: i32 = 6;
-        const ROUNDS: i32 = 9;
-        let mut step = 0.5 * reach as f64 * self.gap / f64::from(PARTS);
-        let mut best = (f64::INFINITY, self.row(row).0, 0.0);
-        for _ in 0..ROUNDS {
-            let middle = best.1;
-            for at in (-PARTS..=PARTS).map(|part| middle + f64::from(part) * step) {
-                if let Some((left, jump)) = self.fitted(at, row, reach, rise).filter(|(left, _)| *left < best.0) {
-                    best = (left, at, jump);
-                }
-            }
-            step *= 2.0 / f64::from(PARTS);
-        }
-        best
-    }
-
-    /// The sum of squares that a cubic with a jump of its second and third derivatives at `at` leaves of the rows around one, and the jump
-    /// of the second. With a `rise`, the second derivative rises over that part of the rows on either side instead. Where `rise` is not a
-    /// number, the fit is a quartic with a jump of the third.
-    fn fitted(&self, at: f64, row: isize, reach: isize, rise: f64) -> Option<(f64, f64)> {
-        let unit = reach as f64 * self.gap;
-        let rows: Vec<(f64, f64)> = (row - reach..=row + reach).map(|row| self.row(row)).collect();
-        let middle = self.row(row).1;
-        let column = |u: f64, column: i32| match column {
-            4 if rise == 0.0 => u.max(0.0).powi(2),
-            // The integral of the integral of what rises from 0 to 2 in between.
-            4 if rise > 0.0 => ((u + rise).max(0.0).powi(3) - (u - rise).max(0.0).powi(3)) / (6.0 * rise),
-            5 => u.max(0.0).powi(3),
-            power => u.powi(power),
+        let of = |certain: bool| {
+            let corners = found.iter().filter(|jump| is_certain(jump) == certain);
+            let mut corners: Vec<f64> = corners.map(|jump| jump.at.rem_euclid(TAU) % TAU).collect();
+            corners.sort_by(f64::total_cmp);
+            corners
         };
-        let matrix = DMatrix::from_fn(rows.len(), 6, |index, power| column((rows[index].0 - at) / unit, power as i32));
-        let right = DVector::from_fn(rows.len(), |index, _| rows[index].1 - middle);
-        let qr = matrix.clone().qr();
-        let solution = qr.r().solve_upper_triangular(&(qr.q().transpose() * &right))?;
-        let left = right - matrix * &solution;
-        Some((left.norm_squared(), 2.0 * solution[4] / (unit * unit)))
+        FoundCorners { certain: of(true), doubtful: of(false) }
+    }
+
+    /// A jump among the rows around one.
+    fn corner(&self, row: isize, reach: isize) -> Option<Jump> {
+        let rows: Vec<(f64, f64)> = (row - reach..=row + reach).map(|row| self.row(row)).collect();
+        corner_test::jump(&rows, &Scales { gap: self.gap, noise: self.noise, curvature: self.curvature })
     }
 }

@@ -28,6 +28,8 @@ pub(crate) struct Fit {
     pub weight: f64,
     /// Corners and dwells, given or found.
     features: Features,
+    /// Corners that are doubtful and left out, rad.
+    doubtful: Vec<f64>,
     /// The standard deviation of the rows from a smooth motion, m; not a number where the spline goes through them.
     pub noise: f64,
 }
@@ -49,6 +51,11 @@ impl Fit {
     /// Its corners, degrees.
     pub fn corners_deg(&self) -> Vec<f64> {
         self.features.corners.iter().map(|corner| corner.to_degrees()).collect()
+    }
+
+    /// Doubtful corners, which it leaves out, degrees.
+    pub fn doubtful_deg(&self) -> Vec<f64> {
+        self.doubtful.iter().map(|corner| corner.to_degrees()).collect()
     }
 
     /// Its dwells, from and to, degrees.
@@ -81,7 +88,7 @@ pub(crate) fn fit(model: &Model, profile: &TableProfile, smoothing: &Smoothing) 
     let angles: Vec<f64> = profile.rows.iter().map(|row| row.angle_deg.to_radians()).collect();
     let lifts: Vec<f64> = profile.rows.iter().map(|row| row.lift).collect();
     let half_step = profile.reading.half_step();
-    let mut features = features::of(smoothing, &angles, &lifts, half_step);
+    let (mut features, doubtful) = features::of(smoothing, &angles, &lifts, half_step);
     let layout = |features: &Features| {
         let too_few = || model.reject("cam.dwells_deg", "leaves fewer than three rows outside of the dwells");
         Layout::new(&angles, features).ok_or_else(too_few)
@@ -92,7 +99,10 @@ pub(crate) fn fit(model: &Model, profile: &TableProfile, smoothing: &Smoothing) 
         })
     };
     // Dwells that were found and leave no motion between them are none: the rows are so rough that all of them look alike.
-    if smoothing.dwells_deg.is_none() && layout(&features).is_err() {
+    // So are those between which the lift steps from one row to the next, as where a gauge has slipped.
+    let [smoothest, _] = WEIGHTS;
+    let is_none = |laid: Layout| laid.smoothed(&lifts, elementary::powf(10.0_f64, smoothest)).is_none();
+    if smoothing.dwells_deg.is_none() && layout(&features).map_or(true, is_none) {
         features.dwells.clear();
     }
     // A dwell that the model gives has been checked with the model.
@@ -114,7 +124,7 @@ pub(crate) fn fit(model: &Model, profile: &TableProfile, smoothing: &Smoothing) 
     }
     let spline = laid.smoothed(&lifts, elementary::powf(10.0_f64, weight)).ok_or_else(|| overflow(model, profile))?;
     let noise = (spline.squares / (spline.moving - spline.freedom)).sqrt();
-    Ok(Fit { layout: laid, weight, noise, spline, features })
+    Ok(Fit { layout: laid, weight, noise, spline, features, doubtful })
 }
 
 fn overflow(model: &Model, profile: &TableProfile) -> ModelError {
@@ -153,7 +163,13 @@ fn weight(
     let overflow = || overflow(model, profile);
     match tolerance {
         SmoothingTolerance::Auto => {
-            let cross_validated = cross_validated(at).ok_or_else(overflow)?;
+            let too_few = || {
+                let words = "has too few rows outside of dwells for a smoothing spline: give rows closer together, or spline = \"quintic\"";
+                model.reject(profile.place(), words)
+            };
+            let [low, _] = WEIGHTS;
+            at(low).ok_or_else(overflow)?;
+            let cross_validated = cross_validated(at).ok_or_else(too_few)?;
             // The smoother of the two.
             Ok(match within(at, profile.reading.half_step()) {
                 Some(Kept::At(weight)) => cross_validated.min(weight),

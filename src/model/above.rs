@@ -278,9 +278,11 @@ impl<'a> Table<'a> {
         };
         let words = match meant {
             [] => format!(
-                "the unit of the {name} must be one of: {}; or say it in [cam], by {field} = \"{example}\"",
-                units.join(", ")
+                "the unit of the {name} must be one of: {}; or say it in [cam], by {field} = \"{example}\"{}",
+                units.join(", "),
+                if column == 0 { "" } else { ", or by a decimal part such as unit = \"0.01 mm\"" }
             ),
+            [fields] if fields.contains('=') => format!("names a part of a unit: say in [cam] {fields}"),
             [one] => {
                 format!("names a multiple of a unit: say in [cam] what the numbers are in, as {field} = \"{one}\" does")
             }

@@ -33,7 +33,7 @@ enum Meaning {
 }
 
 /// Words by their meaning, each once. One behind a hyphen may end a longer word, as in German.
-const WORDS: [(Meaning, &str); 22] = [
+const WORDS: [(Meaning, &str); 23] = [
     (
         Meaning::Other,
         "velocity vel v speed acceleration accel acc a jerk j force load curvature time t no nr num number row index idx n point points pt pts \
@@ -56,6 +56,7 @@ const WORDS: [(Meaning, &str); 22] = [
     (Meaning::AngleUnit(0), "deg degs degree degrees ° grad degré degrés gradi grados"),
     (Meaning::AngleUnit(1), "rad rads radian radians"),
     (Meaning::AngleUnit(2), "turn turns rev revs revolution revolutions"),
+    (Meaning::AngleUnit(3), "gon gons gradian gradians"),
     (Meaning::LengthUnit(0), "m metre metres meter meters"),
     (Meaning::LengthUnit(1), "cm centimetre centimetres centimeter centimeters"),
     (Meaning::LengthUnit(2), "mm millimetre millimetres millimeter millimeters"),
@@ -64,7 +65,7 @@ const WORDS: [(Meaning, &str); 22] = [
     (Meaning::LengthUnit(5), "ft foot feet"),
     (Meaning::LengthUnit(6), "thou thous mil mils"),
     (Meaning::TimeUnit, "s sec ms min"),
-    (Meaning::OtherUnit, "km dm nm pm yd yard yards gon gons mrad arcmin arcsec °c °f %"),
+    (Meaning::OtherUnit, "km dm nm pm yd yard yards mrad arcmin arcsec °c °f %"),
     (Meaning::Part(1), "tenth tenths zehntel"),
     (Meaning::Part(2), "hundredth hundredths hundertstel"),
     (Meaning::Part(3), "thousandth thousandths tausendstel"),
@@ -156,7 +157,7 @@ fn first_length(text: &str) -> usize {
 fn tokens(text: &str) -> Vec<Token> {
     /// Signs by the forms that they are typed in.
     const SIGNS: [(&str, &str); 7] =
-        [("/", "/"), ("#", "#"), ("%", "%"), ("°", "°"), ("*", "*×"), ("'", "'’′´"), ("\"", "\"″”“")];
+        [("/", "/"), ("#", "#"), ("%", "%"), ("°", "°"), ("*", "*×·⋅"), ("'", "'’′´"), ("\"", "\"″”“")];
     let mut text = text.replace("\"\"", "\"").replace('º', "°");
     for (power, raised) in (1..).zip(['¹', '²', '³', '⁴', '⁵', '⁶']) {
         for written in [format!("10⁻{raised}"), format!("10^-{power}")] {
@@ -314,6 +315,10 @@ fn unit_at(tokens: &[Token], index: usize, meaning: Meaning, from: usize) -> Fou
             None => {}
         },
         (Some("^"), ..) => meaning = Meaning::OtherUnit,
+        // "[mm·10⁻²]"; outside of brackets the numbers may be so many times those in the unit.
+        (Some("*"), Some(value), _) if tokens[index].bracket > 0 && value < 1.0 => {
+            (end, parts) = (end + 2, parts * value)
+        }
         _ if number(end).is_some_and(|value| value < 1.0) => (end, parts) = (end + 1, f64::NAN),
         _ if tokens[index].bracket > 0 && means(end).and_then(per) == Some(true) => (end, is_rate) = (end + 1, true),
         _ => {}
@@ -412,10 +417,11 @@ impl Heading {
             _ => None,
         };
         let is_unread = is_unread(&tokens, &units);
+        let small = || units.iter().find_map(|unit| turn_of(&tokens, unit)).map(|turn| vec![turn]);
         let names_angle = |unit: &usize| AngleUnit::NAMES[*unit].to_owned();
         Self {
             kind,
-            angle: named(&tokens, &units, is_unread, angle, names_angle),
+            angle: named(&tokens, &units, is_unread, angle, names_angle).map_err(|meant| small().unwrap_or(meant)),
             lift: named(&tokens, &units, is_unread, lift, |unit| unit.name()),
             is_unit: !units.is_empty() && (0..tokens.len()).all(is_of_unit),
             is_of,
@@ -426,6 +432,22 @@ impl Heading {
     pub(super) fn is_known(&self) -> bool {
         self.kind != Kind::Unknown || matches!(self.lift, Ok(Some(_)))
     }
+}
+
+/// Fields of the model by which angles are read in a unit that has no name in it, or in a decimal part of one: "[0.1 deg]", "[mrad]".
+fn turn_of(tokens: &[Token], unit: &FoundUnit) -> Option<String> {
+    /// Units with a unit of the model and the number of theirs, times that unit's, that make a turn of 360 degrees.
+    const SMALL: [(&str, usize, f64); 3] =
+        [("mrad", 1, 360_000.0), ("arcmin", 0, 21_600.0), ("arcsec", 0, 1_296_000.0)];
+    let small = SMALL.iter().find(|(word, ..)| tokens[unit.at.clone()].iter().any(|token| token.text == *word));
+    let (index, turn) = match (small, unit.meaning, unit.parts) {
+        (Some((_, index, turn)), _, Parts::Decimal(0)) => (*index, *turn),
+        (None, Meaning::AngleUnit(index), Parts::Decimal(places)) if places > 0 => {
+            (index, (360.0 / decimal_part(places)).round())
+        }
+        _ => return None,
+    };
+    Some(format!("angle_unit = \"{}\" and turn_deg = {turn}", AngleUnit::NAMES[index]))
 }
 
 /// The one unit of a kind in a cell.
@@ -468,7 +490,7 @@ fn multiple(tokens: &[Token], units: &[FoundUnit]) -> Option<f64> {
         let before = index.checked_sub(1).map_or("", |before| &tokens[before].text);
         let is_used = units.iter().any(|unit| unit.at.contains(&index));
         match (before, tokens[index].number(), tokens[index].meaning()) {
-            ("*", Some(number), _) => Some(number),
+            ("*", Some(number), _) if !is_used => Some(number),
             ("x", Some(number), _) if number >= 10.0 => Some(number),
             ("/", Some(number), _) if !is_used && places_of(number).is_some() => Some(number),
             (_, Some(number), _) if !is_used && places_of(1.0 / number).is_some() => Some(1.0 / number),

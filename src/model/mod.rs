@@ -8,6 +8,7 @@ mod above;
 mod changed;
 mod complaint;
 mod document;
+mod doubts;
 mod exact;
 mod fields;
 mod follower_errors;

@@ -35,6 +35,9 @@ pub struct TableLayout {
     /// A number whose comma may part thousands, where three digits follow every comma.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub thousands: Option<String>,
+    /// Whether it does, as the lifts beside it show, and lifts are read so.
+    #[serde(rename = "parts_thousands", skip_serializing_if = "std::ops::Not::not")]
+    pub has_parted: bool,
     /// Number of lines with a comment.
     pub comments: usize,
     /// Lines above the header, or above the rows where there is none.
@@ -85,6 +88,44 @@ impl<'a> Table<'a> {
         ModelError { line: complaint.line, ..ModelError::file(&self.file, words) }
     }
 
+    /// Refuses a column that the model chooses by a number or a name that no line has.
+    fn has_columns(
+        &self,
+        above: &[LineAbove<'_>],
+        width: usize,
+        chosen: &[Option<Chosen>; 2],
+    ) -> Result<(), ModelError> {
+        let names = above.iter().rev().find(|above| above.cells.len() == width && !above.is_comment);
+        let named = names.map_or_else(String::new, |names| format!(": {}", names.cells.join(", ")));
+        let most = above.iter().map(|above| above.cells.len()).fold(width, usize::max);
+        for (chosen, field) in chosen.iter().zip(["angle_column", "lift_column"]) {
+            if let Some(Chosen::Number(number)) = chosen
+                && *number > most
+            {
+                let words = format!("has {width} columns{named}; {field} = {number} in [cam] asks for another");
+                return Err(self.complain(None, words));
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether a line below rows is the header of a second table: angles begin again below it.
+    fn begins_again(&self, line: usize, text: &str, chosen: &[Option<Chosen>; 2], rows: &[TableRow]) -> bool {
+        let (Some(first), Some(last)) = (rows.first(), rows.last()) else { return false };
+        // Only a line without numbers is looked at closely.
+        if text.trim_start().starts_with(|letter: char| letter.is_ascii_digit()) || has_numbers(text) {
+            return false;
+        }
+        let mut below = self.text.lines().skip(line).filter(|text| has_numbers(text));
+        let next = below.next().and_then(|row| {
+            let cell = row.split([',', ';', '\t', '|', ' ']).find(|cell| !cell.is_empty())?;
+            number(cell, false)
+        });
+        let is_back =
+            next.is_some_and(|next| (next - first.angle_deg).abs() < 0.5 * (last.angle_deg - first.angle_deg).abs());
+        is_back && self.is_header(text, chosen)
+    }
+
     /// Whether a line names an angle and a lift.
     fn is_header(&self, line: &str, chosen: &[Option<Chosen>; 2]) -> bool {
         let above = LineAbove::new((0, line), Separator::of(line), 0, false);
@@ -97,7 +138,8 @@ impl<'a> Table<'a> {
         let cell = |column: usize| layout.separator.cells(text).nth(column - 1);
         let [angle, lift] = layout.columns.map(cell);
         let number = |cell: &str| decimal(cell.trim_end_matches(['°', ' ']), layout.decimal_comma).into_owned();
-        Some([number(angle?), number(lift?)])
+        let lift = number(lift?);
+        Some([number(angle?), if layout.has_parted { lift.replace('.', "") } else { lift }])
     }
 
     /// Reads the rows of the text and its layout; `chosen` are the columns that the model chooses, the angle's first.
@@ -156,6 +198,7 @@ impl<'a> Table<'a> {
             above[..begins].iter().map(|line| LineAbove::new(*line, separator, width, false)).collect();
         above.extend(comments.map(|line| LineAbove::new(line, separator, width, true)));
         above.sort_by_key(|above| above.line);
+        self.has_columns(&above, width, chosen)?;
         let above = self.above(&above, width, chosen)?;
         let columns = match (above.columns, chosen) {
             (Some(columns), _) => columns,
@@ -180,6 +223,7 @@ impl<'a> Table<'a> {
             separator,
             decimal_comma: false,
             thousands: None,
+            has_parted: false,
             comments: 0,
             titles: above.titles,
             header: above.header.map(str::to_owned),
@@ -211,6 +255,7 @@ impl<'a> Table<'a> {
         };
         let advice = |layout: &TableLayout, text: &str| match &layout.header {
             Some(header) if header == text.trim() => ": this is the header again; leave the line out",
+            _ if self.is_header(text, chosen) => ": this is a header between rows; leave the line out",
             _ if is_number(text) => "",
             _ => "; if this line is no row, leave it out or begin it with #",
         };
@@ -218,6 +263,10 @@ impl<'a> Table<'a> {
         let mut rows: Vec<TableRow> = Vec::new();
         let (mut point, mut thousands) = (None, Thousands::default());
         for (line, text) in filled().skip(begins) {
+            if line > first_line && self.begins_again(line, text, chosen, &rows) {
+                let words = "is the header of a second table in this file: keep one of them".to_owned();
+                return Err(self.reject(line, "header", text.trim(), words));
+            }
             let (mut found, mut filled_cells) = ([None; 2], 0);
             for (column, cell) in separator.cells(text).enumerate() {
                 filled_cells = if cell.is_empty() { filled_cells } else { column + 1 };
@@ -257,8 +306,14 @@ impl<'a> Table<'a> {
             }
             thousands.see(angle, lift);
             let number = |column: &str, cell: &str| {
-                number(cell, layout.decimal_comma).ok_or_else(|| {
-                    self.reject(line, column, cell, format!("must be a finite number{}", advice(&layout, text)))
+                number(cell, layout.decimal_comma).ok_or_else(|| match slip(cell, layout.decimal_comma) {
+                    Some(slip) if cell.is_empty() => {
+                        self.reject(line, "row", text.trim(), format!("{slip}: {column} is missing"))
+                    }
+                    slip => {
+                        let slip = slip.map_or_else(|| advice(&layout, text).to_owned(), |slip| format!(": {slip}"));
+                        self.reject(line, column, cell, format!("must be a finite number{slip}"))
+                    }
                 })
             };
             let (angle_deg, lift) = (number(names[0], angle)?, number(names[1], lift)?);
@@ -267,8 +322,30 @@ impl<'a> Table<'a> {
             }
             rows.push(TableRow { angle_deg, lift, line });
         }
+        layout.has_parted = thousands.are_parted(&mut rows);
         layout.thousands = thousands.example();
         Ok((rows, layout))
+    }
+}
+
+/// The slip in a cell that is no finite number; none where it is unknown.
+fn slip(cell: &str, decimal_comma: bool) -> Option<&'static str> {
+    let begins = |cell: &str| {
+        let end = cell.find(|letter: char| {
+            letter.is_whitespace() || letter == '°' || letter.is_alphabetic() && !"eEdD".contains(letter)
+        })?;
+        number(cell[..end].trim_end(), decimal_comma)
+    };
+    let is_word =
+        |words: &[&str]| words.iter().any(|word| cell.trim_start_matches(['+', '-']).eq_ignore_ascii_case(word));
+    if cell.is_empty() {
+        Some("has an empty cell")
+    } else if is_word(&["nan", "inf", "infinity", "n/a", "na", "#n/a", "null"]) {
+        Some("this stands for a number that is not known; leave the row out")
+    } else if begins(cell).is_some() {
+        Some("it has a unit or a word in its cell; a unit stands in the header")
+    } else {
+        None
     }
 }
 
@@ -290,6 +367,8 @@ struct Thousands {
     is_decided: bool,
     /// Whether a lift has neither a comma nor a point, and is not 0.
     has_whole: bool,
+    /// Rows whose lift has a comma or a point.
+    parted: Vec<bool>,
 }
 
 impl Thousands {
@@ -301,6 +380,7 @@ impl Thousands {
                 self.example.get_or_insert_with(|| cell.to_owned());
             }
         }
+        self.parted.push(lift.contains(['.', ',']));
         // Points are decimal but where numbers below a thousand have none.
         match lift.split_once('.') {
             Some((before, behind)) => {
@@ -311,7 +391,33 @@ impl Thousands {
         }
     }
 
+    fn is_open(&self) -> bool {
+        self.example.as_ref().is_some_and(|example| !self.is_decided && (self.has_whole || example.contains(',')))
+    }
+
+    /// Reads lifts with a comma or a point in thousands where that alone makes one curve of them and the whole numbers beside them.
+    fn are_parted(&self, rows: &mut [TableRow]) -> bool {
+        /// Bends of the curve in thousands over those with decimals, below which no decimal is meant.
+        const SMOOTH: f64 = 0.5;
+        if !(self.is_open() && self.has_whole) {
+            return false;
+        }
+        let parted: Vec<f64> = rows
+            .iter()
+            .zip(&self.parted)
+            .map(|(row, is_parted)| if *is_parted { (1000.0 * row.lift).round() } else { row.lift })
+            .collect();
+        let bends =
+            |lifts: &[f64]| lifts.windows(3).map(|three| (three[0] - 2.0 * three[1] + three[2]).abs()).sum::<f64>();
+        let written: Vec<f64> = rows.iter().map(|row| row.lift).collect();
+        let is_one = bends(&parted) < SMOOTH * bends(&written);
+        if is_one {
+            rows.iter_mut().zip(parted).for_each(|(row, lift)| row.lift = lift);
+        }
+        is_one
+    }
+
     fn example(self) -> Option<String> {
-        self.example.filter(|example| !self.is_decided && (self.has_whole || example.contains(',')))
+        if self.is_open() { self.example } else { None }
     }
 }

@@ -58,29 +58,6 @@ impl TableProfile {
         lifts.clone().fold(f64::NEG_INFINITY, f64::max) - lifts.fold(f64::INFINITY, f64::min)
     }
 
-    /// Doubts about what the rows mean, a sentence each.
-    pub fn doubts(&self) -> Vec<String> {
-        /// Part of the rise that a lift may be below 0 by the errors of a gauge.
-        const BELOW: f64 = 0.01;
-        let (reading, mut doubts) = (&self.reading, Vec::new());
-        if reading.layout.as_ref().is_some_and(|layout| layout.is_of_crank) && reading.turn_deg.is_none() {
-            let words = "cam.turn_deg: the header of the table names a crank's angle, and 360 deg are read as one turn of the cam; if the cam \
-                         turns once in two turns of the crank, say turn_deg = 720 in [cam]";
-            doubts.push(words.to_owned());
-        }
-        let lowest = self.rows.iter().map(|row| row.lift).fold(f64::INFINITY, f64::min);
-        if lowest < -BELOW * self.rise() {
-            doubts.push(format!(
-                "{}: the lowest lift is {} {}; lifts below 0 are read as they are written: does the gauge count the other way round, or from the \
-                 nose?",
-                self.place(),
-                reading.in_model.told(lowest),
-                reading.unit
-            ));
-        }
-        doubts
-    }
-
     /// Field that gives the rows.
     pub fn place(&self) -> &'static str {
         if self.file.is_some() { "cam.file" } else { "cam.rows" }
@@ -484,6 +461,12 @@ impl Table<'_> {
             AngleUnit::NAMES.iter().enumerate().map(|(index, name)| (*name, index)).collect();
         let given_angle = fields.has("cam.angle_unit").then(|| fields.choice("cam.angle_unit", &names)).transpose()?;
         let angle = named.map_or(Ok(None), |named| named.angle.clone());
+        // A "grad" is a degree in German, and a gon elsewhere.
+        let is_grad = || {
+            named.and_then(|named| named.header.as_ref()).is_some_and(|header| header.to_lowercase().contains("grad"))
+        };
+        let is_gon = given_angle.is_some_and(|given| AngleUnit::NAMES[given] == "gon");
+        let angle = if is_gon && is_grad() { Ok(None) } else { angle };
         self.says_angles = angle.as_ref().is_ok_and(Option::is_some);
         let index =
             unit(fields, "cam.angle_unit", [given_angle, None], angle, |index| AngleUnit::NAMES[index].to_owned())?;

@@ -14,7 +14,9 @@ pub(super) struct AngleUnit {
 impl AngleUnit {
     pub(super) const DEGREES: Self = Self { index: 0, turn_deg: 360.0 };
     /// Names in a model file.
-    pub(super) const NAMES: [&'static str; 3] = ["deg", "rad", "turn"];
+    pub(super) const NAMES: [&'static str; 4] = ["deg", "rad", "turn", "gon"];
+    /// Degrees of a gon, of which a turn has 400.
+    const GON: f64 = 0.9;
 
     pub(super) fn name(self) -> &'static str {
         Self::NAMES[self.index]
@@ -30,7 +32,8 @@ impl AngleUnit {
         let degrees = match self.index {
             0 => angle,
             1 => angle.to_degrees(),
-            _ => 360.0 * angle,
+            2 => 360.0 * angle,
+            _ => Self::GON * angle,
         };
         if self.turn_deg == 360.0 { degrees } else { degrees * 360.0 / self.turn_deg }
     }
@@ -44,7 +47,8 @@ impl AngleUnit {
         let angle = match self.index {
             0 => degrees,
             1 => degrees.to_radians(),
-            _ => degrees / 360.0,
+            2 => degrees / 360.0,
+            _ => degrees / Self::GON,
         };
         format!("{angle:.14e}").parse().unwrap_or(angle)
     }

@@ -123,7 +123,7 @@ impl Table<'_> {
     ) -> Result<(bool, usize), ModelError> {
         /// Smallest fall of the angle that begins a new turn, degrees.
         const BACK: f64 = 180.0;
-        let mut turns = 0.0;
+        let (mut turns, mut begun) = (0.0, None);
         let first = rows.first().map_or(0.0, |row| row.angle_deg);
         // In radians, a turn is 2 pi to as many digits as were written.
         let slack = tolerance::TURN_CLOSED.value * 360.0 / rows.len() as f64;
@@ -134,6 +134,7 @@ impl Table<'_> {
             let begins_turn = turns == 0.0 && before.angle_deg - written > BACK;
             if begins_turn {
                 turns = 360.0;
+                begun = Some(*row);
             }
             row.angle_deg += turns;
             let row = *row;
@@ -143,8 +144,15 @@ impl Table<'_> {
                 let [from, to] = [first - turns, first + 360.0 - turns].map(|angle| self.shown(angle));
                 let words = format!("must be within a turn of the first row, from {from} to {to}");
                 let twice = rows.last().is_some_and(|last| last.angle_deg - first <= 2.0 * (360.0 + slack));
+                let over = rows.last().map_or(0.0, |last| last.angle_deg - first);
                 let crank = "are these degrees of a crank? then say turn_deg = 720 in [cam]";
+                let gon = "are these gon, 400 to a turn? then say angle_unit = \"gon\" in [cam]";
                 let meant = twice.then(|| match self.repeats(rows, index, slack) {
+                    _ if turns > 0.0 => {
+                        let start = begun.map_or(row.line, |begun: TableRow| begun.line);
+                        format!("angles begin again: does a second table begin on line {start}? then keep one of them")
+                    }
+                    _ if self.angles.is_of_cam() && (390.0..=400.0 + slack).contains(&over) => gon.to_owned(),
                     true => format!("the rows repeat those of the turn before: keep one turn of them; or {crank}"),
                     false => crank.to_owned(),
                 });

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use crate::cam::{Cam, ContourPoint, Corner, Jet, Law, Segment};
 use crate::measured::{Measured, PlausibleCams};
-use crate::model::{CamProfile, FollowerContact, Model, ModelError, StandardMotion};
+use crate::model::{CamProfile, FollowerContact, Model, ModelError, StandardMotion, TableProfile};
 
 /// Segments and corners of a model's cam; serializes to the document `corner-impact/cam/1`.
 #[derive(Clone, Debug, Serialize)]
@@ -26,6 +26,9 @@ pub struct CamSheet {
     /// Accuracy of the cam, if it is measured.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub measured: Option<Measured>,
+    /// Doubts about what the rows of a table mean, a sentence each.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub doubts: Vec<String>,
     /// Segments, in order of angle.
     pub segments: Vec<Segment>,
     /// The user's name of each segment: the motion of a program, the circle of a cam of arcs, else the kind of its law.
@@ -176,6 +179,7 @@ impl CamSheet {
             geometry: CamGeometry::of(model, cam),
             largest: [1, 2, 3].map(|order| Largest::of(cam, order)),
             measured: PlausibleCams::of(model)?.map(|likely| likely.measured),
+            doubts: model.table().map_or_else(Vec::new, TableProfile::doubts),
             segments,
             highest_order,
             own_corners: corners.iter().copied().filter(is_own).collect(),

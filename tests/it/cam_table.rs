@@ -297,7 +297,7 @@ fn tables_that_are_refused() {
             "angle [deg],lift [mille]\n0,1\n".into(),
             &[".csv:1: header = lift [mille]", "the unit of the lift must be one of: m, cm, mm"],
         ),
-        ("gradians", "angle (gon),lift\n0,1\n".into(), &["the unit of the angle must be one of: deg, rad"]),
+        ("hours", "angle (hours),lift\n0,1\n".into(), &["the unit of the angle must be one of: deg, rad"]),
         (
             "lifts-alone",
             "lift,lift\n1,0\n".into(),

@@ -85,6 +85,7 @@ mod orbit_numbers;
 mod outside;
 mod over;
 mod page;
+mod phantoms;
 mod physics;
 mod pictures;
 mod planted;

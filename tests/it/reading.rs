@@ -336,7 +336,7 @@ fn what_is_not_read_is_refused_with_what_makes_it_read() {
         (all("angle [deg],lift [furlong]"), "", "the unit of the lift must be one of: m, cm, mm, um, in, ft, thou;"),
         (all("angle [deg],lift in furlongs"), "", "say it in [cam], by unit"),
         (all("angle [deg],lift yards"), "", "the unit of the lift must be one of"),
-        (all("angle [gon],lift [mm]"), "", "the unit of the angle must be one of: deg, rad, turn;"),
+        (all("angle [hours],lift [mm]"), "", "the unit of the angle must be one of: deg, rad, turn, gon;"),
         (all("lifts in inches of cam 3\nangle,lift"), "", "say which the lifts are in, by unit in [cam]"),
         (wide("angle,lift intake,lift exhaust"), "", "say which in [cam], by lift_column"),
         (wide("angle,left,right"), "", "say which in [cam], by lift_column"),
@@ -346,8 +346,34 @@ fn what_is_not_read_is_refused_with_what_makes_it_read() {
             "has 3 columns without names: say which are the angle and the lift in [cam], as angle_column = 1 and lift_column = 2 do",
         ),
         (wide("angle,lift,s"), "lift_column = \"height\"", "its columns are angle, lift, s"),
-        (wide("angle,lift,s"), "lift_column = 4", "its columns are angle, lift, s"),
-        (wide(""), "angle_column = 1\nlift_column = 4", "must be two numbers"),
+        (
+            wide("angle,lift,s"),
+            "lift_column = 4",
+            "lift.csv: has 3 columns: angle, lift, s; lift_column = 4 in [cam] asks for another",
+        ),
+        (
+            wide(""),
+            "angle_column = 1\nlift_column = 4",
+            "lift.csv: has 3 columns; lift_column = 4 in [cam] asks for another",
+        ),
+        (slip("7,0.0000", "7,"), "", "row = 7,: has an empty cell: lift is missing"),
+        (
+            slip("7,0.0000", "7,NaN"),
+            "",
+            "lift = NaN: must be a finite number: this stands for a number that is not known",
+        ),
+        (
+            slip("7,0.0000", "7 deg,0.0000"),
+            "",
+            "angle_deg = 7 deg: must be a finite number: it has a unit or a word in its cell",
+        ),
+        (
+            all("angle,lift") + "\n" + &all("angle,lift"),
+            "",
+            "is the header of a second table in this file: keep one of them",
+        ),
+        (all("angle,lift") + &rows(0..360, plain), "", "does a second table begin on line 362? then keep one of them"),
+        (of(0..=399).replace(" [deg]", ""), "", "are these gon, 400 to a turn? then say angle_unit = \"gon\" in [cam]"),
         (wide("angle,lift,s"), "lift_column = 1.5", "must be the name of a column in quotes, or its number from 1"),
         (all("one,two"), "", "must name the angle, then the lift"),
         (slip("7,0.0000", "7,x"), "", "lift = x: must be a finite number"),
@@ -474,4 +500,81 @@ fn doubts_about_a_table_are_noted() {
     // Less than a hundredth of the rise is a gauge's.
     let low = |lowest: &str| of("angle,lift", 1.0).replacen("\n7,0.0000", &format!("\n7,{lowest}"), 1);
     assert_eq!([low("-0.0807"), low("-0.0809")].map(|csv| doubts(&csv, "").len()), [0, 1]);
+}
+
+/// Angles in units without a name in a model are read, or refused with the fields that make them read.
+#[test]
+fn angles_in_any_unit_are_read() {
+    let of = |head: &str, turn: f64| {
+        let row = |angle: f64, lift: f64| format!("{},{lift}", angle / 360.0 * turn);
+        format!("{head}\n{}", rows((0..360).step_by(2), row))
+    };
+    is_the_lobe(&of("angle [gon],lift [mm]", 400.0), "", 1.0);
+    is_the_lobe(&of("angle,lift [mm]", 400.0), "angle_unit = \"gon\"", 1.0);
+    is_the_lobe(&of("angle [grad],lift [mm]", 400.0), "angle_unit = \"gon\"", 1.0);
+    is_the_lobe(&of("Winkel [Grad],Hub [mm]", 360.0), "", 1.0);
+    for (head, turn, fields) in [
+        ("angle [0.1 deg],lift [mm]", 3600.0, ["angle_unit = \"deg\"", "turn_deg = 3600"]),
+        ("angle [mrad],lift [mm]", 2000.0 * std::f64::consts::PI, ["angle_unit = \"rad\"", "turn_deg = 360000"]),
+        ("angle [arcmin],lift [mm]", 21600.0, ["angle_unit = \"deg\"", "turn_deg = 21600"]),
+    ] {
+        let csv = of(head, turn);
+        let said = model(&TempDir::new().unwrap(), &csv, "").unwrap_err();
+        assert!(said.contains(&format!("say in [cam] {}", fields.join(" and "))), "{said}");
+        is_the_lobe(&csv, &fields.join("\n"), 1.0);
+    }
+}
+
+/// A unit times a power of ten is a part of it.
+#[test]
+fn a_unit_times_a_power_of_ten_is_a_part_of_it() {
+    let of = |head: &str| format!("{head}\n{}", rows(0..360, |angle, lift| format!("{angle},{:.2}", 100.0 * lift)));
+    for unit in ["mm·10⁻²", "mm*10^-2", "10⁻² mm", "mm × 0.01"] {
+        is_the_lobe(&of(&format!("angle [deg],lift [{unit}]")), "", 1.0);
+    }
+}
+
+/// Lifts in whole micrometres with a point between thousands are read so, and it is told.
+#[test]
+fn thousands_that_the_lifts_beside_them_show_are_read() {
+    let row = |angle: f64, lift: f64| {
+        let whole = (1000.0 * lift).round() as u32;
+        let lift = if whole < 1000 { whole.to_string() } else { format!("{}.{:03}", whole / 1000, whole % 1000) };
+        format!("{angle};{lift}")
+    };
+    let model = model(&TempDir::new().unwrap(), &format!("angle [deg];lift [um]\n{}", rows(0..360, row)), "").unwrap();
+    assert!(table(&model).rows.iter().all(|row| (row.lift - lift(row.angle_deg)).abs() < 6e-4));
+    let told = serde_json::to_value(&*table(&model).reading).unwrap();
+    assert_eq!((&told["thousands"], &told["parts_thousands"]), (&"1.027".into(), &true.into()));
+}
+
+/// Rows that are too far apart, a gauge that slipped and rows that are missing in a rise are noted, once each, and nothing else is.
+#[test]
+fn rows_that_leave_the_cam_open_are_noted() {
+    let doubts = |csv: String| table(&model(&TempDir::new().unwrap(), &csv, "").unwrap()).doubts();
+    let of = |angles: Vec<i32>, slip: f64| {
+        let row = |angle: f64, lift: f64| format!("{angle},{:.4}", if angle >= 300.0 { lift + slip } else { lift });
+        format!("angle [deg],lift [mm]\n{}", rows(angles, row))
+    };
+    let every = |step: usize| (0..360).step_by(step).collect::<Vec<i32>>();
+    assert_eq!(doubts(of(every(1), 0.0)), [""; 0]);
+    assert_eq!(doubts(of(every(5), 0.0)), [""; 0]);
+    let missing =
+        |from: i32| every(2).into_iter().filter(|angle| !(from..from + 6).contains(angle)).collect::<Vec<i32>>();
+    // On the base circle nothing is lost.
+    assert_eq!(doubts(of(missing(20), 0.0)), [""; 0]);
+    for (csv, says) in [
+        (
+            rows(every(30), |angle, _| format!("{angle},{:.4}", 5.0 - 5.0 * angle.to_radians().cos())),
+            "the rows are 30 deg apart, too far to know an acceleration",
+        ),
+        (
+            of(every(1), 0.05),
+            "the lift steps by 0.05 mm at 300 deg between two level stretches: has the gauge slipped?",
+        ),
+        (of(missing(140), 0.0), "no row between 138 and 146 deg, where the lift changes by"),
+    ] {
+        let told = doubts(csv);
+        assert!(told.len() == 1 && told[0].contains(says), "{told:?}");
+    }
 }

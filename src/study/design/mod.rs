@@ -294,6 +294,8 @@ pub struct SeparationPlace {
     pub cam_angles: [f64; 2],
     /// Share of the likely cams that let go here first.
     pub share: f64,
+    /// Number of likely cams that the share is of.
+    pub cams: usize,
 }
 
 #[derive(Serialize)]
@@ -374,8 +376,8 @@ pub fn known(
     (Separation::At { rpm, error: error + open, cam_angle, angle_error }, Some(errors))
 }
 
-/// The places where likely machines let go first, the likeliest first; none where they agree to 10 degrees.
-fn places(separation: Separation, machines: &PlausibleMachines<'_>) -> Vec<SeparationPlace> {
+/// Returns the places where likely machines let go first, the likeliest first; none where they agree to 10 degrees.
+pub fn separation_places(separation: Separation, machines: &PlausibleMachines<'_>) -> Vec<SeparationPlace> {
     /// Error up to which an angle is one place, and distance from which on two angles are two, rad.
     const ONE: f64 = PI / 18.0;
     let Separation::At { cam_angle, angle_error: Some(error), .. } = separation else { return Vec::new() };
@@ -393,6 +395,7 @@ fn places(separation: Separation, machines: &PlausibleMachines<'_>) -> Vec<Separ
         SeparationPlace {
             cam_angles: [from, from + alike[alike.len() - 1] - alike[0]],
             share: alike.len() as f64 / angles.len() as f64,
+            cams: angles.len(),
         }
     };
     let mut places: Vec<SeparationPlace> = angles.chunk_by(|one, two| two - one <= ONE).map(place).collect();
@@ -410,7 +413,7 @@ pub fn design(model: &Model, asked: &Asked, watch: &dyn Watch) -> Result<Design,
     let contact = Contact::new(&cam, model.follower);
     let machines = PlausibleMachines::of(model, &cam)?;
     let (separation, separation_errors) = known(contact.separation(), &machines);
-    let places = places(separation, &machines);
+    let places = separation_places(separation, &machines);
     // To meet a need for certain on a measured cam, its speed is raised by the relative uncertainty of the separation.
     let of_cam = match (separation, separation_errors) {
         (Separation::At { rpm, .. }, Some([error, _])) => error.cam / rpm,

@@ -288,9 +288,13 @@ impl ModelArgument {
                          names this table",
                         path.file_name().unwrap_or_default().display()
                     );
-                    let file = format!("{} and what is assumed beside it", path.display()).into();
+                    let table = path.display().to_string();
+                    let (file, line) = match *error.file == *table {
+                        true => (table, error.line),
+                        false => (table + " and what is assumed beside it", None),
+                    };
                     let meant = error.pointer.meant.clone();
-                    let error = ModelError { file, ..error };
+                    let error = ModelError { file: file.into(), line, ..error };
                     match meant.filter(|_| names_field) {
                         Some(meant) => error.meaning(Some(meant + &words)),
                         None if names_field => error.found(&words),

@@ -146,6 +146,19 @@ pub(crate) fn measured(measured: &Measured) -> Vec<Block> {
             list(dwells),
             " (deg)"
         ]));
+        blocks.extend(measured.doubtful_corners.iter().map(|doubtful| {
+            let at = doubtful.at_deg.iter().map(|corner| degrees(*corner)).collect();
+            Block::paragraph(words![
+                "doubtful corners: ",
+                list(at),
+                " (deg): a jump of the acceleration fits the rows better than a steep rise, but not by enough to be certain, and the cam is \
+                 drawn without it; in [cam] ",
+                &doubtful.ruled_out_by,
+                " rules it out, and ",
+                &doubtful.ruled_in_by,
+                " makes it a corner"
+            ])
+        }));
     }
     blocks
 }

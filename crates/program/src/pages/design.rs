@@ -58,9 +58,20 @@ fn sources(found: &Design) -> Option<Sources<'_>> {
 
 /// States in a sentence where the follower leaves the cam.
 pub(crate) fn separation(found: &Design) -> Words {
+    let error = found.separation_errors.map(|[error, _]| error);
+    leaves(found.separation, &found.places, sources(found), error)
+}
+
+/// Sentence about a separation, with the angle or the places that compete.
+pub(crate) fn leaves(
+    separation: Separation,
+    places: &[SeparationPlace],
+    sources: Option<Sources<'_>>,
+    error: Option<SourcedUncertainty>,
+) -> Words {
     let degrees = |angle: f64| (angle.to_degrees(), Digits::Fixed(3));
-    match found.separation {
-        Separation::At { rpm, cam_angle, angle_error, .. } => match sources(found) {
+    match separation {
+        Separation::At { rpm, cam_angle, angle_error, .. } => match sources {
             None => words![
                 "The follower leaves the cam first at ",
                 (rpm, Digits::Fixed(6)),
@@ -68,11 +79,11 @@ pub(crate) fn separation(found: &Design) -> Words {
                 degrees(cam_angle),
                 " deg (computed from the contact force)."
             ],
-            Some(sources) if !found.places.is_empty() => words![
+            Some(sources) if !places.is_empty() => words![
                 "The follower leaves the cam first at ",
-                sources.speed(rpm, Digits::Fixed(6), found.separation_errors.map(|[error, _]| error)),
+                sources.speed(rpm, Digits::Fixed(6), error),
                 ". Where is open: ",
-                Words::joined(found.places.iter().map(place).collect::<Vec<_>>(), ", "),
+                Words::joined(places.iter().map(|it| place(it, sources.machines())).collect::<Vec<_>>(), ", "),
                 " (computed from the contact force)."
             ],
             Some(sources) => words![
@@ -83,7 +94,7 @@ pub(crate) fn separation(found: &Design) -> Words {
                     Digits::Fixed(3)
                 ),
                 " deg first (computed from the contact force), at ",
-                sources.speed(rpm, Digits::Fixed(6), found.separation_errors.map(|[error, _]| error)),
+                sources.speed(rpm, Digits::Fixed(6), error),
                 "."
             ],
         },
@@ -106,20 +117,13 @@ pub(crate) fn separation(found: &Design) -> Words {
 }
 
 /// One of the places that the follower may leave first.
-fn place(place: &SeparationPlace) -> Words {
+fn place(place: &SeparationPlace, machines: &str) -> Words {
     let [from, to] = place.cam_angles.map(f64::to_degrees);
-    let share = (100.0 * place.share, Digits::Fixed(0));
+    let share = words![(100.0 * place.share, Digits::Fixed(0)), format!(" % of {} likely {machines}", place.cams)];
     let turn = if to >= 360.0 { to - 360.0 } else { to };
     match to - from {
-        width if width < 1.0 => words!["about ", (from, Digits::Fixed(0)), " deg for ", share, " % of the likely cams"],
-        _ => words![
-            (from, Digits::Fixed(0)),
-            " to ",
-            (turn, Digits::Fixed(0)),
-            " deg for ",
-            share,
-            " % of the likely cams"
-        ],
+        width if width < 1.0 => words!["about ", (from, Digits::Fixed(0)), " deg for ", share],
+        _ => words![(from, Digits::Fixed(0)), " to ", (turn, Digits::Fixed(0)), " deg for ", share],
     }
 }
 

@@ -23,7 +23,7 @@ use corner_impact::study::attractors::{AttractorsError, Resolution, Step};
 use corner_impact::study::cam::CamSheet;
 use corner_impact::study::design::contact::{Contact, Separation};
 use corner_impact::study::design::denser::DRAWN;
-use corner_impact::study::design::{Asked, Design, design, known};
+use corner_impact::study::design::{Asked, Design, SeparationPlace, design, known, separation_places};
 use corner_impact::study::speeds::{SpeedSurvey, speeds, usual_range};
 use corner_impact::study::survey::{Over, Spacing};
 use corner_impact::study::verify::{ComparisonTally, External, Verification, verify_watched};
@@ -50,6 +50,8 @@ pub struct Report {
     pub separation: Separation,
     /// Uncertainty of the machine in the separation speed, rpm; none if the machine is exact.
     pub separation_error: Option<SourcedUncertainty>,
+    /// Places that compete for the first separation; none where its angle is known.
+    pub separation_places: Vec<SeparationPlace>,
     /// Accuracy of the cam, if it is measured.
     pub measured: Option<Measured>,
     /// Contact force below separation; `None` if the follower leaves the cam at any speed, or never.
@@ -81,8 +83,6 @@ pub struct Report {
 pub struct Margin {
     /// Separation speed, at which the force becomes zero, rpm.
     pub separation_rpm: f64,
-    /// Cam angle of the separation, deg.
-    pub separation_deg: f64,
     /// Speed of this margin, rpm.
     pub speed_rpm: f64,
     /// Least force round the cam at that speed, and on the resting cam, in `force_unit`.
@@ -96,11 +96,10 @@ pub struct Margin {
 /// Computes the margin at four fifths of the separation speed.
 fn margin(contact: &Contact<'_>, units: &Units) -> Option<Margin> {
     const SHARE: f64 = 0.8;
-    let Separation::At { rpm, cam_angle, .. } = contact.separation() else { return None };
+    let Separation::At { rpm, .. } = contact.separation() else { return None };
     let [there, still] = [SHARE * rpm, 0.0].map(|rpm| contact.least(rpm));
     Some(Margin {
         separation_rpm: rpm,
-        separation_deg: cam_angle.to_degrees(),
         speed_rpm: SHARE * rpm,
         least_force: [there, still].map(|least| units.force.told(least.value)),
         cam_angle_deg: there.angle.to_degrees(),
@@ -259,6 +258,7 @@ impl Report {
         let contact = Contact::new(&cam, model.follower);
         let machines = PlausibleMachines::of(model, &cam)?;
         let (separation, separation_errors) = known(contact.separation(), &machines);
+        let separation_places = separation_places(separation, &machines);
         let (margin, units) = (margin(&contact, &model.units), model.units.clone());
         Ok(Self {
             agrees,
@@ -270,6 +270,7 @@ impl Report {
             separation,
             separation_error: separation_errors.map(|[error, _]| error),
             measured: machines.measured(),
+            separation_places,
             margin,
             look: Look::default(),
             units,

@@ -12,7 +12,7 @@ pub fn notes(model: &Model, rpm: Option<[f64; 2]>) -> Result<Vec<String>, ModelE
     let mut notes: Vec<String> = model.doubt(rpm)?.into_iter().collect();
     let Some(profile) = model.table() else { return Ok(notes) };
     notes.extend(profile.doubts());
-    let Remarks { strays, loose, contradicted } = Remarks::on(model)?;
+    let Remarks { strays, loose, smoothed_away, contradicted } = Remarks::on(model)?;
     let reading = &profile.reading;
     let told = |length: f64| Digits::Aligned(2).text(reading.in_model.told(length));
     notes.extend(slips(profile, &strays));
@@ -22,6 +22,15 @@ pub fn notes(model: &Model, rpm: Option<[f64; 2]>) -> Result<Vec<String>, ModelE
              does not know of that",
             told(within),
             told(spread),
+            unit = reading.unit
+        )
+    }));
+    notes.extend(smoothed_away.map(|[distance, allowed]| {
+        format!(
+            "cam.tolerance: the smoothed cam is up to {} {unit} from the rows, far more than their decimals; if the rows are that good, say \
+             tolerance = {} in [cam]",
+            told(distance),
+            told(allowed),
             unit = reading.unit
         )
     }));

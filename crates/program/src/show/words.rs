@@ -530,8 +530,12 @@ pub(crate) fn reading(reading: &Reading) -> [String; 3] {
     if let Some(number) = layout.and_then(|layout| layout.thousands.as_ref()) {
         let [decimal, whole] = [".", ""].map(|sign| number.replace([',', '.'], sign));
         let signs = if number.contains(',') { "commas" } else { "points" };
-        lifts
-            .push(format!("{number} is read as {decimal}; if {signs} part thousands, it is {whole}, and they must go"));
+        lifts.push(match layout.is_some_and(|layout| layout.has_parted) {
+            true => format!(
+                "{number} is read as {whole}, as the whole numbers beside it show; if it is {decimal}, write them with decimals, too"
+            ),
+            false => format!("{number} is read as {decimal}; if {signs} part thousands, it is {whole}, and they must go"),
+        });
     }
     let [first, second] = if are_points { ["x", "y"] } else { ["angles", reading.holds.values()] };
     [("table", table), (first, angles), (second, lifts)].map(|(name, parts)| format!("{name}: {}", parts.join("; ")))

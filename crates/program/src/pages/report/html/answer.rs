@@ -2,6 +2,7 @@
 //! proofs.
 
 use crate::figures::chaotic_set;
+use crate::pages::design::leaves;
 use crate::pages::report::html::{HtmlError, plates};
 use crate::pages::speeds::together;
 use crate::report::Report;
@@ -29,13 +30,9 @@ fn headed(head: &str, what: &str, sentence: Words) -> Words {
 
 fn separates(report: &Report) -> Words {
     let sentence = match (&report.separation, &report.margin) {
-        (Separation::At { rpm, .. }, Some(margin)) => words![
-            "The follower leaves the cam for the first time where that has turned by ",
-            (margin.separation_deg, Digits::Fixed(2)),
-            "°, at ",
-            sources(report).speed(*rpm, Digits::Fixed(3), report.separation_error),
-            "."
-        ],
+        (Separation::At { .. }, _) => {
+            leaves(report.separation, &report.separation_places, sources(report).if_any(), report.separation_error)
+        }
         (Separation::Never, _) => {
             "The follower stays on the cam at every speed: nowhere does the cam fall away from it.".into()
         }
