@@ -337,7 +337,9 @@ impl Remarks {
                 // Rows that are one number on a dwell have no noise beyond their decimals.
                 let is_still = fitted.dwells_deg().iter().any(|dwell| range(profile, dwell) <= allowed);
                 let is_noise = !is_still && distance <= FAR_SMOOTHED * spread;
-                let is_far = !is_noise && allowed < tolerance::SMOOTHED_AWAY.value * distance;
+                // A slip in a row keeps the cam away from it as well.
+                let is_far =
+                    strays(profile).is_empty() && !is_noise && allowed < tolerance::SMOOTHED_AWAY.value * distance;
                 is_far.then_some([distance, allowed])
             }
             _ => None,

@@ -490,7 +490,8 @@ fn multiple(tokens: &[Token], units: &[FoundUnit]) -> Option<f64> {
         let before = index.checked_sub(1).map_or("", |before| &tokens[before].text);
         let is_used = units.iter().any(|unit| unit.at.contains(&index));
         match (before, tokens[index].number(), tokens[index].meaning()) {
-            ("*", Some(number), _) if !is_used => Some(number),
+            // In brackets it belongs to the unit.
+            ("*", Some(number), _) if !is_used || tokens[index].bracket == 0 => Some(number),
             ("x", Some(number), _) if number >= 10.0 => Some(number),
             ("/", Some(number), _) if !is_used && places_of(number).is_some() => Some(number),
             (_, Some(number), _) if !is_used && places_of(1.0 / number).is_some() => Some(1.0 / number),

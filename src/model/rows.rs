@@ -343,7 +343,7 @@ fn slip(cell: &str, decimal_comma: bool) -> Option<&'static str> {
     } else if is_word(&["nan", "inf", "infinity", "n/a", "na", "#n/a", "null"]) {
         Some("this stands for a number that is not known; leave the row out")
     } else if begins(cell).is_some() {
-        Some("it has a unit or a word in its cell; a unit stands in the header")
+        Some("there is more than a number in its cell; a unit stands in the header")
     } else {
         None
     }

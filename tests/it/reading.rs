@@ -365,7 +365,7 @@ fn what_is_not_read_is_refused_with_what_makes_it_read() {
         (
             slip("7,0.0000", "7 deg,0.0000"),
             "",
-            "angle_deg = 7 deg: must be a finite number: it has a unit or a word in its cell",
+            "angle_deg = 7 deg: must be a finite number: there is more than a number in its cell",
         ),
         (
             all("angle,lift") + "\n" + &all("angle,lift"),

@@ -337,11 +337,15 @@ pub(crate) fn of_two_impacts(machine: &Machine, watch: &dyn Watch) -> Vec<Solved
     let mut most = MOST_BOXES.saturating_sub(boxes);
     let mut all: Vec<Solved> = Vec::new();
     let mut add = |pair: &Pair<'_>, place: [Interval; 2], standing: Standing| {
-        // Half a turn apart, and nowhere else, either impact may be called the first: what is there already by the other name is the
-        // same, since each is alone in a box far wider than its own.
-        let has_two_names = pair.turn(&place).common(Interval::TURN.half()).is_some();
+        let (turn, half) = (pair.turn(&place), Interval::TURN.half());
+        // With its impacts the other way round it is a root as well.
+        if (turn - half).is_positive() {
+            return;
+        }
+        // Half a turn apart either impact may be called the first: what is there already by the other name is the same, since each is alone
+        // in a box far wider than its own.
         let again = |known: &Solved| (0..2).all(|which| known.angles[which].common(place[1 - which]).is_some());
-        if has_two_names && all.iter().any(again) {
+        if turn.common(half).is_some() && all.iter().any(again) {
             return;
         }
         let velocities = pair.flights(&place).velocities(machine).before.to_vec();
