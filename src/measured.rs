@@ -383,9 +383,9 @@ fn contradicted(
     let Some((row, off_m)) = worst.filter(|(_, off)| *off > FAR * within.max(least)) else { return Ok(None) };
     // A row that is as far from the spline without them is not far because of them.
     let found = Smoothing { corners_deg: None, dwells_deg: None, ..own.clone() };
-    let without = fit(model, profile, &found).and_then(|fit| {
+    let without = fit(model, profile, &found).map(|fit| {
         let index = profile.rows.iter().position(|other| other == row).unwrap_or_default();
-        Ok(fit.lifts(profile)[index])
+        fit.lifts(profile)[index]
     });
     let is_theirs = without.map_or(true, |lift| 2.0 * (lift - row.lift).abs() < off_m);
     Ok(is_theirs.then_some(Contradicted { field, cam_angle_deg: row.angle_deg, off_m }))

@@ -72,7 +72,7 @@ fn simple_harmonic_motions_have_the_printed_accelerations() {
     }
     // The companion takes 3.141 for pi.
     let [rise, fall] = largest("harmonic-fast", 300.0, [[0.0, 30.0], [105.0, 150.0]]);
-    let pi = 3.141 / std::f64::consts::PI;
+    let pi = 3141.0 / (1000.0 * std::f64::consts::PI);
     assert_abs_diff_eq!(pi * pi * rise[1], 177.6, epsilon = 0.05);
     assert_abs_diff_eq!(pi * pi * fall[1], 78.9, epsilon = 0.05);
 }
