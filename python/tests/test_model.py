@@ -45,7 +45,7 @@ def test_a_number_may_have_an_error() -> None:
     assert model.numbers() == Model.paper().numbers() and model != Model.paper()
     assert Model.parse(model.text) == model and pickle.loads(pickle.dumps(model)) == model
     (found, exact) = (it.verify(external=False).get("uncertainty") for it in (model, model.with_number("mass.error", 0)))
-    assert exact is None and found["speed_parts"]["mass_rpm"] == found["speed_rpm"] > 1
+    assert exact is None and found is not None and found["speed_parts"]["mass_rpm"] == found["speed_rpm"] > 1
     with pytest.raises(ModelError, match="follower.mass.error = -1"):
         Model.from_dict(fields | {"follower": fields["follower"] | {"mass": {"value": 1.2, "error": -1}}})
 

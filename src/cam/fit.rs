@@ -14,7 +14,7 @@ use std::f64::consts::TAU;
 
 use super::features::{self, Features};
 use super::smoothing::{Fitted, Layout, Smoothed};
-use super::{Cam, Joint};
+use super::{Cam, Joint, apart};
 use crate::bracket::{Width, halve};
 use crate::elementary;
 use crate::model::{Model, ModelError, Smoothing, SmoothingTolerance, TableProfile};
@@ -113,16 +113,29 @@ pub(crate) fn fit(model: &Model, profile: &TableProfile, smoothing: &Smoothing) 
         );
         return Err(model.reject("cam.corners_deg", words));
     }
-    let mut laid = layout(&features)?;
-    let mut weight = weighed(&laid)?;
-    if (smoothing.corners_deg.is_none() || smoothing.are_near) && !features.corners.is_empty() {
-        features = polished(features, TAU / angles.len() as f64, |features| {
-            layout(features).ok()?.smoothed(&lifts, elementary::powf(10.0_f64, weight)).map(|spline| spline.least)
-        });
-        laid = layout(&features)?;
-        weight = weighed(&laid)?;
-    }
-    let spline = laid.smoothed(&lifts, elementary::powf(10.0_f64, weight)).ok_or_else(|| overflow(model, profile))?;
+    let are_found = smoothing.corners_deg.is_none();
+    let near = |mut features: Features| {
+        let mut laid = layout(&features)?;
+        let mut weight = weighed(&laid)?;
+        if (are_found || smoothing.are_near) && !features.corners.is_empty() {
+            features = polished(features, TAU / angles.len() as f64, |features| {
+                layout(features).ok()?.smoothed(&lifts, elementary::powf(10.0_f64, weight)).map(|spline| spline.least)
+            });
+            laid = layout(&features)?;
+            weight = weighed(&laid)?;
+        }
+        let spline =
+            laid.smoothed(&lifts, elementary::powf(10.0_f64, weight)).ok_or_else(|| overflow(model, profile))?;
+        Ok((features, laid, weight, spline))
+    };
+    // Between the end of a given dwell and a corner that was found within a row of it there is no row: no spline has both.
+    let ends: Vec<f64> = features.dwells.iter().flatten().copied().collect();
+    let is_at_end = |corner: &f64| ends.iter().any(|end| apart(*corner, *end) < TAU / angles.len() as f64);
+    let mut fewer = features.clone();
+    fewer.corners.retain(|corner| !is_at_end(corner));
+    let is_open = are_found && fewer.corners.len() < features.corners.len();
+    let (features, laid, weight, spline) =
+        near(features).or_else(|why| if is_open { near(fewer) } else { Err(why) })?;
     let noise = (spline.squares / (spline.moving - spline.freedom)).sqrt();
     Ok(Fit { layout: laid, weight, noise, spline, features, doubtful })
 }

@@ -280,6 +280,9 @@ impl Flight {
 
     /// Falls with any follower: between two turning points the position changes in one direction, so a bracket has one root.
     fn fall_by_search(&self, level: f64, start: State) -> Option<(f64, State)> {
+        /// Steps of Halley's method, after which the bracket is halved. Where the equilibrium is the level but for rounding, the position stays
+        /// the same over a long time, and steps lead nowhere.
+        const STEPS: u32 = 16;
         let at = |time: f64| self.fly(start, time).1;
         let rising = start.velocity > 0.0 || (start.velocity == 0.0 && self.force(start.position) > 0.0);
         let peak = if rising { self.turning_point(start) } else { 0.0 };
@@ -333,7 +336,9 @@ impl Flight {
         let mut low = peak;
         // Strictly inside of the bracket: at its lower end the search would stand still.
         let mut time = if (low.next_up()..high).contains(&guess) { guess } else { 0.5 * (low + high) };
+        let mut steps = 0;
         while high - low > tolerance::ROOT_WIDTH.value * high {
+            steps += 1;
             let state = at(time);
             if state.position >= level {
                 low = time
@@ -351,7 +356,8 @@ impl Flight {
                 return Some((time + step, State { position: level, velocity }));
             }
             let better = time + step;
-            time = if (low.next_up()..high).contains(&better) { better } else { 0.5 * (low + high) };
+            let is_near = steps < STEPS && (low.next_up()..high).contains(&better);
+            time = if is_near { better } else { 0.5 * (low + high) };
         }
         Some((time, State { position: level, ..at(time) }))
     }

@@ -160,6 +160,7 @@ impl Machine {
             stopped: None,
             seen: None,
             events: (0, 0),
+            followed: 0,
         };
         if gap <= rounding {
             let relative_velocity = state.velocity - self.angular_velocity * lift.slope;
@@ -193,7 +194,7 @@ impl Machine {
         let velocity = if is_none { cam_velocity } else { cam_velocity + relative_velocity };
         motion.state = State { position: lift.value, velocity };
         (motion.gap, motion.lift) = (Some(0.0), Some(*lift));
-        motion.contact = is_none && !self.lets_go(lift);
+        (motion.contact, motion.followed) = (is_none && !self.lets_go(lift), 0);
     }
 
     /// Rounding error of the gap of a follower at `position`, m.
@@ -584,7 +585,7 @@ impl Machine {
         let slope_jump = self.terrain.entries[motion.segment].slope_jump;
         if motion.contact && slope_jump != 0.0 {
             // A release is shown with the event that led to it; a strike by the cam is found when the motion continues.
-            motion.contact = false;
+            (motion.contact, motion.followed) = (false, 0);
             if slope_jump < 0.0 {
                 self.report(motion, EventKind::Release, observer);
             }

@@ -37,6 +37,8 @@ pub struct Motion {
     pub(super) seen: Option<(State, f64)>,
     /// Revolution of the last event, and the events in it so far, however often the run was split.
     pub(super) events: (u64, u32),
+    /// Segments of the cam that the follower has followed from end to end since it has been on it, up to one more than there are.
+    pub(super) followed: usize,
 }
 
 /// When the sum of infinitely many impacts is taken.

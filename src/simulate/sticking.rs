@@ -91,15 +91,15 @@ impl Machine {
     /// Puts the follower on the cam and starts sticking.
     fn stick(&self, motion: &mut Motion, lift: &Lift, observer: &mut impl Observer) -> Step {
         motion.state = on_cam(lift, self.angular_velocity);
-        (motion.contact, motion.gap, motion.lift) = (true, Some(0.0), Some(*lift));
+        (motion.contact, motion.gap, motion.lift, motion.followed) = (true, Some(0.0), Some(*lift), 0);
         self.report(motion, EventKind::Stick, observer)
     }
 
     /// Moves a follower that never leaves the cam to the start of the goal's segment, over any number of turns: a whole turn on the cam
     /// without an event repeats to the last bit. Returns whether it moved.
     pub(super) fn stays(&self, motion: &mut Motion, goal: &Goal) -> bool {
-        let (last_event, _) = motion.events;
-        if motion.revolution <= last_event + 1 {
+        // The first may have been followed in part.
+        if motion.followed <= self.cam().segments().len() {
             return false;
         }
         let index = self.cam().segment_at(goal.cam_angle);
@@ -161,13 +161,15 @@ impl Machine {
             return Ok(self.let_go(motion, &lift, after, observer));
         }
         motion.state = after;
+        let all = self.cam().segments().len();
+        motion.followed = (motion.followed + 1).min(all + 1);
         Ok(Step::Moved)
     }
 
     /// Ends the contact: the follower flies on from `state`.
     fn let_go(&self, motion: &mut Motion, lift: &Lift, state: State, observer: &mut impl Observer) -> Step {
         motion.state = state;
-        (motion.contact, motion.gap, motion.lift) = (false, Some(0.0), Some(*lift));
+        (motion.contact, motion.gap, motion.lift, motion.followed) = (false, Some(0.0), Some(*lift), 0);
         self.report(motion, EventKind::Release, observer)
     }
 

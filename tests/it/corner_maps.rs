@@ -113,8 +113,8 @@ fn b_by_every_number_is_what_machines_with_that_number_show() {
             assert_agree(&[product, differences], &format!("{name} at {} rpm", at.speed_rpm()));
         }
     }
-    // Ten of the arcs, five of the polynomial follower, with damping one more.
-    assert_eq!(tried, 4 * 10 + 5 + 11);
+    // Eleven of the arcs, six of the polynomial follower, with damping one more.
+    assert_eq!(tried, 4 * 11 + 6 + 12);
     assert!((1..4).contains(&untouched), "{untouched}");
 }
 

@@ -216,7 +216,7 @@ pub(crate) fn speeds(found: &Design) -> Vec<Block> {
         if found.loads.iter().any(|loads| loads.errors.is_some()) {
             let words = match sources(found) {
                 Some(Sources { cam: Some(_), errors }) if errors.are_none() => {
-                    "the uncertainty of the measured cam, from runs with cams that fit its rows as well".to_owned()
+                    "from runs with cams that fit the rows".to_owned()
                 }
                 Some(sources) => {
                     format!("the uncertainty of {}, from runs with machines that are as likely", sources.name())
@@ -224,8 +224,7 @@ pub(crate) fn speeds(found: &Design) -> Vec<Block> {
                 None => String::new(),
             };
             let words = format!(
-                "± is {words}. A load that may be 0 shows its upper bound. The last three columns are rounded to their uncertainty; --json has \
-                 the ± of each."
+                "± is {words}. A load that may be 0 shows its upper bound. The last three columns are rounded to their ±, which --json has."
             );
             blocks.push(Block::Note(words.as_str().into()));
             blocks.extend(hardest(found).map(Block::Note));

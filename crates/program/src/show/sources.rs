@@ -88,11 +88,7 @@ impl<'a> Sources<'a> {
         };
         let numbers = self.numbers();
         match (self.cam, self.errors.are_none()) {
-            (Some(_), true) => {
-                "± is of the cam alone: the model gives no error of the mass, the stiffness and the other numbers of the follower, which are \
-                 taken as exact."
-                    .into()
-            }
+            (Some(_), true) => "± is of the cam alone: the model gives no error of the follower's numbers.".into(),
             (Some(_), false) => format!(
                 "± is the root of the sum of two squares: the part of the cam, and two standard deviations by the errors of {numbers}.{others}"
             ),
