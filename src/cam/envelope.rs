@@ -247,6 +247,26 @@ impl Pieces {
 }
 
 impl Cam {
+    /// The sharpest of the hollows that the follower does not fit into, with its polar angle, rad, of those at sampled angles.
+    fn sharpest_hollow(&self, contact: FollowerContact) -> Option<(f64, Unfollowed)> {
+        /// Samples of all segments together, and of one at most.
+        const SAMPLES: usize = 1 << 16;
+        const OF_ONE: usize = 64;
+        let samples = (SAMPLES / self.segments().len()).clamp(1, OF_ONE);
+        let of_segment = |segment: &Segment| {
+            let at = |sample: usize| segment.start + (segment.end - segment.start) * sample as f64 / samples as f64;
+            let hollow = |polar: f64| match Touch::new(&segment.law, polar, contact) {
+                Err(Unfollowed::Hollow { radius } | Unfollowed::Undercut { radius }) => Some((polar, radius)),
+                _ => None,
+            };
+            (0..=samples).filter_map(|sample| hollow(at(sample))).collect::<Vec<_>>()
+        };
+        let all = self.segments().iter().flat_map(of_segment);
+        let (polar, radius) = all.min_by(|one, two| one.1.abs().total_cmp(&two.1.abs()))?;
+        let is_face = contact == FollowerContact::Flat;
+        Some((polar, if is_face { Unfollowed::Hollow { radius } } else { Unfollowed::Undercut { radius } }))
+    }
+
     /// The lift of a follower on a contour, of which `self` is the radius over the polar angle. `reject` says why there is none, with the polar
     /// angle, rad.
     pub(super) fn enveloped(
@@ -262,6 +282,10 @@ impl Cam {
             bounds.fold([f64::INFINITY, f64::NEG_INFINITY], |all, it| [all[0].min(it[0]), all[1].max(it[1])]);
         let mut pieces = Pieces { contact, rise: high - low, laws: Vec::new() };
         let mut starts = Vec::new();
+        let reject = |polar: f64, why: Unfollowed| {
+            let (polar, why) = self.sharpest_hollow(contact).unwrap_or((polar, why));
+            reject(polar, why)
+        };
         for (index, segment) in self.segments().iter().enumerate() {
             let Segment { start, end, law, .. } = segment;
             let touch = |polar: f64| Touch::new(law, polar, contact).map_err(|why| reject(polar, why));

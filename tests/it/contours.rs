@@ -3,11 +3,13 @@
 use std::f64::consts::TAU;
 
 use approx::{assert_abs_diff_eq, assert_relative_eq};
-use corner_impact::cam::{Cam, Lift};
+use corner_impact::cam::{Cam, Lift, apart};
 use corner_impact::measured::PlausibleCams;
 use corner_impact::model::{FollowerContact, Model};
 use corner_impact::study::cam::CamGeometry;
 use corner_impact::study::design::contact::Contact;
+use corner_impact::study::design::{SeparationPlace, known, separation_places};
+use corner_impact::uncertainty::PlausibleMachines;
 use serde_json::json;
 use tempfile::TempDir;
 
@@ -248,6 +250,32 @@ fn pieces_meet_but_at_corners() {
             let most = cam.segments().iter().map(|segment| segment.bounds.third).fold(0.0, f64::max);
             assert!(most < 30.0, "{count} {spline} {contact}: {most}");
         }
+    }
+}
+
+/// An ellipse under a flat face is left first at either end: angle 0 is one place, on whichever side of it likely contours have it.
+#[test]
+fn places_about_angle_0_are_one() {
+    let ellipse = |angle: f64| 500.0 / (25.0 * angle.sin()).hypot(20.0 * angle.cos());
+    let csv = polar(360, |angle| (100.0 * ellipse(angle)).round() / 100.0);
+    let (model, cam) = read(&csv, &format!("spline = \"smoothing\"\n{FLAT}")).unwrap();
+    let machines = PlausibleMachines::of(&model, &cam).unwrap();
+    let (separation, _) = known(Contact::new(&cam, model.follower).separation(), &machines);
+    let places = separation_places(separation, &machines);
+    let [one, other] = &places[..] else { panic!("{separation:?} {places:?}") };
+    assert_abs_diff_eq!(one.share + other.share, 1.0, epsilon = 1e-12);
+    let middle = |place: &SeparationPlace| 0.5 * (place.cam_angles[0] + place.cam_angles[1]);
+    assert_abs_diff_eq!(apart(middle(one), middle(other)), std::f64::consts::PI, epsilon = 0.1);
+}
+
+/// The limit of a roller is the sharpest hollow, not the first one that is too sharp.
+#[test]
+fn the_sharpest_hollow_limits_a_roller() {
+    let hollow = polar(360, |angle| 30.0 + 6.0 * (3.0 * angle).cos());
+    for radius in [20.0, 25.0, 30.0] {
+        let refused = read(&hollow, &format!("spline = \"cubic\"\n{}", roller((radius, 0.0)))).unwrap_err();
+        let limit = refused.split("must be below ").nth(1).unwrap().split(' ').next().unwrap();
+        assert_relative_eq!(limit.parse::<f64>().unwrap(), 24.0 * 24.0 / 30.0, max_relative = 1e-3);
     }
 }
 

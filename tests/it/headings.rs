@@ -260,7 +260,7 @@ fn a_unit_that_is_not_understood_is_refused_with_the_line_that_says_it() {
         ("# theta h", "A L 0", "", "has 3 columns without names"),
         ("x,y", "A,L", "", "say which they are in [cam], as angle_column = 1 and lift_column = 2 do"),
         ("angle,no lift in", "A,L", "", "must name the angle"),
-        ("angle [0.1 rad] lift", "A L", "", "the unit of the angle must be one of"),
+        ("angle [0.1 rad] lift", "A L", "", "names a part of a unit"),
     ];
     for (head, row, fields, says) in cases {
         let said = refusal(&table(head, row), fields);

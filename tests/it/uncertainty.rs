@@ -118,6 +118,18 @@ fn a_need_has_the_parts_of_the_numbers_that_are_kept() {
     near(part(&force.error.unwrap(), "mass"), 0.01 * (gravity + AMPLITUDE * omega * omega), 1e-6);
 }
 
+/// The number that is sought has no error of its own: where no other number has one, the answer is exact.
+#[test]
+fn a_need_of_the_only_uncertain_number_is_exact() {
+    let follower = json!({ "mass": with(0.5, 0.01), "stiffness": 2000.0, "gravity": 0.0, "rest_position": 0.0, "damping": 0.0, "restitution": 0.5 });
+    let found = designed(&cosine(&follower), &["no separation to 800 rpm"]);
+    let of = |lever: Lever| found.needs.iter().find(|answer| answer.lever == lever).unwrap();
+    assert_eq!(of(Lever::Mass).error.as_ref().unwrap().total(), 0.0);
+    assert!(of(Lever::Stiffness).error.as_ref().unwrap().total() > 0.0);
+    let page = common::in_one_line(&found.text().unwrap());
+    assert!(!page.contains("± ?") && !page.contains("± 0 "), "{page}");
+}
+
 /// The paper's machine with errors of three numbers.
 fn paper(restitution: f64) -> Model {
     common::osorio_with(&[

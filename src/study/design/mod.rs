@@ -380,16 +380,23 @@ pub fn known(
 pub fn separation_places(separation: Separation, machines: &PlausibleMachines<'_>) -> Vec<SeparationPlace> {
     /// Error up to which an angle is one place, and distance from which on two angles are two, rad.
     const ONE: f64 = PI / 18.0;
-    let Separation::At { cam_angle, angle_error: Some(error), .. } = separation else { return Vec::new() };
+    let Separation::At { angle_error: Some(error), .. } = separation else { return Vec::new() };
     if !(error > ONE) {
         return Vec::new();
     }
     let of = |model: &Model, cam: &Cam| match Contact::new(cam, model.follower).separation() {
-        Separation::At { cam_angle: of_other, .. } => Some(nearest_turn(of_other, cam_angle)),
+        Separation::At { cam_angle: of_other, .. } => Some(of_other.rem_euclid(TAU)),
         _ => None,
     };
     let mut angles: Vec<f64> = machines.each(of);
     angles.sort_by(f64::total_cmp);
+    // A place at angle 0 has some of them at the end of the turn: from the first one that is far from the one before it on.
+    let count = angles.len();
+    let is_far = |index: &usize| (angles[*index] - angles[(index + count - 1) % count]).rem_euclid(TAU) > ONE;
+    let first = (0..count).find(is_far).unwrap_or(0);
+    angles.rotate_left(first);
+    let turned = count - first;
+    angles.iter_mut().skip(turned).for_each(|angle| *angle += TAU);
     let place = |alike: &[f64]| {
         let from = alike[0].rem_euclid(TAU);
         SeparationPlace {

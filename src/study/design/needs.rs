@@ -312,7 +312,8 @@ pub(super) fn answer(
         // At least as wide as the resolution of the runs.
         let width = if known == Evidence::Sampled { tolerance::NEEDED_BY_RUNS.value * of(&found)?.abs() } else { 0.0 };
         let error = match error.total() {
-            0.0 if uncertain.of_cam == 0.0 => None,
+            // What is sought may be all that is uncertain.
+            0.0 if uncertain.of_cam == 0.0 => Some(error),
             0.0 => Some(SourcedUncertainty { cam: width, ..error }),
             total if total < width => Some(error.times(width / total)),
             _ => Some(error),

@@ -283,8 +283,9 @@ impl ModelArgument {
                 // The assumed model is in no file of that name.
                 let assumed = |error: ModelError| {
                     let names_field = error.to_string().contains("in [cam]");
+                    let law = if error.to_string().contains("law = \"contour\"") { "contour" } else { "table" };
                     let words = format!(
-                        "; there is no model file yet: `corner-impact new --law table my-machine.toml` writes one, and file = \"{}\" in it \
+                        "; there is no model file yet: `corner-impact new --law {law} my-machine.toml` writes one, and file = \"{}\" in it \
                          names this table",
                         path.file_name().unwrap_or_default().display()
                     );

@@ -179,7 +179,8 @@ pub(crate) fn speeds(found: &Design) -> Vec<Block> {
                 Some(loads) => {
                     let error = |index: usize| loads.errors.map(|errors| errors[index].total());
                     // In per cent, which no document field has.
-                    let off_cam = error(2).map(|error| 100.0 * error);
+                    // Never off it for more than the whole time.
+                    let off_cam = error(2).map(|error| 100.0 * error.min(1.0 - loads.off_cam));
                     let force = error(4).map(|error| found.force(error));
                     let unknown = if is_open && loads.errors.is_none() { " ± ?" } else { "" };
                     cells.extend([
@@ -386,7 +387,7 @@ fn load(value: f64, error: Option<f64>, digits: Digits, is_told: bool) -> Words 
 
 /// A value with its uncertainty.
 fn with_open(value: f64, error: Option<f64>, digits: Digits) -> Words {
-    match error.map(with_error) {
+    match error.filter(|error| *error > 0.0).map(with_error) {
         Some((digits, error)) => words![(value, digits), " ± ", (error, digits)],
         None => words![(value, digits)],
     }
