@@ -22,12 +22,14 @@ def test_a_text_is_the_whole_model(path: Path, tmp_path: Path, monkeypatch: pyte
     assert again == model and hash(again) == hash(model) and again.text == model.text
     assert (again.name, again.source, again.numbers()) == (model.name, model.source, model.numbers())
     assert pickle.loads(pickle.dumps(model)) == model
-    one, other = (it.simulate(650, 5) for it in (model, again))
+    # Machines of valves stay on their cams at 650 rpm.
+    rpm = 6000 if path.parent.name == "machines" else 650
+    one, other = (it.simulate(rpm, 5) for it in (model, again))
     assert all(np.array_equal(one[name], other[name]) for name in one)
     assert len(one["time_s"]) > 0
 
 
-@pytest.mark.parametrize("path", [path for path in MODELS if "table" not in path.stem], ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", [path for path in MODELS if "file = " not in path.read_text()], ids=lambda path: path.stem)
 def test_a_dict_is_a_file(path: Path) -> None:
     fields = tomllib.loads(path.read_text())
     model = Model.from_dict(fields)
@@ -186,7 +188,7 @@ def test_pictures_take_the_looks_of_the_command() -> None:
         assert shown in [text.text for text in titled.iter() if text.tag.endswith("}text")]
     refused: list[tuple[dict[str, Any], str]] = [
         ({"width": "85"}, "width must be a number with its unit"),
-        ({"width": "1mm"}, "30 to 2400 pt"),
+        ({"width": "1mm"}, "10.6 to 847 mm"),
         ({"height": "20mm"}, "it takes"),
         ({"legend": "left"}, "legend must be none, above, below or right"),
         ({"theme": "dark"}, "theme must be screen or print"),
