@@ -270,7 +270,7 @@ document!(Answer as it {
     known: it.known,
 });
 
-/// What is uncertain about the machine whose needs are answered.
+/// Uncertainty of the machine whose needs are answered.
 pub(super) struct UncertainMachine<'a> {
     /// Relative uncertainty of the separation speed that a measured cam causes.
     pub of_cam: f64,

@@ -51,7 +51,7 @@ impl Paged for Design {
     }
 }
 
-/// What is uncertain about the machine.
+/// Sources of the uncertainty of the machine.
 fn sources(found: &Design) -> Option<Sources<'_>> {
     Sources::of(&found.measured, found.errors).if_any()
 }

@@ -67,7 +67,7 @@ fn how_known(orbits: &[PeriodicOrbit]) -> Option<Block> {
     })
 }
 
-/// What is uncertain about the machine of the orbits.
+/// Sources of the uncertainty of the orbits.
 fn sources(found: &Orbits) -> Option<Sources<'_>> {
     Sources::of(&found.measured, found.deviations).if_any().filter(|_| !found.errors.is_empty())
 }

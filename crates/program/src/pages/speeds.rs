@@ -102,7 +102,7 @@ pub(crate) fn detachment(found: &SpeedSurvey) -> Words {
     }
 }
 
-/// What is uncertain about the machine.
+/// Sources of the uncertainty of the machine.
 fn sources(found: &SpeedSurvey) -> Option<Sources<'_>> {
     Sources::of(&found.measured, found.errors).if_any()
 }

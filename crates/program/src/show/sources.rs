@@ -8,7 +8,7 @@ use super::block::{Words, words};
 use super::digits::{Digits, with_error};
 use super::words::{accuracy, listed, spoken};
 
-/// What is uncertain about the machine of a page.
+/// Sources of the uncertainty on a page.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sources<'a> {
     /// Accuracy of the cam, if its rows have noise.
@@ -76,7 +76,7 @@ impl<'a> Sources<'a> {
         }
     }
 
-    /// What the ± of the page takes into account, and what it takes as exact.
+    /// Returns a note on the sources that ± includes, and on those that are taken as exact.
     pub(crate) fn note(self) -> String {
         /// Numbers of a follower: the spring has a preload or a rest position.
         const NUMBERS: usize = FollowerErrors::COUNT - 1;

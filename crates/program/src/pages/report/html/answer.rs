@@ -19,7 +19,7 @@ pub(crate) fn section(report: &Report) -> Result<PageSection, HtmlError> {
     Ok(PageSection { id: "answer", title: "In brief".into(), blocks })
 }
 
-/// What is uncertain about the machine.
+/// Sources of the uncertainty of the machine.
 fn sources(report: &Report) -> Sources<'_> {
     Sources::of(&report.measured, report.parsed.errors)
 }
