@@ -31,6 +31,10 @@ PROGRAM = ROOT / "target/release/corner-impact"
 
 # Name, command, tolerance, restarted at corners (None: has neither).
 PEERS = [
+    ("diffrax", "default, across", [sys.executable, "diffrax_events.py"], "default", False),
+    ("diffrax", "default, restarted", [sys.executable, "diffrax_events.py"], "default", True),
+    ("diffrax", "tightest, across", [sys.executable, "diffrax_events.py"], "tightest", False),
+    ("diffrax", "tightest, restarted", [sys.executable, "diffrax_events.py"], "tightest", True),
     ("scipy", "default, across", [sys.executable, "scipy_events.py"], "default", False),
     ("scipy", "default, restarted", [sys.executable, "scipy_events.py"], "default", True),
     ("scipy", "tightest, across", [sys.executable, "scipy_events.py"], "tightest", False),

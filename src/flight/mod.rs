@@ -38,6 +38,25 @@ impl State {
     }
 }
 
+/// The place of a flight at an instant.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Flown {
+    /// Time since the start, s.
+    pub time: f64,
+    /// `q - q0`, m.
+    pub displacement: f64,
+    /// State there.
+    pub state: State,
+}
+
+impl Flown {
+    /// The start of a flight.
+    #[inline]
+    pub fn not_yet(state: State) -> Self {
+        Self { time: 0.0, displacement: 0.0, state }
+    }
+}
+
 /// Free flight of the follower, away from the cam.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Flight {
@@ -174,6 +193,19 @@ impl Flight {
     #[inline]
     pub fn fly(&self, start: State, t: f64) -> (f64, State) {
         self.fly_by(start, &self.response(t))
+    }
+
+    /// The place of a flight from `start` at `time`, s, from its place at another instant. With damping the short way from there takes a few
+    /// terms of a series, where the way from the start takes an exponential, a sine and a cosine.
+    #[inline(always)]
+    pub(crate) fn fly_near(&self, start: State, known: &Flown, time: f64) -> Flown {
+        let more = time - known.time;
+        if self.zeta == 0.0 || !self.is_short(more) {
+            let (displacement, state) = self.fly(start, time);
+            return Flown { time, displacement, state };
+        }
+        let (displacement, state) = self.fly(known.state, more);
+        Flown { time, displacement: known.displacement + displacement, state }
     }
 
     /// Displacement and state after flying from `start`, from the responses over that time.
@@ -336,10 +368,11 @@ impl Flight {
         let mut low = peak;
         // Strictly inside of the bracket: at its lower end the search would stand still.
         let mut time = if (low.next_up()..high).contains(&guess) { guess } else { 0.5 * (low + high) };
-        let mut steps = 0;
+        let (mut steps, mut known) = (0, Flown { time: peak, displacement: 0.0, state: begin });
         while high - low > tolerance::ROOT_WIDTH.value * high {
             steps += 1;
-            let state = at(time);
+            known = self.fly_near(start, &known, time);
+            let state = known.state;
             if state.position >= level {
                 low = time
             } else {

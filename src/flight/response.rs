@@ -1,6 +1,6 @@
 //! Responses of the follower to a unit impulse and a unit step: over a time in doubles, over a range of times in intervals.
 
-use super::{Flight, Regime};
+use super::{Flight, Regime, State};
 use crate::elementary;
 use crate::interval::{Interval, Number};
 use crate::tolerance;
@@ -35,11 +35,33 @@ impl Flight {
         }
     }
 
+    /// Responses over a flight from `start` to `end`, which takes `time`, s. Without damping they follow from the two states, without a sine.
+    #[inline]
+    pub(crate) fn response_between(&self, start: State, end: State, time: impl FnOnce() -> f64) -> Response {
+        let Regime::Undamped { .. } = self.regime else { return self.response(time()) };
+        let (spring, force) = (self.omega0_squared, self.force(start.position));
+        // q - q0 = v0 s + f0 p and v - v0 = f0 s - w0^2 v0 p, for s and p.
+        let square = force * force + spring * start.velocity * start.velocity;
+        if !square.is_normal() {
+            return self.response(time());
+        }
+        let (displacement, change) = (end.position - start.position, end.velocity - start.velocity);
+        let impulse = (spring * start.velocity * displacement + force * change) / square;
+        let step = (force * displacement - start.velocity * change) / square;
+        Response { step, impulse, impulse_rate: 1.0 - spring * step }
+    }
+
+    /// Whether the series holds for a time `t`, s, of either sign: little of an oscillation and of its decay passes in it.
+    #[inline]
+    pub(super) fn is_short(&self, t: f64) -> bool {
+        self.omega0_squared * t * t < 0.25 && (self.zeta * t).abs() < 1.0
+    }
+
     fn damped_response(&self, t: f64) -> Response {
         let (zeta, omega0_squared) = (self.zeta, self.omega0_squared);
         let angle_squared = omega0_squared * t * t;
         // p(t) = (1 - s' - 2 zeta s) / w0^2 cancels where little of an oscillation has passed.
-        if angle_squared < 0.25 && zeta * t < 1.0 {
+        if self.is_short(t) {
             return self.response_by_series(t);
         }
         match self.regime {
@@ -72,36 +94,31 @@ impl Flight {
 
     /// `p(t) = sum d_n/n!`, with `d_n = t^n` times the n-th derivative at 0: `d_2 = t^2`, `d_{n+2} = -2 zeta t d_{n+1} - w0^2 t^2 d_n`.
     ///
-    /// No step of this recurrence waits for a division.
+    /// Without a division, which would take longer than all else in a step.
     fn response_by_series<N: Number>(&self, t: N) -> Response<N> {
         let damping = t * (2.0 * self.zeta);
         let spring = t * self.omega0_squared * t;
+        // |d_{n+2}| <= t^2 x^n, since x^2 >= 2 zeta t x + w0^2 t^2.
+        let x = damping.magnitude() + spring.magnitude().sqrt();
         // In units of t^2 for p, t for s and 1 for s': s = p', s' = p''.
-        let (mut before, mut last, mut factorial) = (N::from(0.0), N::from(1.0), N::from(2.0));
+        let (mut before, mut last) = (N::from(0.0), N::from(1.0));
         let (mut step, mut impulse, mut impulse_rate) = (N::from(0.5), N::from(1.0), N::from(1.0));
-        let (mut size, mut largest) = (1.0, f64::INFINITY);
-        // 2 zeta t < 2 and w0^2 t^2 < 4: the terms fall below an ulp of the sums before the 32nd.
-        for n in 1..32 {
-            let n = f64::from(n);
-            (before, last) = (last, -damping * last - spring * before);
-            factorial = factorial * (n + 2.0);
-            let term = last / factorial;
-            step = step + term;
-            impulse = impulse + term * (n + 2.0);
-            let of_rate = term * ((n + 2.0) * (n + 1.0));
-            impulse_rate = impulse_rate + of_rate;
-            // Two in a row, since one may vanish by chance; s' has the largest terms.
-            largest = of_rate.magnitude().max(size);
-            size = of_rate.magnitude();
-            if largest < tolerance::SERIES_END.value {
-                break;
+        let (mut n, mut power, mut size) = (1, 1.0, 1.0);
+        // x < 4: the terms of s', which are the largest, fall below a quarter of an ulp of 1 before the 34th.
+        while n < 32 && size >= tolerance::SERIES_END.value {
+            // Two terms at a time: a look at their size takes nearly as long as a term.
+            for n in [n, n + 1] {
+                (before, last) = (last, -damping * last - spring * before);
+                impulse_rate = impulse_rate + last.over_factorial(n);
+                impulse = impulse + last.over_factorial(n + 1);
+                step = step + last.over_factorial(n + 2);
             }
+            power *= x * x;
+            size = f64::over_factorial(power, n + 1);
+            n += 2;
         }
-        // A term of s' is q = (2 zeta t + w0^2 t^2/n)/(n + 1) times the larger of the two before it at most: less than a half from the
-        // fifth on, and of terms before it two in a row are so small only where both numbers are, a and b: s' begins with
-        // 1 - a + (a^2 - b)/2 + a (2 b - a^2)/6. All that are left out are then less than 2 q/(1 - q) = 2 times the larger of the last
-        // two; those of p and s are smaller.
-        let tail = N::left_out(3.0 * largest);
+        // Where a term x^n/n! is so small, x is less than a half of n: all terms left out are less than it.
+        let tail = N::left_out(2.0 * size);
         Response { step: t * t * (step + tail), impulse: t * (impulse + tail), impulse_rate: impulse_rate + tail }
     }
 

@@ -37,7 +37,20 @@ pub trait Number:
     fn magnitude(self) -> f64;
     /// Remainder of a truncated sum, of at most this size. It is 0 for doubles.
     fn left_out(size: f64) -> Self;
+    /// This over `n!`, for `n` up to 34.
+    fn over_factorial(self, n: usize) -> Self;
 }
+
+/// `1/n!`, within two units in the last place. A factorial up to 34! is exact before it is rounded to a double.
+const INVERSE_FACTORIALS: [f64; 35] = {
+    let (mut all, mut factorial, mut n) = ([1.0; 35], 1_u128, 1);
+    while n < all.len() {
+        factorial *= n as u128;
+        all[n] = 1.0 / factorial as f64;
+        n += 1;
+    }
+    all
+};
 
 impl Number for f64 {
     #[inline]
@@ -53,6 +66,11 @@ impl Number for f64 {
     #[inline]
     fn magnitude(self) -> f64 {
         self.abs()
+    }
+
+    #[inline]
+    fn over_factorial(self, n: usize) -> Self {
+        self * INVERSE_FACTORIALS[n]
     }
 
     #[inline]
@@ -283,6 +301,12 @@ impl Number for Interval {
     #[inline]
     fn magnitude(self) -> f64 {
         self.low.abs().max(self.high.abs())
+    }
+
+    #[inline]
+    fn over_factorial(self, n: usize) -> Self {
+        let factor = INVERSE_FACTORIALS[n];
+        self * Self { low: factor.next_down().next_down(), high: factor.next_up().next_up() }
     }
 
     #[inline]

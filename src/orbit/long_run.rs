@@ -243,7 +243,8 @@ pub struct StickingOrbit {
     pub impacts: u64,
     /// Speed of the fastest impact, of follower and cam against each other, m/s.
     pub impact_speed: f64,
-    /// Largest growth of a deviation from a release to the next rest, a natural logarithm.
+    /// Largest growth of a deviation from a release to the next rest, a natural logarithm; where rounding decides what follows, a lower
+    /// bound of it.
     pub growth: f64,
 }
 
@@ -256,7 +257,12 @@ impl StickingOrbit {
     /// Whether rests are so rare that rounding decides when they occur. Between them the motion is chaotic, and its period is that of the
     /// rounded run.
     pub fn is_long(&self) -> bool {
-        self.growth > elementary::ln(tolerance::SAME_ORBIT.value / tolerance::ULP.value)
+        self.growth > Self::long()
+    }
+
+    /// Growth beyond which rounding decides what follows: it makes two releases of one ulp.
+    pub(super) fn long() -> f64 {
+        elementary::ln(tolerance::SAME_ORBIT.value / tolerance::ULP.value)
     }
 
     /// Whether two orbits have a release in common. Then they are the same motion, since at most one continues from there.

@@ -269,8 +269,7 @@ impl<'a> LongRuns<'a> {
             if let Some(first) = releases.iter().position(|(known, ..)| is_same_release(*known, next)) {
                 let period = &releases[first..];
                 let releases: Vec<f64> = period.iter().map(|(angle, ..)| *angle).collect();
-                let growth =
-                    releases.iter().try_fold(0.0_f64, |most, release| self.grown(*release).map(|g| most.max(g)))?;
+                let growth = self.grown(&releases)?;
                 let revolutions = period.iter().map(|(_, turned, _)| turned).sum();
                 let impacts = period.iter().map(|(.., met)| met.impacts).sum();
                 let impact_speed = period.iter().fold(0.0_f64, |most, (.., met)| most.max(met.impact_speed));
@@ -297,14 +296,21 @@ impl<'a> LongRuns<'a> {
         Ok(None)
     }
 
-    /// Largest growth of a deviation from a release, rad, to the next rest, a natural logarithm. On a long way only the beginning is
-    /// followed.
-    fn grown(&self, cam_angle: f64) -> Result<f64, SimulateError> {
-        /// Revolutions after which a deviation is as large as the motion, if it ever is.
+    /// Largest growth of a deviation from one of these releases, rad, to the next rest, a natural logarithm. On a long way only the beginning
+    /// is followed, and nothing beyond a growth that rounding alone makes long.
+    fn grown(&self, releases: &[f64]) -> Result<f64, SimulateError> {
+        /// Revolutions after which a deviation is as large as the motion, if it ever is, and after how many of them it is looked at.
         const LOOKED_AT: u64 = 200;
-        let mut record = Record::over(1);
-        record.take(self.machine, &mut self.released(cam_angle)?, LOOKED_AT)?;
-        Ok(record.most())
+        const OFTEN: u64 = 20;
+        let mut most = 0.0_f64;
+        for release in releases {
+            let (mut record, mut motion) = (Record::over(1), self.released(*release)?);
+            while record.revolutions < LOOKED_AT && !record.rests() && most <= StickingOrbit::long() {
+                record.take(self.machine, &mut motion, OFTEN)?;
+                most = most.max(record.most());
+            }
+        }
+        Ok(most)
     }
 
     /// Motion of a follower that the cam releases at an angle, rad.

@@ -47,6 +47,8 @@ pub struct Event {
     pub velocity_after: f64,
     /// c', m/s; at a corner, that of the segment which was hit.
     pub cam_velocity: f64,
+    /// c'', m/rad^2, of the same segment.
+    pub cam_curvature: f64,
     /// Index of the segment of the cam.
     pub segment: usize,
 }

@@ -1,13 +1,15 @@
 //! Growth of small deviations, from the variational flow: Lyapunov exponents in the limit.
 
+use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 
-use nalgebra::{Matrix2, Vector2};
+use nalgebra::Vector2;
 
-use super::{Event, EventKind, ImpactTally, Machine, Motion, Observer, SimulateError, Variation};
+use super::{Event, EventKind, Goal, ImpactTally, Machine, Motion, Observer, SimulateError};
 use crate::elementary;
 use crate::estimate::Estimate;
-use crate::flight::{Flight, State};
+use crate::flight::{Response, State};
+use crate::impact::ImpactRates;
 
 /// Mean growth of a small deviation per revolution, as a natural logarithm: the largest Lyapunov exponent in the limit of many
 /// `revolutions`.
@@ -17,10 +19,12 @@ use crate::flight::{Flight, State};
 /// the cam counts from its release on. Zero revolutions have zero growth.
 #[doc(hidden)]
 pub fn growth(machine: &Machine, mut motion: Motion, revolutions: u64) -> Result<f64, SimulateError> {
-    let (mut sum, mut direction) = (0.0, ANY);
-    let met = &mut ImpactTally::default();
-    stretches(machine, &mut motion, revolutions, (met, &mut direction), |stretch| sum += stretch)?;
-    Ok(sum / revolutions.max(1) as f64)
+    let mut record = Record::over(revolutions.max(1));
+    record.take(machine, &mut motion, revolutions)?;
+    Ok(match record.means.of_blocks.as_slice() {
+        [mean] => *mean,
+        _ => record.means.sum,
+    })
 }
 
 /// Initial deviation, its angle in rad and its velocity over the angle in m/rad: any one has a part along the fastest growth.
@@ -48,10 +52,36 @@ impl Record {
     /// Continues the record for `revolutions`, or until the follower sticks, from `motion`, which must be where the record ended.
     pub fn take(&mut self, machine: &Machine, motion: &mut Motion, revolutions: u64) -> Result<(), SimulateError> {
         let begun = motion.revolution;
-        let seen = (&mut self.met, &mut self.direction);
-        stretches(machine, motion, revolutions, seen, |stretch| self.means.take(stretch))?;
+        if revolutions > 0 && !is_released(machine, motion, revolutions)? {
+            self.means.take(1, f64::NEG_INFINITY);
+        } else {
+            let mut left = revolutions;
+            while left > 0 {
+                let turns = left.min(self.means.per_block - self.means.seen);
+                let grown = self.carry(machine, motion, turns)?;
+                self.means.take(turns, grown);
+                // Nothing remains of a deviation.
+                left = if grown == f64::NEG_INFINITY { 0 } else { left - turns };
+            }
+        }
         self.revolutions += motion.revolution - begun;
         Ok(())
+    }
+
+    /// Growth of the deviation over so many revolutions; minus infinity if the follower sticks, which ends the run after that revolution.
+    fn carry(&mut self, machine: &Machine, motion: &mut Motion, revolutions: u64) -> Result<f64, SimulateError> {
+        let mut carried = Carried::new(machine, motion, self.direction, &mut self.met);
+        let flow = machine.advance(motion, motion.after(revolutions), &mut carried)?;
+        if flow.is_break() {
+            let _ = machine.advance(motion, motion.next(carried.begun.cam_angle), &mut |event: &Event| {
+                carried.met.take(event);
+                ControlFlow::Continue(())
+            })?;
+            return Ok(f64::NEG_INFINITY);
+        }
+        let (direction, grown) = carried.ended(motion);
+        self.direction = direction;
+        Ok(grown)
     }
 
     /// Mean growth per revolution over the complete blocks. Its error is NaN for fewer than two blocks.
@@ -83,17 +113,101 @@ impl Record {
     }
 }
 
-/// Counts impacts besides the variation.
-struct Counting<'a, 'machine>(&'a mut Variation<'machine>, &'a mut ImpactTally);
+/// Whether the follower is off the cam, or the cam releases it within so many revolutions; then `motion` is at the release.
+fn is_released(machine: &Machine, motion: &mut Motion, revolutions: u64) -> Result<bool, SimulateError> {
+    if !motion.contact {
+        return Ok(true);
+    }
+    let flow = machine.advance(motion, motion.after(revolutions), &mut |event: &Event| match event.kind {
+        EventKind::Release => ControlFlow::Break(()),
+        _ => ControlFlow::Continue(()),
+    })?;
+    Ok(flow.is_break())
+}
 
-impl Observer for Counting<'_, '_> {
-    fn event(&mut self, event: &Event) -> ControlFlow<()> {
-        self.1.take(event);
-        self.0.event(event)
+/// A small deviation on its way along a run, from impact to impact. It ends the run where the follower sticks.
+struct Carried<'a> {
+    machine: &'a Machine,
+    met: &'a mut ImpactTally,
+    begun: Goal,
+    /// Deviation of the position, and of the velocity over the angular velocity, after the last impact.
+    deviation: Vector2<f64>,
+    /// Growth up to the last change of its scale, a natural logarithm.
+    grown: f64,
+    /// Cam and follower right after the last impact.
+    at: Goal,
+    state: State,
+}
+
+impl<'a> Carried<'a> {
+    fn new(machine: &'a Machine, motion: &Motion, direction: Vector2<f64>, met: &'a mut ImpactTally) -> Self {
+        let begun = motion.after(0);
+        Self { machine, met, begun, deviation: direction, grown: 0.0, at: begun, state: motion.state }
     }
 
-    fn flight(&mut self, flight: &Flight, from: State, time: f64) {
-        self.0.flight(flight, from, time);
+    /// Time of the flight from the last impact to `to`, s.
+    fn time_to(&self, to: Goal) -> f64 {
+        let turned = (to.revolution - self.at.revolution) as f64 * TAU + (to.cam_angle - self.at.cam_angle);
+        turned / self.machine.angular_velocity()
+    }
+
+    /// Deviation after a flight with these responses.
+    fn flown(&self, response: &Response) -> Vector2<f64> {
+        let (omega, spring, [position, velocity]) =
+            (self.machine.angular_velocity(), self.machine.flight().omega0_squared(), self.deviation.into());
+        let Response { step, impulse, impulse_rate } = *response;
+        Vector2::new(
+            (1.0 - spring * step) * position + omega * impulse * velocity,
+            impulse_rate * velocity - spring * impulse / omega * position,
+        )
+    }
+
+    /// Direction of the deviation at the end of the run, and its growth.
+    fn ended(mut self, motion: &Motion) -> (Vector2<f64>, f64) {
+        let response = self.machine.flight().response(self.time_to(motion.after(0)));
+        self.deviation = self.flown(&response);
+        self.rescale();
+        (self.deviation, self.grown)
+    }
+
+    fn rescale(&mut self) {
+        let size = self.deviation.norm();
+        self.grown += elementary::ln(size);
+        self.deviation /= size;
+    }
+}
+
+impl Observer for Carried<'_> {
+    fn event(&mut self, event: &Event) -> ControlFlow<()> {
+        /// Squared size beyond which the deviation is scaled, or below its inverse: far from the ends of a double's range.
+        const LARGE: f64 = 1e100;
+        self.met.take(event);
+        match event.kind {
+            EventKind::Impact => {}
+            EventKind::Stick => return ControlFlow::Break(()),
+            EventKind::Release => return ControlFlow::Continue(()),
+        }
+        let (flight, omega) = (self.machine.flight(), self.machine.angular_velocity());
+        let at = Goal { revolution: event.revolution, cam_angle: event.cam_angle };
+        let [before, after] =
+            [event.velocity_before, event.velocity_after].map(|velocity| State { position: event.position, velocity });
+        let response = flight.response_between(self.state, before, || self.time_to(at));
+        let rates = ImpactRates {
+            restitution: self.machine.restitution(),
+            velocity_before: before.velocity,
+            acceleration_before: flight.acceleration(before),
+            acceleration_after: flight.acceleration(after),
+            cam_velocity: event.cam_velocity,
+            cam_acceleration: omega * omega * event.cam_curvature,
+        };
+        let [position, velocity] = self.flown(&response).into();
+        let [[a, _], [c, d]] = rates.saltation_rows();
+        self.deviation = Vector2::new(a * position, c / omega * position + d * velocity);
+        (self.at, self.state) = (at, after);
+        if !(1.0 / LARGE..LARGE).contains(&self.deviation.norm_squared()) {
+            self.rescale();
+        }
+        ControlFlow::Continue(())
     }
 }
 
@@ -112,51 +226,12 @@ impl Means {
         Self { per_block, of_blocks: Vec::new(), sum: 0.0, seen: 0 }
     }
 
-    fn take(&mut self, stretch: f64) {
-        (self.sum, self.seen) = (self.sum + stretch, self.seen + 1);
+    /// Adds the growth over so many revolutions, which are no more than are left of the block.
+    fn take(&mut self, revolutions: u64, grown: f64) {
+        (self.sum, self.seen) = (self.sum + grown, self.seen + revolutions);
         if self.seen == self.per_block && self.sum > f64::NEG_INFINITY {
             self.of_blocks.push(self.sum / self.per_block as f64);
             (self.sum, self.seen) = (0.0, 0);
         }
     }
-}
-
-/// Passes the growth of each revolution to `keep`; minus infinity, once, if the follower sticks.
-fn stretches(
-    machine: &Machine,
-    motion: &mut Motion,
-    revolutions: u64,
-    (met, direction): (&mut ImpactTally, &mut Vector2<f64>),
-    mut keep: impl FnMut(f64),
-) -> Result<(), SimulateError> {
-    let omega = machine.angular_velocity();
-    if motion.contact {
-        let goal = motion.after(revolutions);
-        let released = machine.advance(motion, goal, &mut |event: &Event| match event.kind {
-            EventKind::Release => ControlFlow::Break(()),
-            _ => ControlFlow::Continue(()),
-        })?;
-        if released.is_continue() {
-            keep(f64::NEG_INFINITY);
-            return Ok(());
-        }
-    }
-    let mut variation = Variation::new(machine, motion);
-    for _ in 0..revolutions {
-        let goal = motion.after(1);
-        let _ = machine.advance(motion, goal, &mut Counting(&mut variation, met))?;
-        let matrix = variation.matrix();
-        let carried = Vector2::new(
-            matrix[(0, 0)] * direction[0] + matrix[(0, 1)] * omega * direction[1],
-            matrix[(1, 0)] / omega * direction[0] + matrix[(1, 1)] * direction[1],
-        );
-        let stretch = carried.norm();
-        keep(elementary::ln(stretch));
-        if stretch == 0.0 {
-            return Ok(());
-        }
-        *direction = carried / stretch;
-        variation.reset(Matrix2::identity());
-    }
-    Ok(())
 }

@@ -11,7 +11,7 @@ use super::ahead::Passage;
 use super::contact::{self, GapAt, Outcome};
 use super::{Machine, Motion, Work};
 use crate::cam::{Lift, Segment};
-use crate::flight::{Flight, State};
+use crate::flight::{Flight, Flown, State};
 use crate::tolerance;
 
 /// Counter of a window's work: a cell, or none.
@@ -52,7 +52,7 @@ struct Seen {
     value: f64,
     rate: f64,
     curvature: f64,
-    state: State,
+    flown: Flown,
     lift: Lift,
 }
 
@@ -129,7 +129,7 @@ impl<'a, T: Tally> Window<'a, T> {
             if !(now.rate < 0.0) {
                 break;
             }
-            if depth > self.machine.gap_rounding(now.state.position) {
+            if depth > self.machine.gap_rounding(now.flown.state.position) {
                 return self.free(end);
             }
             self.tally.add(0, 1, 0);
@@ -152,7 +152,7 @@ impl<'a, T: Tally> Window<'a, T> {
             if !(0.0..end).contains(&time) {
                 break;
             }
-            now = self.at(time);
+            now = self.near(&now.flown, time);
         }
         self.march(end)
     }
@@ -170,7 +170,7 @@ impl<'a, T: Tally> Window<'a, T> {
         if now.value > 0.0 {
             return back;
         }
-        let third = self.flight.jerk(now.state) - self.omega.powi(3) * now.lift.third;
+        let third = self.flight.jerk(now.flown.state) - self.omega.powi(3) * now.lift.third;
         back * (1.0 + third * back / (-3.0 * now.curvature))
     }
 
@@ -180,9 +180,11 @@ impl<'a, T: Tally> Window<'a, T> {
         let (mut low, mut high, mut high_is_closed) = (low, reach, false);
         let mut time = if low < first && first < reach { first } else { low };
         const LAST_TURN: f64 = tolerance::LAST_TURN.value;
+        let mut known = Flown::not_yet(self.start);
         // Each halving of the bracket gains a bit.
         for _ in 0..128 {
-            let now = if time == 0.0 { self.at_start() } else { self.at(time) };
+            let now = if time == 0.0 { self.at_start() } else { self.near(&known, time) };
+            known = now.flown;
             if now.value.is_nan() {
                 return Passage::NotFinite;
             }
@@ -203,7 +205,7 @@ impl<'a, T: Tally> Window<'a, T> {
                 if time >= reach {
                     // Short of the window's end, twice the root b of a parabola bent down by A: g <= -A b^2 + third (2b)^3/6 < -A b^2/3.
                     // Only by rounding is the gap still open there.
-                    let (state, gap) = (now.state, self.gap.map(|_| now.value));
+                    let (state, gap) = (now.flown.state, self.gap.map(|_| now.value));
                     return if reach < end { self.march(end) } else { Passage::Free { state, gap } };
                 }
                 low = time;
@@ -238,8 +240,9 @@ impl<'a, T: Tally> Window<'a, T> {
     /// The contact `step` after an instant.
     fn met(&self, time: f64, step: f64, now: &Seen) -> Passage {
         let lift = now.lift.after(self.omega * step);
-        let jerk = self.flight.jerk(now.state);
-        let velocity = now.state.velocity + step * (self.flight.acceleration(now.state) + 0.5 * step * jerk);
+        let jerk = self.flight.jerk(now.flown.state);
+        let velocity =
+            now.flown.state.velocity + step * (self.flight.acceleration(now.flown.state) + 0.5 * step * jerk);
         Passage::Contact { time: time + step, velocity, lift }
     }
 
@@ -251,30 +254,35 @@ impl<'a, T: Tally> Window<'a, T> {
 
     fn at_start(&self) -> Seen {
         let lift = self.lift.unwrap_or_else(|| self.segment.law.lift(self.angle));
-        self.seen(self.gap.unwrap_or(self.start.position - lift.value), self.start, lift)
+        self.seen(self.gap.unwrap_or(self.start.position - lift.value), Flown::not_yet(self.start), lift)
     }
 
-    #[inline]
     fn at(&self, time: f64) -> Seen {
-        let (displacement, state) = self.flight.fly(self.start, time);
+        self.near(&Flown::not_yet(self.start), time)
+    }
+
+    /// The gap at `time`, s, from a place of the flight that is known.
+    #[inline]
+    fn near(&self, known: &Flown, time: f64) -> Seen {
+        let flown = self.flight.fly_near(self.start, known, time);
         let turn = self.omega * time;
         if let Some(gap) = self.gap {
             let (rise, lift) = self.segment.law.climb(self.angle, turn);
-            return self.seen(gap + displacement - rise, state, lift);
+            return self.seen(gap + flown.displacement - rise, flown, lift);
         }
         let lift = self.segment.law.lift(self.angle + turn);
-        self.seen(state.position - lift.value, state, lift)
+        self.seen(flown.state.position - lift.value, flown, lift)
     }
 
     #[inline]
-    fn seen(&self, value: f64, state: State, lift: Lift) -> Seen {
+    fn seen(&self, value: f64, flown: Flown, lift: Lift) -> Seen {
         self.tally.add(1, 0, 0);
-        let omega = self.omega;
+        let (omega, state) = (self.omega, flown.state);
         Seen {
             value,
             rate: state.velocity - omega * lift.slope,
             curvature: self.flight.acceleration(state) - omega * omega * lift.curvature,
-            state,
+            flown,
             lift,
         }
     }
@@ -286,9 +294,9 @@ impl<'a, T: Tally> Window<'a, T> {
         let omega = self.omega;
         let gap_at = |time: f64| {
             let now = if time == 0.0 { self.at_start() } else { self.at(time) };
-            let third = 2.0 * (self.flight.jerk(now.state) - omega.powi(3) * now.lift.third).abs();
+            let third = 2.0 * (self.flight.jerk(now.flown.state) - omega.powi(3) * now.lift.third).abs();
             // Rounding of the two positions, however well their difference is known: no dip below that is an impact.
-            let rounding = self.machine.gap_rounding(now.state.position);
+            let rounding = self.machine.gap_rounding(now.flown.state.position);
             let rate_rounding = self.machine.velocity_rounding();
             GapAt { value: now.value, rounding, rate: now.rate, rate_rounding, curvature: now.curvature, third }
         };
@@ -301,7 +309,7 @@ impl<'a, T: Tally> Window<'a, T> {
             Outcome::None => self.free(end),
             Outcome::Contact(time) => {
                 let now = if time == 0.0 { self.at_start() } else { self.at(time) };
-                Passage::Contact { time, velocity: now.state.velocity, lift: now.lift }
+                Passage::Contact { time, velocity: now.flown.state.velocity, lift: now.lift }
             }
             Outcome::NoProgress(time) => Passage::NoProgress { time },
             Outcome::NotFinite(_) => Passage::NotFinite,
