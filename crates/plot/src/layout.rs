@@ -205,6 +205,16 @@ fn is_labelled(figure: &Figure, index: usize) -> bool {
     is_own(&figure.panels[index]) || figure.panels[index + 1..].iter().all(is_own)
 }
 
+/// Ranges across and up that hold these ranges and have one scale in a frame of this width and height.
+fn one_scale(ranges: [[f64; 2]; 2], lengths: [f64; 2]) -> [[f64; 2]; 2] {
+    let per_unit = |index: usize| (ranges[index][1] - ranges[index][0]) / lengths[index];
+    let scale = per_unit(0).max(per_unit(1));
+    std::array::from_fn(|index| {
+        let ([low, high], half) = (ranges[index], 0.5 * scale * lengths[index]);
+        [0.5 * (low + high) - half, 0.5 * (low + high) + half]
+    })
+}
+
 /// Name of an axis with its unit in brackets.
 fn name(axis: &FigureAxis, exponent: i32) -> String {
     let unit = ticks::unit(&axis.unit, exponent);
@@ -385,8 +395,8 @@ impl Layout {
                 Some(height) => height * wide / look.points() - layout.height,
                 None => (LEGENDS_HIGH * layout.legend_height - layout.height).max(0.0),
             };
-            // The width gives a frame to scale its height.
-            let free = || figure.panels.iter().map(|panel| !panel.y.to_scale);
+            // The width gives a frame to scale its height, unless its own axis may show more.
+            let free = || figure.panels.iter().map(|panel| !panel.y.to_scale || panel.own_x.is_some());
             let whole: f64 = heights.iter().zip(free()).filter(|(_, free)| *free).map(|(height, _)| height).sum();
             if extra.abs() < 0.5 || whole == 0.0 {
                 break;
@@ -404,19 +414,20 @@ impl Layout {
     fn with_heights(figure: &Figure, look: &Look, heights: &[f64]) -> Self {
         let (wide, title) = (look.across(), look.title(figure));
         let mut heights = heights.to_vec();
-        let ranges: Vec<_> = figure.panels.iter().map(vertical_range).collect();
+        let mut ranges: Vec<_> = figure.panels.iter().map(vertical_range).collect();
         let known = horizontal_range(&figure.x, figure.panels.iter().filter(|panel| panel.own_x.is_none()));
         let range = known.unwrap_or(UNKNOWN);
         let own_known = |panel: &Panel| match &panel.own_x {
             Some(axis) => horizontal_range(axis, std::iter::once(panel)),
             None => known,
         };
-        let across_ranges: Vec<[f64; 2]> =
+        let mut across_ranges: Vec<[f64; 2]> =
             figure.panels.iter().map(|panel| own_known(panel).unwrap_or(UNKNOWN)).collect();
         let ratio = |index: usize| {
-            let [from, to] = across_ranges[index];
+            let [from, to] = range;
             let ratio = ranges[index].map_or(f64::NAN, |[low, high]| (high - low) / (to - from));
-            (figure.panels[index].y.to_scale && ratio.is_finite()).then_some(ratio)
+            let panel = &figure.panels[index];
+            (panel.y.to_scale && panel.own_x.is_none() && ratio.is_finite()).then_some(ratio)
         };
         let to_scale = |across: f64, index: usize| Some((across * ratio(index)?).clamp(0.08 * wide, 2.0 * wide));
         for (index, height) in heights.iter_mut().enumerate() {
@@ -456,6 +467,12 @@ impl Layout {
         let across = (right - left).max(0.3 * wide);
         for (index, height) in heights.iter_mut().enumerate() {
             *height = to_scale(across, index).unwrap_or(*height);
+        }
+        for (index, panel) in figure.panels.iter().enumerate().filter(|(_, panel)| panel.own_x.is_some()) {
+            if let Some(up) = ranges[index].filter(|_| panel.y.to_scale) {
+                let [x, y] = one_scale([across_ranges[index], up], [across, heights[index]]);
+                (across_ranges[index], ranges[index]) = (x, Some(y));
+            }
         }
         let mut y = EDGE;
         let mut down = |by: f64| {
@@ -504,7 +521,7 @@ impl Layout {
                 text: words.clone(),
             };
             let axis = panel.own_x.as_ref().unwrap_or(&figure.x);
-            let horizontal = horizontal_ticks(axis, own_known(panel), across);
+            let horizontal = horizontal_ticks(axis, own_known(panel).map(|_| across_ranges[index]), across);
             let below_frame = is_labelled(figure, index).then(|| {
                 let below = down(LINE + 4.0 + GAP);
                 let words = name(axis, horizontal.exponent);
