@@ -1,8 +1,9 @@
-//! Finds roots and borders of one number by three methods, each with its requirements and guarantees.
+//! Finds roots and borders of one number by four methods, each with its requirements and guarantees.
 //!
 //! | method | requires | guarantees |
 //! |---|---|---|
 //! | [`halve`] | a yes or no that differs at the ends | a bracket of the required width, with one change in it; bisection |
+//! | [`outward`] | a yes or no, and a direction | nothing: a bracket for `halve`, unless the change is too far away |
 //! | `regula_falsi` | signs that differ at the ends | a bracket as narrow as rounding allows, in fewer steps if smooth (Dowell and Jarratt 1971) |
 //! | `secants` | two guesses close by | nothing: the caller must check that the last point is a root |
 //!
@@ -53,6 +54,24 @@ pub fn halve<E>(
         }
         halvings += 1;
     }
+}
+
+/// Looks from `from` on, in up to `steps` steps of doubled length, for the step on which a yes or no changes. `is_beyond` is false at `from`.
+pub fn outward<E>(
+    from: f64,
+    step: f64,
+    steps: usize,
+    mut is_beyond: impl FnMut(f64) -> Result<bool, E>,
+) -> Result<Option<[f64; 2]>, E> {
+    let (mut from, mut step) = (from, step);
+    for _ in 0..steps {
+        let next = from + step;
+        if is_beyond(next)? {
+            return Ok(Some([from, next]));
+        }
+        (from, step) = (next, 2.0 * step);
+    }
+    Ok(None)
 }
 
 /// A point at which a function was evaluated: its place, its value, and further data.

@@ -196,6 +196,17 @@ impl PlausibleCams {
         Ok(Self { measured, best, closer, others })
     }
 
+    /// The cams under the follower of another model.
+    pub(crate) fn under(&self, model: &Model) -> Self {
+        let under = |(likely, cam): &LikelyCam| (model.on_cam_of(likely, cam), cam.clone());
+        Self {
+            measured: self.measured.clone(),
+            best: self.best.as_ref().map(under),
+            closer: self.closer.as_ref().map(under),
+            others: self.others.iter().map(under).collect(),
+        }
+    }
+
     /// Returns the uncertainties of numbers that depend on the cam, with three terms: their distance from the numbers of the best guess,
     /// twice the largest deviation among the equally likely cams, and the effect of corners. `of` returns the numbers of a model, or none;
     /// if more than a few models have none, the result is none.

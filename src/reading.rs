@@ -5,7 +5,7 @@ use std::path::Path;
 
 use crate::cam::Cam;
 use crate::file;
-use crate::model::{Follower, FollowerErrors, Model, ModelError, Numeral, OSORIO_2008};
+use crate::model::{Follower, FollowerErrors, Model, ModelError, Moves, Numeral, OSORIO_2008};
 use crate::tolerance;
 
 impl Model {
@@ -31,9 +31,10 @@ impl Model {
         Self::written_as(name, document)?.sprung()
     }
 
-    /// Returns the model with another number in `field`, a dotted path, checked like a file.
+    /// Returns the model with another number in `field`, a dotted path, checked like a file. Numbers that are moved by their errors stay
+    /// so, but for this one.
     pub fn with_number(&self, field: &str, number: f64) -> Result<Self, ModelError> {
-        self.rewritten(field, number)?.sprung()
+        self.rewritten(field, number)?.shifted(&self.moves).sprung()
     }
 
     /// Returns the model with other numbers, also of `[study]`, each named as for [`Self::path_of`]. They are checked together like a file,
@@ -114,32 +115,53 @@ impl Model {
     }
 
     /// Moves the follower's numbers by multiples of their standard deviations. The cam is the same, and `lowest` is its lowest lift.
-    pub(crate) fn moved(&self, lowest: f64, by: &[f64; FollowerErrors::COUNT]) -> Self {
-        let mut model = self.clone();
-        for ((name, error), by) in FollowerErrors::names().zip(self.errors.all()).zip(by) {
-            if let Some(number) = model.of_follower_mut(name).filter(|_| error > 0.0) {
-                *number = FollowerErrors::moved(name, *number, by * error);
-            }
-        }
-        if let Some(preload) = model.preload {
-            model.follower.rest_position = lowest - preload / model.follower.stiffness;
-        }
+    pub(crate) fn moved(&self, lowest: f64, by: &Moves) -> Self {
+        let mut model = self.clone().shifted(by);
+        model.rest(lowest);
         model
     }
 
-    /// Puts this model's follower, with its spring, on the cam of another model.
-    pub(crate) fn on_cam_of(&self, other: &Self) -> Result<Self, ModelError> {
-        let mut model = other.clone();
-        (model.follower, model.preload, model.study) = (self.follower, self.preload, self.study);
-        model.errors = self.errors;
-        model.sprung()
+    /// Moves the follower's numbers without the rest position that follows from a preload.
+    fn shifted(mut self, by: &Moves) -> Self {
+        for ((name, error), by) in FollowerErrors::names().zip(self.errors.all()).zip(by) {
+            if let Some(number) = self.of_follower_mut(name).filter(|_| error > 0.0 && *by != 0.0) {
+                *number = FollowerErrors::moved(name, *number, by * error);
+            }
+        }
+        self.moves = *by;
+        self
     }
 
-    /// Sets the rest position of the spring from the preload: `k (c_min - rest_position) = preload`.
-    fn sprung(mut self) -> Result<Self, ModelError> {
+    /// Puts this model's follower, with its spring, on the cam of another model.
+    pub(crate) fn on_cam_of(&self, other: &Self, cam: &Cam) -> Self {
+        let mut model = other.clone();
+        (model.follower, model.preload, model.study) = (self.follower, self.preload, self.study);
+        (model.errors, model.moves) = (self.errors, self.moves);
+        model.rest(cam.lowest().value);
+        model
+    }
+
+    /// Returns the model with a spring that presses on the lowest lift with a force, in internal units.
+    pub(crate) fn preloaded(&self, lowest: f64, preload: f64) -> Self {
+        let mut model = self.clone();
+        model.preload = Some(preload);
+        model.errors = model.errors.without("follower.preload").without("follower.rest_position");
+        model.rest(lowest);
+        model
+    }
+
+    /// Sets the rest position of the spring from the preload and the lowest lift: `k (c_min - rest_position) = preload`.
+    fn rest(&mut self, lowest: f64) {
         if let Some(preload) = self.preload {
-            let lowest = Cam::new(&self)?.lowest().value;
             self.follower.rest_position = lowest - preload / self.follower.stiffness;
+        }
+    }
+
+    /// Sets the rest position of the spring from the preload on the model's own cam.
+    fn sprung(mut self) -> Result<Self, ModelError> {
+        if self.preload.is_some() {
+            let lowest = Cam::new(&self)?.lowest().value;
+            self.rest(lowest);
             if !self.follower.rest_position.is_finite() {
                 return Err(self.reject("follower.preload", "is too large for this stiffness"));
             }

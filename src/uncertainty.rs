@@ -10,7 +10,7 @@ use serde::ser::{Serialize, SerializeMap, Serializer};
 use crate::cam::Cam;
 use crate::elementary;
 use crate::measured::{Measured, PlausibleCams, even};
-use crate::model::{FollowerErrors, Model, ModelError};
+use crate::model::{FollowerErrors, Model, ModelError, Moves};
 use crate::tolerance;
 
 /// Standard deviations that ± is of a number of the follower.
@@ -31,6 +31,21 @@ impl SourcedUncertainty {
     /// An uncertainty that is unknown.
     pub const UNKNOWN: Self = Self { cam: f64::NAN, numbers: f64::NAN, each: None };
 
+    /// An uncertainty of which the part of the numbers is unknown.
+    pub(crate) const UNKNOWN_OF_NUMBERS: Self = Self { cam: 0.0, numbers: f64::NAN, each: None };
+
+    /// Adds an uncertainty that is independent of this one. A result that is linear in both has a part of each number.
+    pub(crate) fn with_independent(&self, other: &Self) -> Self {
+        let hypot = |one: f64, other: f64| elementary::hypot(one, other);
+        let of_each = |it: &Self| it.each.or((it.numbers == 0.0).then(Default::default));
+        let each = of_each(self).zip(of_each(other));
+        Self {
+            cam: hypot(self.cam, other.cam),
+            numbers: hypot(self.numbers, other.numbers),
+            each: each.map(|(one, other)| std::array::from_fn(|index| hypot(one[index], other[index]))),
+        }
+    }
+
     /// Joins the parts of a cam to those of the follower's numbers.
     pub(crate) fn joined(of_cam: Vec<f64>, of_numbers: Vec<Self>) -> Vec<Self> {
         of_cam.into_iter().zip(of_numbers).map(|(cam, part)| Self { cam, ..part }).collect()
@@ -46,6 +61,17 @@ impl SourcedUncertainty {
         let factor = factor.abs();
         let each = self.each.map(|each| each.map(|part| factor * part));
         Self { cam: factor * self.cam, numbers: factor * self.numbers, each }
+    }
+
+    /// The ends of the range that the uncertainty leaves around a value.
+    pub fn around(&self, value: f64) -> [f64; 2] {
+        [value - self.total(), value + self.total()]
+    }
+
+    /// The uncertainty with its parts reduced alike, if the whole is above `most`.
+    pub(crate) fn at_most(&self, most: f64) -> Self {
+        let total = self.total();
+        if total > most { self.times(most / total) } else { *self }
     }
 
     /// The numbers that have a part of their own, each with it, the largest first.
@@ -89,29 +115,45 @@ impl Serialize for UncertaintyParts {
 pub struct PlausibleMachines<'a> {
     /// Accuracy of the cam and equally likely cams, if it is measured.
     pub cams: Option<PlausibleCams>,
-    model: &'a Model,
-    cam: &'a Cam,
+    /// The model.
+    pub model: &'a Model,
+    /// Its cam.
+    pub cam: &'a Cam,
     errors: FollowerErrors,
     lowest: f64,
 }
 
-/// Multiples of the standard deviations by which the numbers of a machine are moved.
-type Moves = [f64; FollowerErrors::COUNT];
-
 impl<'a> PlausibleMachines<'a> {
     /// Collects what is uncertain about a model, which has this cam.
     pub fn of(model: &'a Model, cam: &'a Cam) -> Result<Self, ModelError> {
-        let (cams, errors) = (PlausibleCams::of(model)?, model.errors);
-        let lowest = if errors.are_none() { f64::NAN } else { cam.lowest().value };
-        Ok(Self { cams, model, cam, errors, lowest })
+        Ok(Self { cams: PlausibleCams::of(model)?, ..Self::of_numbers(model, cam, model.errors) })
     }
 
-    /// Collects what is uncertain about a model of the same file with another number, and its cam. Nothing is if the cam is measured: how its
-    /// uncertainty changes with the number is unknown.
-    pub fn elsewhere<'b>(&self, model: &'b Model, cam: &'b Cam) -> PlausibleMachines<'b> {
-        let is_noisy = self.cams.as_ref().is_some_and(|cams| cams.best.is_some());
-        let errors = if is_noisy { FollowerErrors::default() } else { model.errors };
-        PlausibleMachines { cams: None, model, cam, errors, lowest: cam.lowest().value }
+    /// Collects what is uncertain about a model of the same file with another number at `path`, and its cam. That number is exact there. The
+    /// likely cams are the same ones if it is a number of the follower.
+    pub fn elsewhere<'b>(
+        &self,
+        path: &str,
+        model: &'b Model,
+        cam: &'b Cam,
+    ) -> Result<PlausibleMachines<'b>, ModelError> {
+        let cams = match &self.cams {
+            Some(cams) if path.starts_with("follower.") => Some(cams.under(model)),
+            Some(_) => PlausibleCams::of(model)?,
+            None => None,
+        };
+        Ok(PlausibleMachines { cams, ..PlausibleMachines::of_numbers(model, cam, model.errors) })
+    }
+
+    /// Machines that differ in the follower's numbers alone, but for the one at `path`.
+    pub(crate) fn without(&self, path: &str) -> Self {
+        Self { cams: None, errors: self.errors.without(path), ..*self }
+    }
+
+    /// Collects machines that differ in the follower's numbers alone, by these errors of the model's.
+    pub fn of_numbers(model: &'a Model, cam: &'a Cam, errors: FollowerErrors) -> Self {
+        let lowest = if errors.are_none() { f64::NAN } else { cam.lowest().value };
+        Self { cams: None, model, cam, errors, lowest }
     }
 
     /// Returns the machines if anything is uncertain.

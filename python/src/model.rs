@@ -679,7 +679,7 @@ impl Model {
 
     /// Lift, velocity and acceleration of the cam, as a picture.
     fn _repr_svg_(&self) -> PyResult<String> {
-        svg::render(&cam_figure(self.machine.cam(), &self.model.name), &Look::default()).or_raise()
+        svg::render(&cam_figure(&self.model, self.machine.cam(), &self.model.name), &Look::default()).or_raise()
     }
 
     /// Lift, velocity and acceleration of the cam, as an SVG in a look of the command's options.
@@ -716,7 +716,7 @@ impl Model {
             y: y_range.map(|range| told("y_range", range, look::ends)).transpose()?,
         };
         let (look, units) = (look.checked().or_raise()?, &self.model.units);
-        let figure = cam_figure(self.machine.cam(), &self.model.name).in_units(|unit| units.spelled(unit));
+        let figure = cam_figure(&self.model, self.machine.cam(), &self.model.name).in_units(|unit| units.spelled(unit));
         svg::render(&look.framed(figure).or_raise()?, &look).or_raise()
     }
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::fields::{Field, Fields, Value};
-use super::{Model, ModelError, Numeral, SmoothingTolerance, Spline, TableProfile, nearest};
+use super::{Model, ModelError, Numeral, Smoothing, SmoothingTolerance, Spline, TableProfile, nearest};
 
 impl Model {
     /// Dotted path of the number of follower or cam that a user calls `name`: the full path, or a path's end that no other
@@ -31,11 +31,16 @@ impl Model {
     }
 
     /// Copy of the model with another number in `field`, a dotted path. It is checked as the file is, except for what needs the cam. The
-    /// number becomes exact, as one that a study varies is.
+    /// number becomes exact, as one that a study varies is. A spline near other lifts keeps its weight.
     pub(crate) fn rewritten(&self, field: &str, number: f64) -> Result<Self, ModelError> {
         let mut fields = self.fields.with_number(field, number.into())?;
         fields.drop_error(field);
-        Self::from_fields(fields)
+        let mut model = Self::from_fields(fields)?;
+        let own = self.table().and_then(|table| table.spline.smoothing());
+        if let Some(Smoothing { tolerance: SmoothingTolerance::Weighted(weight), are_near, .. }) = own {
+            model.weigh(*weight, *are_near);
+        }
+        Ok(model)
     }
 
     /// Copy of the model with other numbers, including those of `[study]`, each named as for [`Self::path_of`], or with other errors, each
@@ -67,7 +72,6 @@ impl Model {
 
     /// Copy of the model with a smoothing spline near other lifts, m, at the angles of its table. The caller gives the weight, by its
     /// logarithm, the corners (exactly or nearly at these places) and the dwells, degrees. Checks that need the cam are not made here.
-    /// Reading the model again with another number computes a new weight.
     pub(crate) fn relifted(
         &self,
         lifts: &[f64],
@@ -87,10 +91,15 @@ impl Model {
         let rows = dwells.iter().map(|dwell| (*dwell, None)).collect();
         fields.put("cam.dwells_deg", if dwells.is_empty() { Value::Array(0) } else { Value::Rows(rows) });
         let mut model = Self { changes: self.changes.clone(), ..Self::from_fields(fields)? };
-        if let Some(TableProfile { spline: Spline::Smoothing(smoothing), .. }) = model.cam.table_mut() {
+        model.weigh(weight, are_near);
+        Ok(model)
+    }
+
+    /// Gives a smoothing spline its weight, by its logarithm, and says whether its corners are near their places or there.
+    fn weigh(&mut self, weight: f64, are_near: bool) {
+        if let Some(TableProfile { spline: Spline::Smoothing(smoothing), .. }) = self.cam.table_mut() {
             (smoothing.tolerance, smoothing.are_near) = (SmoothingTolerance::Weighted(weight), are_near);
         }
-        Ok(model)
     }
 
     /// Numeric and text fields of follower, cam, study and units by dotted path, as JSON documents have them.

@@ -11,6 +11,9 @@ use super::{Model, ModelError};
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FollowerErrors([f64; Self::COUNT]);
 
+/// Multiples of the standard deviations by which the follower's numbers are moved, in the order of [`FollowerErrors::names`].
+pub(crate) type Moves = [f64; FollowerErrors::COUNT];
+
 impl FollowerErrors {
     /// Number of the follower's numbers that may have an error.
     pub const COUNT: usize = 7;
@@ -64,6 +67,22 @@ impl FollowerErrors {
     /// Standard deviations of all numbers, 0 for an exact number.
     pub fn all(self) -> [f64; Self::COUNT] {
         self.0
+    }
+
+    /// The errors with the number at a dotted path made exact.
+    pub fn without(self, path: &str) -> Self {
+        let name = path.strip_prefix("follower.");
+        self.kept(|index| name != Self::names().nth(index))
+    }
+
+    /// The larger errors of two machines.
+    pub(crate) fn or(self, other: Self) -> Self {
+        Self(std::array::from_fn(|index| self.0[index].max(other.0[index])))
+    }
+
+    /// The errors of the numbers at some indices; the others are made exact.
+    pub(crate) fn kept(self, is_kept: impl Fn(usize) -> bool) -> Self {
+        Self(std::array::from_fn(|index| if is_kept(index) { self.0[index] } else { 0.0 }))
     }
 
     /// The numbers that are not exact, each with its standard deviation.

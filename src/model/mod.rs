@@ -35,6 +35,7 @@ use serde::{Deserialize, Serialize};
 pub use complaint::ModelError;
 use fields::Fields;
 pub use follower_errors::FollowerErrors;
+pub(crate) use follower_errors::Moves;
 pub use lines::{Holds, Separator};
 pub use nearest::nearest;
 pub use numeral::{Numeral, finite, parted};
@@ -73,6 +74,8 @@ pub struct Model {
     pub preload: Option<f64>,
     /// Standard deviations of the follower's numbers.
     pub errors: FollowerErrors,
+    /// Multiples of their standard deviations by which the follower's numbers are moved from those of the file.
+    pub(crate) moves: Moves,
     fields: Fields,
     changes: Vec<(String, f64)>,
 }
@@ -182,7 +185,8 @@ impl Model {
         };
         fields.finish()?;
         errors.check(&mut fields)?;
-        Ok(Self { name, source, follower, cam, study, units, preload, errors, fields, changes: Vec::new() })
+        let (moves, changes) = (Moves::default(), Vec::new());
+        Ok(Self { name, source, follower, cam, study, units, preload, errors, moves, fields, changes })
     }
 
     /// Numeric fields that shape the motion, by dotted path, with their values. These are the numbers that a study may vary.

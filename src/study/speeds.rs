@@ -7,7 +7,6 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::border_collision::Danger;
-use crate::cam::Cam;
 use crate::corner::CornerImpact;
 use crate::corner::candidates::on_branch;
 use crate::elementary;
@@ -15,14 +14,13 @@ use crate::estimate::Estimate;
 use crate::known::Evidence;
 use crate::measured::Measured;
 use crate::model::{FollowerErrors, Model, ModelError};
-use crate::orbit::branch::Event;
 use crate::orbit::cycle::own_speed;
 use crate::orbit::long_run::{Budget, Kind, LongRun};
 use crate::progress::Watch;
-use crate::simulate::{EventKind, Machine, SimulateError, angular_velocity};
+use crate::simulate::{EventKind, Machine, SimulateError};
 use crate::study::attractors::{
-    AttractorFamily, Attractors, AttractorsAtValue, AttractorsError, Cause, GridValue, Resolution, StartsAndBudget,
-    Transition, ValueGrid, attractors,
+    AttractorFamily, Attractors, AttractorsAtValue, AttractorsError, Cause, GridValue, Resolution, Transition,
+    UncertainEnds, attractors,
 };
 use crate::study::design::contact::{Contact, Separation};
 use crate::study::design::known;
@@ -56,7 +54,7 @@ pub struct SpeedSurvey {
     pub separation_error: Option<SourcedUncertainty>,
     /// Accuracy of the cam, if it is measured.
     pub measured: Option<Measured>,
-    /// Standard deviations of the follower's numbers.
+    /// Standard deviations of the follower's numbers; the one that varies is exact.
     pub errors: FollowerErrors,
     /// The attractors, by rising value.
     pub attractors: Vec<AttractorRow>,
@@ -89,8 +87,11 @@ document!(SpeedSurvey as it {
     missed_below_share: it.missed(),
     detachment_rpm: it.detachment().filter(|_| it.over.is_speed()).map(|[rpm, _]| rpm),
     detachment if_any: it.detachment().filter(|_| !it.over.is_speed()).map(|[value, _]| value),
-    detachment_error_rpm if_any: it.detachment_error().map(|error| error.total()),
-    detachment_error_parts if_any: it.detachment_error().map(|error| UncertaintyParts(error, "_rpm")),
+    detachment_error_rpm if_any: it.detachment_error().filter(|_| it.over.is_speed()).map(|error| error.total()),
+    detachment_error if_any: it.detachment_error().filter(|_| !it.over.is_speed()).map(|error| error.total()),
+    detachment_error_parts if_any: it
+        .detachment_error()
+        .map(|error| UncertaintyParts(error, if it.over.is_speed() { "_rpm" } else { "" })),
     measured if_any: it.measured,
     uncertain if_any: it.errors.if_any(),
     attractors: it.attractors,
@@ -297,17 +298,23 @@ impl SpeedSurvey {
             }
             Some(_) => None,
             None => {
-                let ends = self.attractors.iter().flat_map(|row| row.birth.iter().chain(&row.death));
-                let first = ends.filter(|end| end.cause == Cause::Detachment).map(|end| (end.value(), end.bracket));
-                first.map(|(value, [low, high])| [value, 0.5 * (high - low)]).next()
+                let end = self.detachment_end()?;
+                Some([end.value(), 0.5 * (end.bracket[1] - end.bracket[0])])
             }
         }
     }
 
-    /// Uncertainty of the machine in the detachment, rpm; none for an exact machine, or if unknown.
+    /// The first end of an attractor at which the follower begins or ceases to leave the cam.
+    fn detachment_end(&self) -> Option<&Transition> {
+        let ends = self.attractors.iter().flat_map(|row| row.birth.iter().chain(&row.death));
+        ends.into_iter().find(|end| end.cause == Cause::Detachment)
+    }
+
+    /// Uncertainty of the machine in the detachment; none for an exact machine, or if unknown.
     pub fn detachment_error(&self) -> Option<SourcedUncertainty> {
         self.detachment()?;
-        self.separation_error.filter(|error| error.total().is_finite())
+        let error = if self.separation.is_some() { self.separation_error } else { self.detachment_end()?.error };
+        error.filter(|error| error.total().is_finite())
     }
 
     /// Returns the speed of the fastest impact seen on an attractor, m/s relative to the cam, and its value.
@@ -381,15 +388,10 @@ pub fn speeds(
     let known = separation.map(|separation| known(separation, &machines));
     let (separation, separation_errors) = known.map_or((None, None), |(found, errors)| (Some(found), errors));
     let separation_error = separation_errors.map(|[error, _]| error);
-    // If another number varies, an event moves along with the machine, by an unknown amount.
-    if let (Some(machines), Some(_)) = (machines.uncertain(), separation) {
-        families.par_iter_mut().for_each(|family| {
-            let runs = (&resolution.sample, resolution.budget);
-            let errors = [0, 1].map(|side| error((&lowest, runs), (machines, separation_error), family, side, &grid));
-            for (end, error) in family.ends.iter_mut().zip(errors) {
-                end.iter_mut().for_each(|end| end.error = error);
-            }
-        });
+    if machines.uncertain().is_some() {
+        let (grid, runs) = (&grid[..], (&resolution.sample, resolution.budget));
+        let ends = UncertainEnds { over, range, grid, runs, machines: &machines, separation: separation_error };
+        ends.put(&mut families);
     }
     watch.at("corner impacts on the way", 0, 0);
     let dangers = dangers(over, &families, range);
@@ -444,7 +446,7 @@ pub fn speeds(
         off,
         run: run().count(),
         measured: machines.measured(),
-        errors: over.model.errors,
+        errors: over.model.errors.without(over.parameter.name()),
         attractors: families.par_iter().enumerate().map(row).collect(),
         coexistence: coexistence
             .iter()
@@ -501,32 +503,6 @@ pub fn passed_once(passed: Vec<(f64, CornerImpact, String)>) -> Vec<(f64, Corner
     found.sort_by(|(one, ..), (other, ..)| one.total_cmp(other));
     found.iter_mut().for_each(|(.., names)| names.dedup());
     found
-}
-
-/// Uncertainty of the machine in an attractor's transition, rpm: by the event's equations, or by runs if it is known by runs.
-fn error(
-    (machine, runs): (&Machine, StartsAndBudget<'_>),
-    (machines, of_separation): (&PlausibleMachines<'_>, Option<SourcedUncertainty>),
-    family: &AttractorFamily,
-    side: usize,
-    grid: &ValueGrid,
-) -> Option<SourcedUncertainty> {
-    let end = family.ends[side].as_ref()?;
-    let (rpm, speed) = (end.at.rpm, angular_velocity(end.at.rpm));
-    let machine = machine.at_speed(speed);
-    let event = end.point.as_ref().and_then(|point| Event::of_point(&machine, point));
-    let by_equations = |moved: &(dyn Fn(&Model, &Cam) -> Option<f64> + Sync)| {
-        machines.error([rpm], |model, cam| moved(model, cam).map(|rpm| [rpm])).map(|[error]| error)
-    };
-    match (end.cause, event) {
-        // One detachment speed has one error.
-        (Cause::Detachment, _) => of_separation.filter(|error| error.total().is_finite()),
-        (_, Some(event)) => by_equations(&|model, cam| event.moved(model, cam)),
-        (Cause::Runs, None) => machines.error_by_runs(rpm, |model, cam| {
-            family.moved(&Machine::new(cam.clone(), &model.follower, speed), grid, runs, side)
-        }),
-        _ => None,
-    }
 }
 
 fn name(index: usize) -> String {

@@ -721,7 +721,7 @@ fn an_end_by_runs_is_found_once_more() {
             let (Some(end), Some((index, attractor))) = (&family.ends[side], place) else { continue };
             let width = end.bracket[1] - end.bracket[0];
             let is_found = |grid: &[GridValue]| {
-                let moved = family.moved(&over.machine(200.0).unwrap(), grid, runs, side);
+                let moved = family.moved(&over, grid, runs, side);
                 moved.is_some_and(|rpm| (rpm - end.value()).abs() < 2.0 * width)
             };
             assert!(end.cause == Cause::Runs && is_found(&found.grid), "{side}: {end:?}");

@@ -8,6 +8,7 @@ use corner_impact::study::attractors::detachment;
 use corner_impact::study::design::contact::{Contact, Separation};
 use corner_impact::study::design::needs::{Answer, Lever, Need};
 use corner_impact::study::design::{Asked, Design, design};
+use corner_impact::study::survey::Values;
 use corner_impact_cli::show::Paged;
 use serde_json::Value;
 
@@ -114,7 +115,7 @@ fn too_much_damping_does_no_more() {
     for (goal, does_without) in [(0.5 * (with(0.0) + most), false), (0.99 * with(0.0), true)] {
         let words = format!("no separation to {goal} rpm");
         let needs = vec![(words.clone(), words.parse().unwrap())];
-        let against = Some((Lever::Stiffness, [30.0, 31.0], 2));
+        let against = Some(common::axis_of(Lever::Stiffness, &Values::linear(30.0, 31.0, 2)));
         let found = design(&model, &Asked { speeds: 2, needs, against, ..Asked::default() }, &Unwatched).unwrap();
         let trade = found.trades.iter().find(|trade| trade.parameter == Lever::Damping).unwrap();
         let [least, most] = [trade.pairs[0].found, trade.pairs[0].other].map(|end| end.unwrap());
@@ -151,7 +152,7 @@ fn a_load_that_is_low_enough_again_further_on_is_told() {
     let model = Model::parse("feed.toml", &text).unwrap();
     for (words, is_again) in [("impact speed below 1 m/s to 3600 rpm", true), ("no separation to 3600 rpm", false)] {
         let needs = vec![(words.to_owned(), words.parse().unwrap())];
-        let against = Some((Lever::Stiffness, [60.0, 60.0], 1));
+        let against = Some(common::axis_of(Lever::Stiffness, &Values::linear(60.0, 60.0, 1)));
         let found = design(&model, &Asked { speeds: 2, needs, against, ..Asked::default() }, &Unwatched).unwrap();
         let damping = found.needs.iter().find(|answer| answer.lever == Lever::Damping).unwrap();
         let trade = found.trades.iter().find(|trade| trade.parameter == Lever::Damping).unwrap();

@@ -12,6 +12,7 @@ use corner_impact::study::design::contact::{Contact, Separation};
 use corner_impact::study::design::loads::{Load, Loads};
 use corner_impact::study::design::needs::{Answer, Lever};
 use corner_impact::study::design::{Asked, Design, design};
+use corner_impact::study::survey::Values;
 use corner_impact::tolerance;
 use serde_json::json;
 
@@ -309,7 +310,7 @@ fn has_two_ends(model: &Model) {
 fn what_is_needed_against_another_number_is_what_each_needs() {
     let speed = 1.2 * rpm(OWN.leaves());
     let need = format!("no separation to {speed:?} rpm");
-    let against = Some((Lever::Mass, [300.0, 500.0], 3));
+    let against = Some(common::axis_of(Lever::Mass, &Values::linear(300.0, 500.0, 3)));
     let found = design(&OWN.model(true, true), &Asked { against, ..asked(&need) }, &Unwatched).unwrap();
     assert_eq!(
         found.trades.iter().map(|it| it.parameter).collect::<Vec<_>>(),
@@ -317,7 +318,7 @@ fn what_is_needed_against_another_number_is_what_each_needs() {
     );
     let alone = [0.3, 0.4, 0.5].map(|mass| answers(&Eccentric { mass, ..OWN }.model(true, true), &need));
     for trade in &found.trades {
-        assert_eq!((trade.against, trade.against_unit.as_str(), &trade.need), (Lever::Mass, "g", &need));
+        assert_eq!((trade.against.as_str(), trade.against_unit.as_str(), &trade.need), ("mass", "g", &need));
         assert_eq!(trade.pairs.iter().map(|it| it.given).collect::<Vec<_>>(), [300.0, 400.0, 500.0]);
         for (pair, alone) in trade.pairs.iter().zip(&alone) {
             let alone = alone.iter().find(|it| it.lever == trade.parameter).unwrap();
@@ -331,7 +332,7 @@ fn what_is_needed_against_another_number_is_what_each_needs() {
     }
     assert_eq!(found.trades.iter().map(|it| it.unit.as_str()).collect::<Vec<_>>(), ["kN", "N/m", "N s/m"]);
     // A single value is the first.
-    let one = Asked { against: Some((Lever::Preload, [50.0, 90.0], 1)), ..asked(&need) };
+    let one = Asked { against: Some(common::axis_of(Lever::Preload, &Values::linear(50.0, 90.0, 1))), ..asked(&need) };
     let found = design(&OWN.model(true, false), &one, &Unwatched).unwrap();
     assert!(found.trades.iter().all(|it| it.pairs.len() == 1 && it.pairs[0].given == 50.0));
 }

@@ -1,6 +1,7 @@
 //! Can the figures be read: ticks, labels, lines and clouds, from any data, in a small file?
 
 use std::f64::consts::TAU;
+use std::path::Path;
 
 use corner_impact::cam::Cam;
 use corner_impact::flight::State;
@@ -10,7 +11,7 @@ use corner_impact::simulate::{Event, EventKind};
 use corner_impact_cli::figures::{
     CornerMark, TracedRun, cam_figure, corner_marks, impact_diagram, phase_plane, strobe_diagram, time_trace,
 };
-use corner_impact_plot::layout::{Layout, TEXT, Text, WIDTH, width};
+use corner_impact_plot::layout::{Layout, PanelLayout, TEXT, Text, WIDTH, width};
 use corner_impact_plot::ticks::{Tick, ticks, unit};
 use corner_impact_plot::{
     Cloud, Colour, Data, Density, Figure, FigureAxis, Look, Mark, Marker, Panel, Series, Stroke, TickSpacing, png, svg,
@@ -19,12 +20,15 @@ use corner_impact_plot::{
 use resvg::tiny_skia::Pixmap;
 use resvg::usvg::{Options, Tree, roxmltree::Document};
 
+use crate::common;
+
 fn series(data: Data) -> Series {
     Series { label: "f".into(), name: String::new(), colour: Colour::Blue, data }
 }
 
 fn figure(data: Data) -> Figure {
-    let panel = Panel { y: FigureAxis::new("up", "m"), height: 0.4, series: vec![series(data)], marks: vec![] };
+    let panel =
+        Panel { y: FigureAxis::new("up", "m"), height: 0.4, series: vec![series(data)], marks: vec![], own_x: None };
     Figure {
         title: "T".into(),
         x: FigureAxis::new("across", "s"),
@@ -218,7 +222,7 @@ fn no_label_covers_another() {
                 let middle = frame.left + frame.width * tick.at / 360.0;
                 Text { at: [middle - width(&tick.label, TEXT) / 2.0, frame.bottom() + 20.0], text: tick.label.clone() }
             };
-            labels.extend(layout.ticks.iter().map(tick));
+            labels.extend(layout.panels.iter().flat_map(|panel| &panel.across.ticks).map(tick));
             for (index, label) in labels.iter().enumerate() {
                 assert!(label.at[0] >= 0.0 && label.at[0] + width(&label.text, TEXT) <= WIDTH, "{label:?}");
                 assert!(label.at[1] > TEXT && label.at[1] < layout.height, "{label:?}");
@@ -248,7 +252,7 @@ fn legends_wrap_instead_of_running_off_the_page() {
 #[test]
 fn every_axis_says_its_name_and_unit() {
     let model = Model::parse("osorio-2008.toml", OSORIO_2008).unwrap();
-    let figure = cam_figure(&Cam::new(&model).unwrap(), "The cam");
+    let figure = cam_figure(&model, &Cam::new(&model).unwrap(), "The cam");
     let texts = texts(&drawn(&figure));
     for text in [
         "The cam",
@@ -270,11 +274,58 @@ fn every_axis_says_its_name_and_unit() {
     assert!(small.contains("up (10⁻⁶ m)"), "{small}");
 }
 
+/// A lift that follows from a contour is drawn above that, with an axis of its own; another lift alone.
+#[test]
+fn a_cam_with_a_contour_is_drawn_with_its_shape() {
+    for (name, panels) in [("machines/tangent-roller", 4), ("machines/flat-face-arcs", 4), ("laws/harmonic", 3)] {
+        let model = common::read(Path::new(&format!("models/{name}.toml")));
+        let figure = cam_figure(&model, &Cam::new(&model).unwrap(), "");
+        assert_eq!(figure.panels.len(), panels, "{name}");
+        let (layout, texts) = (Layout::new(&figure, &Look::default()), texts(&drawn(&figure)));
+        assert!(says(&texts, "cam angle θ (deg)"), "{texts:?}");
+        assert_eq!(says(&texts, "from the axis, across (m)"), panels == 4, "{texts:?}");
+        assert_eq!(says(&texts, "path of the roller's centre"), name.ends_with("roller"), "{texts:?}");
+        let Some(shape) = layout.panels.get(3) else { continue };
+        assert!(
+            shape.across.is_own && layout.panels[2].across.name.is_some() && layout.panels[1].across.name.is_none()
+        );
+        let is_round = |shape: &PanelLayout| {
+            let scale = [shape.frame.width, shape.frame.height].into_iter().zip([shape.across.range, shape.range]);
+            let scale: Vec<f64> = scale.map(|(length, [low, high])| length / (high - low)).collect();
+            (scale[0] / scale[1] - 1.0).abs() < 1e-9
+        };
+        assert!(is_round(shape), "{shape:?}");
+        // Another height keeps circles round, too.
+        for factor in [0.7, 1.2] {
+            let height = Some(factor * layout.height * Look::default().points() / WIDTH);
+            let other = Layout::new(&figure, &Look { height, ..Look::default() });
+            assert!((other.height / layout.height - factor).abs() < 0.01, "{} {}", other.height, layout.height);
+            assert!(is_round(&other.panels[3]), "{other:?}");
+        }
+    }
+}
+
+/// A long label at a line on the right leaves the frame its width: it stands over its own line.
+#[test]
+fn a_label_without_room_beside_its_line_stands_over_it() {
+    let with_label = |label: &str| {
+        let mark = Mark { at: 0.9, label: label.into() };
+        Figure { marks: vec![mark], ..figure(line(vec![[0.0, 0.0], [1.0, 1.0]])) }
+    };
+    let look = Look { width: Some(240.0), ..Look::default() };
+    let [short, long] = ["s", "separation, 2915 ± 13 rpm"].map(|label| Layout::new(&with_label(label), &look));
+    assert_eq!(short.panels[0].frame, long.panels[0].frame);
+    let label = long.marks[0].label.as_ref().unwrap();
+    assert!(label.at[0] < long.marks[0].at && label.at[0] + width(&label.text, TEXT) <= look.across(), "{label:?}");
+    let right_of_line = short.marks[0].label.as_ref().unwrap().at[0] > short.marks[0].at;
+    assert!(right_of_line, "{:?}", short.marks);
+}
+
 #[test]
 fn the_cam_is_drawn_with_its_jumps_left_open() {
     let model = Model::parse("osorio-2008.toml", OSORIO_2008).unwrap();
     let cam = Cam::new(&model).unwrap();
-    let figure = cam_figure(&cam, "");
+    let figure = cam_figure(&model, &cam, "");
     for (order, (panel, breaks)) in figure.panels.iter().zip([0, 0, 6]).enumerate() {
         let Data::Line { points, .. } = &panel.series[0].data else { panic!() };
         assert_eq!(points.iter().filter(|point| point[0].is_nan()).count(), breaks);

@@ -62,7 +62,7 @@ fn check(plate: &RenderedFigure) {
         for series in &panel.series {
             for [x, y] in points(&series.data) {
                 assert!(x.is_nan() == y.is_nan() && !x.is_infinite() && !y.is_infinite(), "{id}: {x}, {y}");
-                let across = (layout.range[0]..=layout.range[1]).contains(x);
+                let across = (layout.panels[0].across.range[0]..=layout.panels[0].across.range[1]).contains(x);
                 seen |= across && (place.range[0]..=place.range[1]).contains(y);
             }
             if let Data::Density(density) | Data::Region { cells: density, .. } = &series.data {
@@ -226,7 +226,10 @@ fn the_shape_is_the_papers_construction() {
     // On the page a circle is one.
     let layout = Layout::new(&figure, &Look::default());
     let (frame, range) = (layout.panels[0].frame, layout.panels[0].range);
-    let [across, up] = [frame.width / (layout.range[1] - layout.range[0]), frame.height / (range[1] - range[0])];
+    let [across, up] = [
+        frame.width / (layout.panels[0].across.range[1] - layout.panels[0].across.range[0]),
+        frame.height / (range[1] - range[0]),
+    ];
     assert_relative_eq!(across, up, max_relative = 1e-9);
 }
 

@@ -258,7 +258,7 @@ fn a_limit_from_one_side_has_every_power() {
 
 fn change([a, b]: [f64; 2], errors: [Option<f64>; 2]) -> Change {
     let found = [a, b].map(Value::from);
-    Change::new("number", found.each_ref().map(Some), errors, 0.0)
+    Change::new("number", found.each_ref().map(Some), errors, None)
 }
 
 #[test]

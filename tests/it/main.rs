@@ -133,6 +133,7 @@ mod temporary;
 mod tolerance;
 mod trapping;
 mod turned_cams;
+mod uncertain_answers;
 mod uncertainty;
 mod units;
 mod verify;

@@ -1463,8 +1463,8 @@ fn a_noise_that_is_unknown_is_said_to_be() {
     }
 }
 
-/// Loads of a measured cam have uncertainties where the noise of its rows is known, and over speeds alone; the force round the cam is told of one speed, and of
-/// no other number.
+/// Loads of a measured cam have uncertainties where the noise of its rows is known, over any number; the force round the cam is told of one speed, and of no
+/// other number.
 #[test]
 fn loads_are_as_uncertain_as_rows_are_known_to_leave_them() {
     let table =
@@ -1485,7 +1485,7 @@ fn loads_are_as_uncertain_as_rows_are_known_to_leave_them() {
     let mass = Axis::new(Parameter::named(&noisy, "mass").unwrap(), &values);
     let of_mass = Asked { over: Some(mass), ..of_speed.clone() };
     for (model, asked, is_uncertain, is_round) in
-        [(&noisy, &of_speed, true, true), (&unknown, &of_speed, false, true), (&noisy, &of_mass, false, false)]
+        [(&noisy, &of_speed, true, true), (&unknown, &of_speed, false, true), (&noisy, &of_mass, true, false)]
     {
         let found = design(model, asked, &Unwatched).unwrap();
         assert_eq!(found.loads.len(), 1);

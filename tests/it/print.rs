@@ -47,7 +47,7 @@ fn parabola() -> Figure {
         series(Colour::Green, Data::Points { points, marker: Marker::Ring }),
         series(Colour::Ink, Data::Words(vec![word])),
     ];
-    let panel = |series| Panel { y: FigureAxis::new("height", "m"), height: 0.4, series, marks: vec![] };
+    let panel = |series| Panel { y: FigureAxis::new("height", "m"), height: 0.4, series, marks: vec![], own_x: None };
     let panels = vec![panel(all.clone()), panel(all)];
     Figure {
         title: "A parabola".into(), x: FigureAxis::new("length", "s"), marks: vec![], panels, note: "noté".into()
@@ -165,7 +165,7 @@ fn a_narrow_figure_holds_its_words_and_ticks() {
     let mut cloud = Density::new([660.0, 750.0], [0.0, 360.0]);
     (0..90).for_each(|i| cloud.push(660.0 + f64::from(i), f64::from(4 * i)));
     let impacts = impact_diagram("impacts of 100 revolutions", cloud, &corner_marks(&cam), None);
-    for figure in [parabola(), cam_figure(&cam, "osorio-2008"), impacts] {
+    for figure in [parabola(), cam_figure(&model, &cam, "osorio-2008"), impacts] {
         for mm in [70.0, 85.0, 120.0, 170.0] {
             let look = Look { width: Some(mm * MM), ..column() };
             let (wide, layout) = (look.across(), Layout::new(&figure, &look));
@@ -174,7 +174,9 @@ fn a_narrow_figure_holds_its_words_and_ticks() {
             let labels =
                 labels.chain(panels.flat_map(|panel| panel.marks.iter().filter_map(|mark| mark.label.as_ref())));
             let labels = labels.chain(layout.marks.iter().filter_map(|mark| mark.label.as_ref()));
-            for Text { at, text } in labels.chain([&layout.name]).chain(&layout.note) {
+            for Text { at, text } in
+                labels.chain(layout.panels.iter().filter_map(|panel| panel.across.name.as_ref())).chain(&layout.note)
+            {
                 assert!(at[0] >= 0.0 && at[0] + width(text, TEXT) <= wide, "{mm} mm: \"{text}\" at {at:?} of {wide}");
             }
             for (panel, Text { at, text }) in
@@ -187,7 +189,7 @@ fn a_narrow_figure_holds_its_words_and_ticks() {
                 );
             }
             assert!(
-                layout.ticks.len() > 2 && layout.panels.iter().all(|panel| panel.ticks.len() > 2),
+                layout.panels[0].across.ticks.len() > 2 && layout.panels.iter().all(|panel| panel.ticks.len() > 2),
                 "{}: {mm} mm",
                 figure.title
             );
@@ -264,7 +266,7 @@ fn titles_and_ends_of_axes_are_as_asked() {
     let look = Look { x: Some([20.0, 60.0]), y: Some([500.0, 2500.0]), ..column() };
     let figure = look.framed(parabola()).unwrap();
     let layout = Layout::new(&figure, &look);
-    assert_eq!((layout.range, layout.panels[0].range), ([20.0, 60.0], [500.0, 2500.0]));
+    assert_eq!((layout.panels[0].across.range, layout.panels[0].range), ([20.0, 60.0], [500.0, 2500.0]));
     assert!(layout.panels[1].range[1] > 9000.0, "the second panel keeps its own: {:?}", layout.panels[1].range);
     let text = svg::render(&figure, &look).unwrap();
     assert_eq!(text.matches("A parabola").count(), 1, "for a reader aloud alone, where a width is given");

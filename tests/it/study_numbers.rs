@@ -353,8 +353,10 @@ fn an_end_by_runs_moves_with_the_machine() {
     let row = &found.families[row];
     let side = usize::from(row.ends[0].is_none());
     let end = row.ends[side].as_ref().unwrap();
-    let moved =
-        |of: &Model| row.moved(&machine(of, 421.0), &found.grid, (&resolution(0.5, 3).sample, Budget::SURVEY), side);
+    let moved = |of: &Model| {
+        let runs = (&resolution(0.5, 3).sample, Budget::SURVEY);
+        row.moved(&Over::speed(of).unwrap(), &found.grid, runs, side)
+    };
     let width = end.bracket[1] - end.bracket[0];
     assert_abs_diff_eq!(moved(&text(1000.0)).unwrap(), end.value(), epsilon = 2.0 * width);
     for stiffness in [999.9, 1000.5] {

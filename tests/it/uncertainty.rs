@@ -22,17 +22,17 @@ use crate::common;
 const AMPLITUDE: f64 = 0.01;
 const OFFSET: f64 = 0.02;
 
-fn cosine(follower: &Value) -> Model {
+pub(crate) fn cosine(follower: &Value) -> Model {
     let cam = json!({ "law": "harmonic", "offset": OFFSET, "amplitudes": [AMPLITUDE], "phases_deg": [0.0] });
     Model::of_document("a cosine", &json!({ "follower": follower, "cam": cam })).unwrap()
 }
 
-fn with(value: f64, error: f64) -> Value {
+pub(crate) fn with(value: f64, error: f64) -> Value {
     json!({ "value": value, "error": error })
 }
 
 /// The part of a number by its name.
-fn part(error: &SourcedUncertainty, name: &str) -> f64 {
+pub(crate) fn part(error: &SourcedUncertainty, name: &str) -> f64 {
     error.of_each().into_iter().find(|(of, _)| *of == name).map_or(0.0, |(_, part)| part)
 }
 
@@ -41,7 +41,7 @@ fn designed(model: &Model, needs: &[&str]) -> Design {
     design(model, &Asked { rpm: Some([100.0, 200.0]), speeds: 2, needs, ..Asked::default() }, &Unwatched).unwrap()
 }
 
-fn near(found: f64, wanted: f64, within: f64) {
+pub(crate) fn near(found: f64, wanted: f64, within: f64) {
     assert!((found - wanted).abs() <= within * wanted.abs(), "{found}, not {wanted}");
 }
 

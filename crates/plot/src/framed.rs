@@ -29,7 +29,8 @@ impl Look {
     /// Restricts the figure to the requested ranges; the vertical one applies to the first panel only.
     pub fn framed(&self, mut figure: Figure) -> Result<Figure, LookError> {
         if let Some(shown) = self.x {
-            let drawn = extent(figure.panels.iter().flat_map(|panel| reach(panel, 0)));
+            let sharing = figure.panels.iter().filter(|panel| panel.own_x.is_none());
+            let drawn = extent(sharing.flat_map(|panel| reach(panel, 0)));
             figure.x.range = Some(within("--x-range", shown, drawn)?);
         }
         if let Some((shown, panel)) = self.y.zip(figure.panels.first_mut()) {

@@ -76,11 +76,26 @@ pub struct MarkLine {
     pub label: Option<Text>,
 }
 
+/// Layout of a panel's horizontal axis.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AcrossLayout {
+    /// Ends of the axis.
+    pub range: [f64; 2],
+    /// Ticks.
+    pub ticks: Vec<Tick>,
+    /// Name below the labels of the ticks; none if a panel further down has both.
+    pub name: Option<Text>,
+    /// Whether the axis is the panel's own.
+    pub is_own: bool,
+}
+
 /// Layout of one panel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PanelLayout {
     /// Frame of the data.
     pub frame: Frame,
+    /// Horizontal axis.
+    pub across: AcrossLayout,
     /// Ends of the vertical axis.
     pub range: [f64; 2],
     /// Ticks of the vertical axis.
@@ -102,12 +117,6 @@ pub struct Layout {
     pub height: f64,
     /// Lines of the title.
     pub title: Vec<Text>,
-    /// Ends of the horizontal axis.
-    pub range: [f64; 2],
-    /// Ticks of the horizontal axis.
-    pub ticks: Vec<Tick>,
-    /// Name of the horizontal axis.
-    pub name: Text,
     /// Vertical reference lines.
     pub marks: Vec<MarkLine>,
     /// The panels.
@@ -182,10 +191,27 @@ fn vertical_range(panel: &Panel) -> Option<[f64; 2]> {
     })
 }
 
-fn horizontal_range(figure: &Figure) -> Option<[f64; 2]> {
-    valid(figure.x.range).or_else(|| {
-        let extents = figure.panels.iter().filter_map(|panel| extent(panel, 0));
+/// Range of a horizontal axis, over these panels.
+fn horizontal_range<'a>(axis: &FigureAxis, panels: impl Iterator<Item = &'a Panel>) -> Option<[f64; 2]> {
+    valid(axis.range).or_else(|| {
+        let extents = panels.filter_map(|panel| extent(panel, 0));
         known(extents.flatten()).map(|range| widened(range, 0.02))
+    })
+}
+
+/// Whether a panel has the labels of its horizontal axis: its own, or the shared one as the last of those that share it.
+fn is_labelled(figure: &Figure, index: usize) -> bool {
+    let is_own = |panel: &Panel| panel.own_x.is_some();
+    is_own(&figure.panels[index]) || figure.panels[index + 1..].iter().all(is_own)
+}
+
+/// Ranges across and up that hold these ranges and have one scale in a frame of this width and height.
+fn one_scale(ranges: [[f64; 2]; 2], lengths: [f64; 2]) -> [[f64; 2]; 2] {
+    let per_unit = |index: usize| (ranges[index][1] - ranges[index][0]) / lengths[index];
+    let scale = per_unit(0).max(per_unit(1));
+    std::array::from_fn(|index| {
+        let ([low, high], half) = (ranges[index], 0.5 * scale * lengths[index]);
+        [0.5 * (low + high) - half, 0.5 * (low + high) + half]
     })
 }
 
@@ -279,11 +305,14 @@ fn beside(marks: &[Mark], range: [f64; 2], frame: &Frame) -> Vec<MarkLine> {
     })
 }
 
-/// Labels of vertical lines above the frame, right of their lines, in rows such that no line crosses a label.
-fn above(marks: &[Mark], range: [f64; 2], frame: &Frame) -> (Vec<MarkLine>, usize) {
+/// Labels of vertical lines above the frame, right of their lines, in rows such that no line crosses a label. No line is left of the first, so
+/// that its label moves to the left over its own line where the page ends at `end`.
+fn above(marks: &[Mark], range: [f64; 2], frame: &Frame, end: f64) -> (Vec<MarkLine>, usize) {
     let at = |mark: &Mark| frame.left + frame.width * share(mark.at, range);
+    let order = labelled(marks, range, |mark| -at(mark));
+    let first = order.last().copied();
     let mut rows: Vec<(f64, usize, usize)> = Vec::new();
-    for index in labelled(marks, range, |mark| -at(mark)) {
+    for index in order {
         let (left, right) = (at(&marks[index]), at(&marks[index]) + GAP + width(&marks[index].label, TEXT));
         // The line of a mark further right rises to its own label's row, so this label goes above all labels that it spans.
         let row = rows.iter().filter(|(other, _, _)| *other <= right).map(|(_, row, _)| row + 1).max().unwrap_or(0);
@@ -292,7 +321,8 @@ fn above(marks: &[Mark], range: [f64; 2], frame: &Frame) -> (Vec<MarkLine>, usiz
     let count = rows.iter().map(|(_, row, _)| row + 1).max().unwrap_or(0);
     let lines = mark_lines(marks, range, at, |index| {
         let (left, row, _) = rows.iter().find(|(_, _, other)| *other == index)?;
-        Some([left + 3.0, frame.top - 5.0 - *row as f64 * LINE])
+        let room = if first == Some(index) { end - width(&marks[index].label, TEXT) } else { f64::INFINITY };
+        Some([(left + 3.0).min(room.max(EDGE)), frame.top - 5.0 - *row as f64 * LINE])
     });
     (lines, count)
 }
@@ -365,12 +395,16 @@ impl Layout {
                 Some(height) => height * wide / look.points() - layout.height,
                 None => (LEGENDS_HIGH * layout.legend_height - layout.height).max(0.0),
             };
-            let whole: f64 = heights.iter().sum();
+            // The width gives a frame to scale its height, unless its own axis may show more.
+            let free = || figure.panels.iter().map(|panel| !panel.y.to_scale || panel.own_x.is_some());
+            let whole: f64 = heights.iter().zip(free()).filter(|(_, free)| *free).map(|(height, _)| height).sum();
             if extra.abs() < 0.5 || whole == 0.0 {
                 break;
             }
             let scale = (whole + extra.ceil()) / whole;
-            heights.iter_mut().for_each(|height| *height = (*height * scale).max(LEAST_HEIGHT));
+            for (height, _) in heights.iter_mut().zip(free()).filter(|(_, free)| *free) {
+                *height = (*height * scale).max(LEAST_HEIGHT);
+            }
             layout = Self::with_heights(figure, look, &heights);
         }
         layout
@@ -380,12 +414,20 @@ impl Layout {
     fn with_heights(figure: &Figure, look: &Look, heights: &[f64]) -> Self {
         let (wide, title) = (look.across(), look.title(figure));
         let mut heights = heights.to_vec();
-        let ranges: Vec<_> = figure.panels.iter().map(vertical_range).collect();
-        let known = horizontal_range(figure);
+        let mut ranges: Vec<_> = figure.panels.iter().map(vertical_range).collect();
+        let known = horizontal_range(&figure.x, figure.panels.iter().filter(|panel| panel.own_x.is_none()));
         let range = known.unwrap_or(UNKNOWN);
+        let own_known = |panel: &Panel| match &panel.own_x {
+            Some(axis) => horizontal_range(axis, std::iter::once(panel)),
+            None => known,
+        };
+        let mut across_ranges: Vec<[f64; 2]> =
+            figure.panels.iter().map(|panel| own_known(panel).unwrap_or(UNKNOWN)).collect();
         let ratio = |index: usize| {
-            let ratio = ranges[index].map_or(f64::NAN, |[low, high]| (high - low) / (range[1] - range[0]));
-            (figure.panels[index].y.to_scale && ratio.is_finite()).then_some(ratio)
+            let [from, to] = range;
+            let ratio = ranges[index].map_or(f64::NAN, |[low, high]| (high - low) / (to - from));
+            let panel = &figure.panels[index];
+            (panel.y.to_scale && panel.own_x.is_none() && ratio.is_finite()).then_some(ratio)
         };
         let to_scale = |across: f64, index: usize| Some((across * ratio(index)?).clamp(0.08 * wide, 2.0 * wide));
         for (index, height) in heights.iter_mut().enumerate() {
@@ -404,7 +446,7 @@ impl Layout {
         let shown: Vec<Entry> = match look.legend {
             LegendPlace::None => Vec::new(),
             _ => (figure.panels.iter().zip(&ranges).enumerate())
-                .flat_map(|(index, (panel, up))| entries(index, panel, [range, up.unwrap_or(UNKNOWN)]))
+                .flat_map(|(index, (panel, up))| entries(index, panel, [across_ranges[index], up.unwrap_or(UNKNOWN)]))
                 .collect(),
         };
         let together = distinct(figure, &shown);
@@ -417,16 +459,21 @@ impl Layout {
         let beside_frame = beside_frame + if look.legend == LegendPlace::Right { column } else { 0.0 };
         let overhang = |across: f64| {
             let past = |mark: &Mark| GAP + width(&mark.label, TEXT) - across * (1.0 - share(mark.at, range));
-            let labelled = figure.marks.iter().filter(|mark| !mark.label.is_empty() && share(mark.at, range) <= 1.0);
-            labelled.map(past).fold(0.0, f64::max)
+            // The label of the first has room on its left.
+            let others = labelled(&figure.marks, range, |mark| mark.at).into_iter().skip(1);
+            others.map(|index| past(&figure.marks[index])).fold(0.0, f64::max)
         };
         let right = wide - EDGE - beside_frame.max(overhang(wide - left - beside_frame - EDGE));
         let across = (right - left).max(0.3 * wide);
         for (index, height) in heights.iter_mut().enumerate() {
             *height = to_scale(across, index).unwrap_or(*height);
         }
-        let horizontal = horizontal_ticks(&figure.x, known, across);
-
+        for (index, panel) in figure.panels.iter().enumerate().filter(|(_, panel)| panel.own_x.is_some()) {
+            if let Some(up) = ranges[index].filter(|_| panel.y.to_scale) {
+                let [x, y] = one_scale([across_ranges[index], up], [across, heights[index]]);
+                (across_ranges[index], ranges[index]) = (x, Some(y));
+            }
+        }
         let mut y = EDGE;
         let mut down = |by: f64| {
             y += by;
@@ -459,9 +506,10 @@ impl Layout {
             }
             if index == 0 {
                 let frame = Frame { left, top: 0.0, width: across, height: heights[0] };
-                let rows = above(&figure.marks, range, &frame).1;
+                let end = wide - EDGE;
+                let rows = above(&figure.marks, range, &frame, end).1;
                 let top = down(rows as f64 * LINE + if rows > 0 { 3.0 } else { 0.0 });
-                marks = above(&figure.marks, range, &Frame { top, ..frame }).0;
+                marks = above(&figure.marks, range, &Frame { top, ..frame }, end).0;
             }
             let frame = Frame { left, top: down(0.0), width: across, height: heights[index] };
             down(heights[index]);
@@ -472,8 +520,23 @@ impl Layout {
                 at: [first + line as f64 * LINE, middle],
                 text: words.clone(),
             };
+            let axis = panel.own_x.as_ref().unwrap_or(&figure.x);
+            let horizontal = horizontal_ticks(axis, own_known(panel).map(|_| across_ranges[index]), across);
+            let below_frame = is_labelled(figure, index).then(|| {
+                let below = down(LINE + 4.0 + GAP);
+                let words = name(axis, horizontal.exponent);
+                let middle = left + (across - width(&words, TEXT)).max(0.0) / 2.0;
+                let middle = middle.min((wide - EDGE - width(&words, TEXT)).max(EDGE));
+                Text { at: [middle, down(LINE - 2.0).max(below)], text: words }
+            });
             panels.push(PanelLayout {
                 frame,
+                across: AcrossLayout {
+                    range: across_ranges[index],
+                    ticks: horizontal.ticks,
+                    name: below_frame,
+                    is_own: panel.own_x.is_some(),
+                },
                 range: range_y,
                 ticks: ticks.ticks.clone(),
                 name: names[index].iter().enumerate().map(line).collect(),
@@ -482,11 +545,6 @@ impl Layout {
                 empty: extent(panel, 1).is_none(),
             });
         }
-        let below = down(LINE + 4.0 + GAP);
-        let words = name(&figure.x, horizontal.exponent);
-        let middle = left + (across - width(&words, TEXT)).max(0.0) / 2.0;
-        let middle = middle.min((wide - EDGE - width(&words, TEXT)).max(EDGE));
-        let name = Text { at: [middle, down(LINE - 2.0).max(below)], text: words };
         match look.legend {
             LegendPlace::Below if !together.is_empty() => {
                 let (places, count) = rows(&together, room);
@@ -513,7 +571,7 @@ impl Layout {
         down(if note.is_empty() { 0.0 } else { GAP });
         let note = note.into_iter().map(|text| Text { at: [EDGE, down(LINE)], text }).collect();
         let height = down(EDGE).ceil();
-        Self { height, title, range, ticks: horizontal.ticks, name, marks, panels, note, legend_height }
+        Self { height, title, marks, panels, note, legend_height }
     }
 }
 

@@ -28,14 +28,14 @@ pub use look::{LegendPlace, Look, Theme, TitleChoice};
 pub use series::dot_size;
 pub use ticks::TickSpacing;
 
-/// A drawing: panels below each other that share the horizontal axis.
+/// A drawing: panels below each other that share the horizontal axis, unless a panel has its own.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Figure {
     /// Title above the panels; empty for none.
     pub title: String,
-    /// Horizontal axis of every panel.
+    /// Horizontal axis of the panels.
     pub x: FigureAxis,
-    /// Vertical lines through every panel, labelled above the first.
+    /// Vertical lines through the panels that share the axis, labelled above the first.
     pub marks: Vec<Mark>,
     /// Panels from top to bottom.
     pub panels: Vec<Panel>,
@@ -51,7 +51,8 @@ impl Figure {
 
     /// Rewrites the unit of each axis.
     pub fn in_units(mut self, spelled: impl Fn(&str) -> String) -> Self {
-        for axis in self.panels.iter_mut().map(|panel| &mut panel.y).chain([&mut self.x]) {
+        let of_panels = self.panels.iter_mut().flat_map(|panel| [&mut panel.y].into_iter().chain(&mut panel.own_x));
+        for axis in of_panels.chain([&mut self.x]) {
             axis.unit = spelled(&axis.unit);
         }
         self
@@ -106,12 +107,20 @@ pub struct Panel {
     pub series: Vec<Series>,
     /// Horizontal lines, labelled at the right.
     pub marks: Vec<Mark>,
+    /// Horizontal axis, if it is not the figure's. Such a panel is below those that share that axis.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub own_x: Option<FigureAxis>,
 }
 
 impl Panel {
     /// A panel without marks.
     pub fn new(y: FigureAxis, height: f64, series: Vec<Series>) -> Self {
-        Self { y, height, series, marks: Vec::new() }
+        Self { y, height, series, marks: Vec::new(), own_x: None }
+    }
+
+    /// Gives the panel a horizontal axis of its own.
+    pub fn across(self, x: FigureAxis) -> Self {
+        Self { own_x: Some(x), ..self }
     }
 
     /// Adds the plain line at zero.

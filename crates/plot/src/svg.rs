@@ -101,13 +101,14 @@ pub(super) fn write(figure: &Figure, look: &Look, apart: bool) -> Result<Vec<Lay
     for mark in layout.marks.iter().filter(|mark| mark.inside) {
         leader(&mut out, mark, &layout)?;
     }
-    if let Some(last) = layout.panels.last() {
-        for tick in &layout.ticks {
-            let x = last.frame.left + last.frame.width * share(tick.at, layout.range);
-            let y = last.frame.bottom() + 4.0 + TEXT + 2.0;
+    for (frame, across) in layout.panels.iter().map(|place| (&place.frame, &place.across)) {
+        let Some(name) = &across.name else { continue };
+        for tick in &across.ticks {
+            let x = frame.left + frame.width * share(tick.at, across.range);
+            let y = frame.bottom() + 4.0 + TEXT + 2.0;
             text(&mut out, [x, y], r#" text-anchor="middle""#, &tick.label)?;
         }
-        label(&mut out, &layout.name)?;
+        label(&mut out, name)?;
     }
     layout.note.iter().try_for_each(|line| label(&mut out, line))?;
     writeln!(out, "</g>\n</svg>")?;
@@ -128,11 +129,11 @@ fn panel(out: &mut Sheet, panel: &Panel, layout: &Layout, place: &PanelLayout) -
     let over_regions = panel.series.iter().any(|series| matches!(series.data, Data::Region { .. }));
     let is_thick = |series: &Series| series.data.style().1.is_some_and(|stroke| stroke_width(stroke) > THICK);
     let is_rimmed = [over_regions, over_regions || panel.series.iter().any(is_thick)];
-    let page = Page { width: frame.width, height: frame.height, x: layout.range, y: place.range, is_rimmed };
+    let page = Page { width: frame.width, height: frame.height, x: place.across.range, y: place.range, is_rimmed };
     let Frame { left, top, width, height } = *frame;
     out.open_frame([left, top, width, height]);
     let [left, top, width, height] = [left, top, width, height].map(number);
-    for mark in layout.marks.iter().filter(|mark| mark.inside) {
+    for mark in layout.marks.iter().filter(|mark| mark.inside && !place.across.is_own) {
         let x = number(mark.at - frame.left);
         line(out, &format!("M{x} 0V{height}"), mark.label.is_some(), Colour::Grey)?;
     }
@@ -145,11 +146,11 @@ fn panel(out: &mut Sheet, panel: &Panel, layout: &Layout, place: &PanelLayout) -
     }
     writeln!(out, "</svg>")?;
     let mut path = format!("M{left} {top}h{width}v{height}h-{width}z");
-    for tick in &layout.ticks {
+    for tick in &place.across.ticks {
         write!(
             path,
             "M{} {}v4",
-            number(frame.left + frame.width * share(tick.at, layout.range)),
+            number(frame.left + frame.width * share(tick.at, place.across.range)),
             number(frame.bottom())
         )?;
     }
@@ -199,7 +200,9 @@ fn line(out: &mut Sheet, path: &str, broken: bool, colour: Colour) -> fmt::Resul
 /// The line from the first frame up to a label beside it.
 fn leader(out: &mut Sheet, mark: &MarkLine, layout: &Layout) -> fmt::Result {
     let Some((words, first)) = mark.label.as_ref().zip(layout.panels.first()) else { return Ok(()) };
-    let (x, from, to) = (number(mark.at), number(first.frame.top), number(words.at[1] - 0.75 * TEXT));
+    // A label that stands over its line is not crossed by it.
+    let to = if words.at[0] > mark.at { words.at[1] - 0.75 * TEXT } else { words.at[1] + 2.0 };
+    let (x, from, to) = (number(mark.at), number(first.frame.top), number(to));
     line(out, &format!("M{x} {from}V{to}"), false, Colour::Grey)?;
     label(out, words)
 }

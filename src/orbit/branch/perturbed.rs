@@ -1,4 +1,4 @@
-//! Locates an event in a machine that differs a little: its equations are solved there, with the speed free.
+//! Locates an event in a machine that differs a little: its equations are solved there, with the speed or another number free.
 
 use std::f64::consts::TAU;
 
@@ -16,45 +16,54 @@ use crate::tolerance;
 pub(crate) struct Event<'a> {
     machine: &'a Machine,
     rpm: f64,
+    free: Parameter,
+    /// Value of the free number.
+    value: f64,
+    /// Size of the free number in the equations.
+    span: f64,
     cycle: Cycle,
     held: Held,
 }
 
 impl<'a> Event<'a> {
-    /// The event at a special point of a branch, with its machine. `None` where the point has no equations of its own.
-    pub fn of_point(machine: &'a Machine, point: &BranchPoint) -> Option<Self> {
+    /// The event at a special point of a branch in a number, with its machine. `range` is that of the number. `None` where the point has no
+    /// equations of its own.
+    pub fn of_point(machine: &'a Machine, free: &Parameter, range: [f64; 2], point: &BranchPoint) -> Option<Self> {
         let Course::Impacts(cycle) = &point.orbit.course else { return None };
         let (cycle, held) = switch::held(point.special?.kind, cycle, machine)?;
-        Some(Self { machine, rpm: point.rpm, cycle, held })
+        let span = if *free == Parameter::Speed { point.rpm } else { range[1] - range[0] };
+        Some(Self { machine, rpm: point.rpm, free: free.clone(), value: point.value, span, cycle, held })
     }
 
     /// The event of an impact on a corner, at the end of its segment or at the start.
     pub fn of_corner(machine: &'a Machine, rpm: f64, cycle: &Cycle, impact: usize, at_end: bool) -> Self {
-        Self { machine, rpm, cycle: cycle.clone(), held: Held::Corner(Pinned { impact, at_end }) }
+        let (cycle, held) = (cycle.clone(), Held::Corner(Pinned { impact, at_end }));
+        Self { machine, rpm, free: Parameter::Speed, value: rpm, span: rpm, cycle, held }
     }
 
-    /// Speed, rpm, of the event in another machine. `None` where Newton's method finds none nearby.
+    /// Speed, rpm, or value of the free number of the event in another machine. `None` where Newton's method finds none nearby.
     pub fn moved(&self, model: &Model, cam: &Cam) -> Option<f64> {
-        self.solved(model, cam).map(|(_, rpm)| rpm)
+        self.solved(model, cam).map(|(_, value)| value)
     }
 
-    /// Cycle and speed, rpm, of the event in another machine, with its own as guesses.
+    /// Cycle and value of the event in another machine, with its own as guesses.
     pub fn solved(&self, model: &Model, cam: &Cam) -> Option<(Cycle, f64)> {
         /// Number of times that an impact may turn out to be on another segment.
         const SEGMENTS: usize = 6;
         let there = Machine::new(cam.clone(), &model.follower, angular_velocity(self.rpm));
-        let family = Family::of(model, &there, self.rpm, vec![Parameter::Speed]);
+        let family = Family::of(model, &there, self.rpm, vec![self.free.clone()]);
         let (mut cycle, held) = renamed(&self.cycle, self.held, self.machine, &there)?;
-        let mut rpm = self.rpm;
+        let mut value = self.value;
         for _ in 0..SEGMENTS {
-            let (found, speed) = solved(&family, &cycle, held, rpm)?;
+            let (found, next) = solved(&family, &cycle, held, (value, self.span))?;
+            let there = family.machine(&[next]).ok()?.0;
             let (named, _) = renamed(&found, held, &there, &there)?;
             let is_there = named.impacts.iter().zip(&cycle.impacts).all(|(one, two)| one.segment == two.segment);
             // Where segments meet, each may say that it is on the other.
-            let is_between = (speed - rpm).abs() <= tolerance::CYCLE_CLOSED.value * rpm;
-            (cycle, rpm) = (named, speed);
+            let is_between = (next - value).abs() <= tolerance::CYCLE_CLOSED.value * self.span;
+            (cycle, value) = (named, next);
             if is_there || is_between {
-                return Some((cycle, rpm));
+                return Some((cycle, value));
             }
         }
         None
@@ -102,19 +111,20 @@ fn renamed(cycle: &Cycle, held: Held, here: &Machine, there: &Machine) -> Option
     })
 }
 
-/// Solves for the cycle and the speed at which all equations hold, on these segments.
-fn solved(family: &Family, cycle: &Cycle, held: Held, rpm: f64) -> Option<(Cycle, f64)> {
+/// Solves for the cycle and the value of the free number at which all equations hold, on these segments. `span` is the number's size.
+fn solved(family: &Family, cycle: &Cycle, held: Held, (value, span): (f64, f64)) -> Option<(Cycle, f64)> {
     /// Most Newton steps. If more are needed, the event is elsewhere or gone.
     const STEPS: usize = 20;
-    let machine = family.machine(&[rpm]).ok()?.0;
-    let problem = Problem::new(family, cycle, BranchScales::of(cycle, &machine), &[rpm], Some(held));
-    let mut unknowns = problem.unknowns(cycle, &machine, &[rpm]);
+    let machine = family.machine(&[value]).ok()?.0;
+    let problem = Problem::new(family, cycle, BranchScales::of(cycle, &machine), &[span], Some(held));
+    let mut unknowns = problem.unknowns(cycle, &machine, &[value]);
     for _ in 0..STEPS {
         let (residual, jacobian) = problem.linear(&unknowns).ok()?;
         let correction = jacobian.lu().solve(&-residual)?;
         unknowns += &correction;
         if correction.norm() <= tolerance::CYCLE_CLOSED.value {
-            return problem.unpack(&unknowns).ok().map(|(cycle, _, rpm)| (cycle, rpm));
+            let value = problem.values(&unknowns).first().copied()?;
+            return problem.unpack(&unknowns).ok().map(|(cycle, ..)| (cycle, value));
         }
     }
     None

@@ -8,12 +8,12 @@ use super::at_value::AttractorsAtValue;
 use super::by_runs;
 use super::stable_range::StableRange;
 use super::transition::{Cause, Transition};
-use crate::bracket::{Width, halve};
+use crate::bracket::{Width, halve, outward};
 use crate::orbit::branch::BranchPoint;
 use crate::orbit::long_run::{Budget, Kind, LongRun};
 use crate::orbit::near::close;
 use crate::orbit::{Course, PeriodicOrbit};
-use crate::simulate::{Machine, Motion, SimulateError, angular_velocity};
+use crate::simulate::{Machine, Motion, SimulateError};
 use crate::study::survey::{Attractor, Over, RunError, Sample};
 
 /// Property by which a motion at one value is matched with a motion at the next.
@@ -300,9 +300,8 @@ impl AttractorFamily {
         by_runs(over, found.and_then(Result::<_, RunError>::ok).unwrap_or(ends))
     }
 
-    /// Speed, rpm, on another machine whose cam differs slightly, of an end that is known by runs, for a family over speeds. None if it
-    /// is not found nearby.
-    pub fn moved(&self, other: &Machine, grid: &ValueGrid, runs: StartsAndBudget<'_>, side: usize) -> Option<f64> {
+    /// Value, for machines over the same number that differ slightly, of an end that is known by runs. None if it is not found nearby.
+    pub fn moved(&self, other: &Over<'_>, grid: &ValueGrid, runs: StartsAndBudget<'_>, side: usize) -> Option<f64> {
         /// First step, in widths of the end's bracket. A bracket as narrow as that takes long, and steps are doubled.
         const FIRST: f64 = 16.0;
         /// Number of doublings.
@@ -310,23 +309,18 @@ impl AttractorFamily {
         /// Halvings of the step that contains the end.
         const HALVINGS: u32 = 3;
         let change = self.ends[side].as_ref().filter(|_| self.class != Class::Undecided)?;
-        let (index, outward) = if side == 0 { (self.at.keys().next(), -1.0) } else { (self.at.keys().last(), 1.0) };
+        let (index, outwards) = if side == 0 { (self.at.keys().next(), -1.0) } else { (self.at.keys().last(), 1.0) };
         let (wanted, _) = self.wanted(grid, *index?, runs)?;
         let mut motion = None;
-        let mut is_there = |rpm: f64| wanted.is_there(&other.at_speed(angular_velocity(rpm)), &mut motion);
-        let was_there = is_there(change.at.rpm).ok()?;
-        let mut step = (if was_there { outward } else { -outward }) * FIRST * (change.bracket[1] - change.bracket[0]);
-        let mut from = change.at.rpm;
-        for _ in 0..DOUBLED {
-            let next = from + step;
-            if is_there(next).ok()? != was_there {
-                let found =
-                    halve([from, next], Width::Halvings(HALVINGS), |rpm| is_there(rpm).map(|there| there != was_there));
-                return found.ok().map(|[one, two]| 0.5 * (one + two));
-            }
-            (from, step) = (next, 2.0 * step);
-        }
-        None
+        let mut is_there =
+            |value: f64| -> Result<bool, RunError> { Ok(wanted.is_there(&other.machine(value)?, &mut motion)?) };
+        let was_there = is_there(change.value()).ok()?;
+        let direction = if was_there { outwards } else { -outwards };
+        let step = direction * FIRST * (change.bracket[1] - change.bracket[0]);
+        let mut is_beyond = |value: f64| is_there(value).map(|there| there != was_there);
+        let bracket = outward(change.value(), step, DOUBLED, &mut is_beyond).ok()??;
+        let [one, two] = halve(bracket, Width::Halvings(HALVINGS), is_beyond).ok()?;
+        Some(0.5 * (one + two))
     }
 
     /// Describes the family's motion at a value of the grid, for a search at other values.

@@ -12,6 +12,7 @@
 //! | `transition` | where an attractor begins or ends, and why |
 //! | `family` | the attractors at each value matched with those at the next |
 //! | `step` | the grid of values |
+//! | `uncertain_ends` | the uncertainty of where attractors begin and end |
 
 mod at_value;
 mod detachment;
@@ -19,6 +20,7 @@ mod family;
 mod stable_range;
 mod step;
 mod transition;
+mod uncertain_ends;
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -40,25 +42,28 @@ pub use family::{AttractorFamily, GridValue, StartsAndBudget, ValueGrid, familie
 pub use stable_range::StableRange;
 pub use step::Step;
 pub use transition::{Cause, Transition};
+pub(crate) use uncertain_ends::UncertainEnds;
 
 /// Builds a transition known by runs alone, between two values in either order.
 fn by_runs(over: &Over<'_>, [one, two]: [f64; 2]) -> Transition {
     Transition::by_runs(&over.parameter, over.rpm, [one.min(two), one.max(two)])
 }
 
+/// Whether the follower leaves the cam at a value, by the contact force.
+fn leaves_at(over: &Over<'_>, value: f64) -> Result<bool, FamilyError> {
+    let (model, cam) = over.model(value)?;
+    Ok(Contact::new(&cam, model.follower).leaves(over.place(value).rpm))
+}
+
 /// Returns the value between two at which the follower begins or ceases to leave the cam, by the contact force, and its uncertainty.
 fn leaves(over: &Over<'_>, bracket: [f64; 2]) -> Option<[f64; 2]> {
-    let parts = |value: f64| -> Result<bool, FamilyError> {
-        let (model, cam) = over.model(value)?;
-        Ok(Contact::new(&cam, model.follower).leaves(over.rpm))
-    };
     let [low, high] = bracket;
-    let at_low = parts(low).ok()?;
-    if parts(high).ok()? == at_low {
+    let at_low = leaves_at(over, low).ok()?;
+    if leaves_at(over, high).ok()? == at_low {
         return None;
     }
     let width = Width::Relative(tolerance::ROOT_WIDTH.value);
-    let [low, high] = halve(bracket, width, |value| Ok::<_, FamilyError>(parts(value)? != at_low)).ok()?;
+    let [low, high] = halve(bracket, width, |value| Ok::<_, FamilyError>(leaves_at(over, value)? != at_low)).ok()?;
     Some([0.5 * (low + high), 0.5 * (high - low).abs()])
 }
 

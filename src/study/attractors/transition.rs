@@ -18,7 +18,7 @@ pub struct Transition {
     pub cause: Cause,
     /// Special point of a branch at which it lies, if any.
     pub point: Option<Box<BranchPoint>>,
-    /// Uncertainty of the machine in the speed, rpm. None if the machine is exact, the uncertainty is unknown, or the speed does not vary.
+    /// Uncertainty of the machine in the value; for the speed, rpm. None if the machine is exact, or if the uncertainty is unknown.
     pub error: Option<SourcedUncertainty>,
 }
 
@@ -30,8 +30,9 @@ document!(Transition as it {
     located: it.is_located(),
     bracket_rpm if_any: it.at.value.is_none().then_some(it.bracket),
     bracket if_any: it.at.value.map(|_| it.bracket),
-    error_rpm if_any: it.error.map(|error| error.total()),
-    error_parts if_any: it.error.map(|error| UncertaintyParts(error, "_rpm")),
+    error_rpm if_any: it.error.filter(|_| it.at.value.is_none()).map(|error| error.total()),
+    error if_any: it.error.filter(|_| it.at.value.is_some()).map(|error| error.total()),
+    error_parts if_any: it.error.map(|error| UncertaintyParts(error, it.at.unit())),
     cam_angle_rad if_any: it.cause.corner().map(|(angle, _)| angle),
     jump_order if_any: it.cause.corner().map(|(_, order)| order),
 });

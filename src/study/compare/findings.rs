@@ -15,7 +15,6 @@ use crate::border_collision::{LocalMap, LocalOutcome, classify, conditions, norm
 use crate::cam::Cam;
 use crate::corner::map::{LinearForm, rows};
 use crate::corner::{self, CornerImpact, LocateError, Route, closed_form, variational};
-use crate::measured::PlausibleCams;
 use crate::model::{Converted, Model, Units};
 use crate::progress::Watch;
 use crate::study::StudyError;
@@ -209,7 +208,7 @@ pub(super) struct Findings {
     /// Quantities from the closed form and the cam.
     pub computed: NamedValues,
     besides: NamedValues,
-    /// Uncertainties of numbers, without the part from a measured cam. Numbers of one route alone have none, except the separation speed.
+    /// Uncertainties of numbers, without those of the machine. Numbers of one route alone have none, except the separation speed.
     pub errors: Numbers,
 }
 
@@ -274,19 +273,4 @@ pub(super) fn numbers(values: &NamedValues) -> Numbers {
 pub(super) fn differences(b: &NamedValues, a: &NamedValues) -> Numbers {
     let a = numbers(a);
     numbers(b).into_iter().filter_map(|(name, number)| Some((name.clone(), number - a.get(&name)?))).collect()
-}
-
-/// Returns the uncertainties of numbers from a measured cam; NaN if unknown.
-pub(super) fn open(
-    likely: &PlausibleCams,
-    numbers: &Numbers,
-    of: impl Fn(&Model, &Cam) -> Option<Numbers> + Sync,
-) -> Numbers {
-    let of = |model: &Model, cam: &Cam| {
-        let found = of(model, cam)?;
-        Some(numbers.keys().map(|name| found.get(name).copied().unwrap_or(f64::NAN)).collect())
-    };
-    let values: Vec<f64> = numbers.values().copied().collect();
-    let open = likely.errors(&values, of).unwrap_or_else(|| vec![f64::NAN; values.len()]);
-    numbers.keys().cloned().zip(open).collect()
 }

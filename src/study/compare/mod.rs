@@ -1,9 +1,10 @@
 //! Comparison of two models: every number that `verify`, `cam` and `design` find for both, by one name, with its uncertainty.
 //!
 //! A number that follows from A and B is computed from them by each route. The spread between the routes is its uncertainty. The
-//! uncertainty from a measured cam is computed on the cams that are as likely, and is added.
+//! uncertainty of the machines is computed on the machines that may be there, and is added.
 
 mod findings;
+mod uncertain;
 
 use std::cmp::Ordering;
 use std::collections::BTreeSet;
@@ -16,17 +17,18 @@ use super::verify::External;
 use super::{ModelLabel, StudyError};
 use crate::border_collision::Refusal;
 use crate::border_collision::feigin::Scenario;
-use crate::cam::Cam;
 use crate::corner::LocateError;
 use crate::known::Evidence;
-use crate::measured::PlausibleCams;
-use crate::model::Model;
+use crate::measured::Measured;
+use crate::model::{FollowerErrors, Model};
 use crate::progress::Watch;
 use crate::tolerance;
+use crate::uncertainty::{SourcedUncertainty, UncertaintyParts};
+use findings::Findings;
 #[doc(hidden)]
 pub use findings::spreads;
-use findings::{Findings, differences, numbers, open};
 pub use findings::{NamedValues, values};
+use uncertain::{Side, open};
 
 /// A value for each of the two models.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -51,6 +53,10 @@ pub struct ModelComparison {
     pub changes: Vec<Change>,
     /// Quantities that do not differ by more than their error, in the order of their names.
     pub unchanged: Vec<Change>,
+    /// Accuracy of a measured cam with noise, of the first model if both have one.
+    pub measured: Option<Measured>,
+    /// Standard deviations of the followers' numbers, the larger of both models.
+    pub errors: FollowerErrors,
 }
 
 document!(ModelComparison as it {
@@ -62,6 +68,7 @@ document!(ModelComparison as it {
     fields: it.fields,
     changes: it.changes,
     unchanged: it.unchanged,
+    uncertain if_any: it.errors.if_any(),
 });
 
 impl ModelComparison {
@@ -134,7 +141,7 @@ pub struct FieldChange {
 }
 
 /// One quantity of both models.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Change {
     /// Name in the documents of `verify`, `cam` and `design`, with its side and its indices, counted from 1.
     pub quantity: String,
@@ -150,20 +157,38 @@ pub struct Change {
     pub times_error: Option<f64>,
     /// Difference over the size of the first number; none if that is 0.
     pub relative: Option<f64>,
+    /// Part of `error` from the uncertainty of the machines; none if both are exact, or if it is unknown.
+    pub open: Option<SourcedUncertainty>,
     /// Whether the two differ by more than their error; without an error, by more than rounding.
-    #[serde(skip)]
     pub is_one: bool,
 }
 
+document!(Change as it {
+    quantity: it.quantity,
+    a: it.a,
+    b: it.b,
+    difference: it.difference,
+    error: it.error,
+    times_error: it.times_error,
+    relative: it.relative,
+    error_parts if_any: it.open.map(|open| UncertaintyParts(open, "")),
+});
+
 impl Change {
-    /// Compares the values of both models, with the uncertainty of each. `open` is the uncertainty of the difference from a measured cam.
+    /// Compares the values of both models, with the uncertainty of each. `open` is the uncertainty of the machines in the difference.
     #[doc(hidden)]
-    pub fn new(quantity: &str, [a, b]: [Option<&Value>; 2], errors: [Option<f64>; 2], open: f64) -> Self {
+    pub fn new(
+        quantity: &str,
+        [a, b]: [Option<&Value>; 2],
+        errors: [Option<f64>; 2],
+        open: Option<SourcedUncertainty>,
+    ) -> Self {
         let numbers = a.and_then(Value::as_f64).zip(b.and_then(Value::as_f64));
         let difference = numbers.map(|(a, b)| b - a);
         let rounding = tolerance::ULP.value * numbers.map_or(0.0, |(a, b)| a.abs().max(b.abs()));
         let both = errors[0].zip(errors[1]).filter(|_| difference.is_some());
-        let error = both.map(|(a, b)| a + b + open + rounding).filter(|error| !error.is_nan());
+        let total = open.map_or(0.0, |open| open.total());
+        let error = both.map(|(a, b)| a + b + total + rounding).filter(|error| !error.is_nan());
         let relative = numbers.filter(|(a, _)| *a != 0.0).map(|(a, b)| (b - a) / a.abs());
         let is_one = difference.map_or(a != b, |difference| difference.abs() > error.unwrap_or(rounding));
         let times_error = difference.zip(error).filter(|(_, error)| *error > 0.0);
@@ -175,6 +200,7 @@ impl Change {
             error,
             times_error: times_error.map(|(difference, error)| difference.abs() / error),
             relative,
+            open: open.filter(|_| error.is_some()),
             is_one,
         }
     }
@@ -182,12 +208,16 @@ impl Change {
     /// Sort key: words first, then numbers with an error, those without, and quantities of one model alone. Among numbers, the two main
     /// speeds come first, then larger relative changes before smaller ones.
     fn rank(&self) -> (bool, bool, bool, bool, f64) {
-        const SPEEDS: [&str; 2] = ["speed_rpm", "separation_speed_rpm"];
         let is_alone = self.a.is_none() || self.b.is_none();
         let relative = self.relative.map_or(f64::INFINITY, f64::abs);
         let is_unknown = self.difference.is_some() && self.error.is_none();
-        let is_speed = SPEEDS.contains(&self.quantity.as_str());
-        (is_alone, is_unknown, self.difference.is_some(), !is_speed, -relative)
+        (is_alone, is_unknown, self.difference.is_some(), !self.is_speed(), -relative)
+    }
+
+    /// Whether the quantity is the speed of the corner impact or of the separation.
+    pub fn is_speed(&self) -> bool {
+        const SPEEDS: [&str; 2] = ["speed_rpm", "separation_speed_rpm"];
+        SPEEDS.contains(&self.quantity.as_str())
     }
 }
 
@@ -227,35 +257,18 @@ pub fn compare(a: &Model, b: &Model, external: External, watch: &dyn Watch) -> R
     let (models, fields) = (Pair { a: ModelLabel::of(a), b: ModelLabel::of(b) }, fields(a, b));
     let units = &a.units;
     let (of_a, of_b) = (Findings::new(a, units, external, watch)?, Findings::new(b, units, external, watch)?);
-    watch.at("what a measured cam leaves open", 0, 0);
-    let noisy = |model| PlausibleCams::of(model).map(|likely| likely.filter(|likely| likely.best.is_some()));
-    let opens = match (noisy(a)?, noisy(b)?) {
-        // One cam under both followers leaves the difference uncertain, by less than two cams would.
-        (Some(likely), Some(_)) if a.cam == b.cam => {
-            let of = |model: &Model, cam: &Cam| {
-                let other = b.on_cam_of(model).ok()?;
-                Some(differences(&of_b.like(&other, cam, units)?, &of_a.like(model, cam, units)?))
-            };
-            vec![open(&likely, &differences(&of_b.computed, &of_a.computed), of)]
-        }
-        (one, other) => {
-            let of = |(likely, found): (Option<PlausibleCams>, &Findings)| {
-                let of = |model: &Model, cam: &Cam| found.like(model, cam, units).as_ref().map(numbers);
-                likely.map(|likely| open(&likely, &numbers(&found.computed), of))
-            };
-            [(one, &of_a), (other, &of_b)].into_iter().filter_map(of).collect()
-        }
-    };
+    watch.at("what the uncertainty of the machines leaves open", 0, 0);
+    let side = |model, found| Side { model, found, units };
+    let (open, measured) = open(&side(a, &of_a), &side(b, &of_b))?;
     let names: BTreeSet<&String> = of_a.names().chain(of_b.names()).collect();
     let all = names.into_iter().map(|name| {
-        // A quantity that only a measured cam makes uncertain has no other error.
-        let is_open = opens.iter().any(|open| open.contains_key(name));
-        let error = |found: &Findings| found.errors.get(name).copied().or(is_open.then_some(0.0));
-        let open = opens.iter().filter_map(|open| open.get(name)).sum();
+        let open = open.get(name).copied();
+        // A quantity that only the uncertainty of a machine makes uncertain has no other error.
+        let error = |found: &Findings| found.errors.get(name).copied().or(open.map(|_| 0.0));
         Change::new(name, [of_a.value(name), of_b.value(name)], [error(&of_a), error(&of_b)], open)
     });
     let (mut changes, unchanged): (Vec<Change>, Vec<Change>) = all.partition(|change| change.is_one);
     changes.sort_by(|one, other| one.rank().partial_cmp(&other.rank()).unwrap_or(Ordering::Equal));
     let verdict = Pair { a: of_a.verdict, b: of_b.verdict };
-    Ok(ModelComparison { models, verdict, fields, changes, unchanged })
+    Ok(ModelComparison { models, verdict, fields, changes, unchanged, measured, errors: a.errors.or(b.errors) })
 }

@@ -110,9 +110,20 @@ impl Loads {
     /// Moments per revolution where one run represents all that converge to its motion; each of those would sample other moments.
     const FINE: u32 = 4 * Self::MOMENTS;
 
+    /// Index of the share of time off the cam among [`Self::numbers`].
+    const OFF_CAM: usize = 2;
+    /// Index of the largest force.
+    pub(super) const FORCE: usize = 4;
+
     /// Uncertainty of the number at `index`.
     fn error(&self, index: usize) -> Option<f64> {
         self.errors.map(|errors| errors[index].total())
+    }
+
+    /// The range that the uncertainty of the number at `index` leaves; no load is below 0.
+    pub fn bounds(&self, index: usize) -> Option<[f64; 2]> {
+        let [low, high] = self.errors?[index].around(self.numbers()[index]);
+        Some([low.max(0.0), high])
     }
 
     fn parts(&self, index: usize, unit: &'static str) -> Option<UncertaintyParts> {
@@ -181,6 +192,15 @@ impl Loads {
     /// The five loads, in the order of the fields.
     pub fn numbers(&self) -> [f64; 5] {
         [self.impact_speed, self.gap, self.off_cam, self.energy, self.force]
+    }
+
+    /// The loads with the uncertainties of these numbers. The follower is off the cam for no more than the whole time.
+    pub(super) fn with_errors(self, errors: Option<[SourcedUncertainty; 5]>) -> Self {
+        let errors = errors.map(|mut errors| {
+            errors[Self::OFF_CAM] = errors[Self::OFF_CAM].at_most(1.0 - self.off_cam);
+            errors
+        });
+        Self { errors, ..self }
     }
 
     fn or_more(&self, other: &Self) -> Self {

@@ -1,110 +1,20 @@
 //! Finds the change of one number that makes a machine meet a need, with the other numbers kept.
 
 use std::cell::Cell;
-use std::str::FromStr;
 
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::contact::Contact;
-use super::loads::{Load, Loads};
+use super::contact::{Contact, Separation};
+use super::loads::Loads;
+pub use super::need::{Need, What, in_si};
 use crate::bracket::{Width, halve};
 use crate::cam::Cam;
 use crate::known::Evidence;
-use crate::model::{Follower, Model, finite, parted};
+use crate::model::{Follower, Model};
 use crate::simulate::{Machine, SimulateError, angular_velocity};
 use crate::tolerance;
 use crate::uncertainty::{PlausibleMachines, SourcedUncertainty, UncertaintyParts};
-use crate::untrusted;
-
-/// A requirement that a machine must meet up to a speed.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Need {
-    /// The requirement.
-    pub what: What,
-    /// Highest speed at which it must be met, rpm.
-    pub rpm: f64,
-}
-
-/// A requirement on a machine.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[doc(hidden)]
-pub enum What {
-    /// The follower stays on the cam.
-    NoSeparation,
-    /// A load stays below a value, in SI units.
-    Below(Load, f64),
-}
-
-impl Need {
-    /// How the answer to this need is known: separation is computed, loads are sampled by runs.
-    pub(super) fn known(&self) -> Evidence {
-        if self.what == What::NoSeparation { Evidence::Computed } else { Evidence::Sampled }
-    }
-}
-
-/// Units in which a load may be written, each with its size in SI units.
-const UNITS: [(Load, &str, f64); 14] = [
-    (Load::ImpactSpeed, "m/s", 1.0),
-    (Load::ImpactSpeed, "mm/s", 1e-3),
-    (Load::ImpactSpeed, "in/s", 0.0254),
-    (Load::ImpactSpeed, "ft/s", 0.3048),
-    (Load::Gap, "m", 1.0),
-    (Load::Gap, "mm", 1e-3),
-    (Load::Gap, "um", 1e-6),
-    (Load::Gap, "in", 0.0254),
-    (Load::Gap, "ft", 0.3048),
-    (Load::Energy, "J", 1.0),
-    (Load::Energy, "mJ", 1e-3),
-    (Load::Force, "N", 1.0),
-    (Load::Force, "kN", 1e3),
-    (Load::Force, "lbf", 4.4482216152605),
-];
-
-/// Parses `no separation to 4500 rpm`, `impact speed below 0.5 m/s to 6000 rpm`.
-impl FromStr for Need {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let like = "must be like \"no separation to 4500 rpm\" or \"impact speed below 0.5 m/s to 6000 rpm\" (also gap, energy)";
-        let number = |word: &str| match finite(word, "") {
-            Ok(number) if number > 0.0 => Ok(number),
-            Err(why) if word.contains(',') => Err(why),
-            _ => Err(format!("\"{}\" is not a number above 0; {like}", untrusted::value(word))),
-        };
-        // "4500rpm" is two words.
-        let apart = |word| {
-            let (number, unit) = parted(word);
-            if unit.starts_with(',') { [word, ""] } else { [number, unit] }
-        };
-        let words = text.split_whitespace().flat_map(apart).filter(|word| !word.is_empty());
-        let words: Vec<&str> = words.collect();
-        match words.as_slice() {
-            ["no", "separation", "to", rpm, "rpm"] => Ok(Self { what: What::NoSeparation, rpm: number(rpm)? }),
-            [name @ .., "below", value, unit, "to", rpm, "rpm"] => {
-                let name = name.join("-");
-                let load = Load::ALL.into_iter().find(|load| load.to_string() == name).ok_or(like)?;
-                if load == Load::Force {
-                    return Err("a force is no need: what keeps the follower on the cam presses harder; --limit tells where it is".into());
-                }
-                Ok(Self { what: What::Below(load, number(value)? * in_si(load, unit)?), rpm: number(rpm)? })
-            }
-            _ => Err(like.into()),
-        }
-    }
-}
-
-/// Size of a load's unit in SI units.
-#[doc(hidden)]
-pub fn in_si(load: Load, unit: &str) -> Result<f64, String> {
-    let of_load = || UNITS.iter().filter(|(of, ..)| *of == load);
-    let found = of_load().find(|(_, name, _)| *name == unit).map(|(_, _, one)| *one);
-    found.ok_or_else(|| {
-        let names: Vec<&str> = of_load().map(|(_, name, _)| *name).collect();
-        let (unit, name) = (untrusted::value(unit), load.to_string().replace('-', " "));
-        format!("\"{unit}\": {name} is in one of: {}", names.join(", "))
-    })
-}
 
 /// A number of the machine that an engineer can change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -127,6 +37,11 @@ impl Lever {
     /// All levers.
     pub const ALL: [Self; 4] = [Self::Preload, Self::Stiffness, Self::Damping, Self::Mass];
 
+    /// Dotted path of the number in a model file.
+    pub fn path(self) -> String {
+        format!("follower.{self}")
+    }
+
     /// Whether a smaller value helps most.
     pub fn is_upper_bound(self) -> bool {
         self == Self::Mass
@@ -141,25 +56,23 @@ pub(super) struct Changed<'a> {
     /// Lowest lift; `preload` is the spring force there, if the model fixes it.
     lowest: f64,
     preload: Option<f64>,
-    /// The number that is given with its value, whatever the model has.
-    given: Option<(Lever, f64)>,
 }
 
 impl<'a> Changed<'a> {
     pub fn new(model: &'a Model, contact: &Contact<'a>) -> Self {
         let lowest = contact.cam.lowest().value;
-        Self { model, contact: contact.clone(), lowest, preload: model.preload, given: None }
+        Self { model, contact: contact.clone(), lowest, preload: model.preload }
     }
 
-    /// Returns a copy with a given value of one number.
-    pub fn given(&self, lever: Lever, value: f64) -> Self {
-        Self { given: Some((lever, value)), ..self.with(lever, value) }
+    /// Keeps the rest position where the file's own model gives it, although a preload is given in this one.
+    pub fn keeping_rest_of(self, own: &Model) -> Self {
+        Self { preload: self.preload.filter(|_| own.preload.is_some()), ..self }
     }
 
-    /// Places another model on its cam, with the same given value.
+    /// Places another model on its cam, with what is kept here.
     fn on<'b>(&self, model: &'b Model, contact: &Contact<'b>) -> Changed<'b> {
         let changed = Changed::new(model, contact);
-        self.given.map_or(changed.clone(), |(lever, value)| changed.given(lever, value))
+        Changed { preload: changed.preload.filter(|_| self.preload.is_some()), ..changed }
     }
 
     /// Present value of the lever.
@@ -278,6 +191,22 @@ pub(super) struct UncertainMachine<'a> {
     pub machines: Option<&'a PlausibleMachines<'a>>,
 }
 
+impl<'a> UncertainMachine<'a> {
+    /// Collects what is uncertain about a machine with this separation. To meet a need for certain on a measured cam, its speed is raised by
+    /// the relative uncertainty of the separation.
+    pub fn new(
+        separation: Separation,
+        errors: Option<[SourcedUncertainty; 2]>,
+        machines: &'a PlausibleMachines<'a>,
+    ) -> Self {
+        let of_cam = match (separation, errors) {
+            (Separation::At { rpm, .. }, Some([error, _])) => error.cam / rpm,
+            _ => 0.0,
+        };
+        Self { of_cam, machines: machines.uncertain() }
+    }
+}
+
 /// Finds the value of one number that meets a need, the others kept.
 pub(super) fn answer(
     of: &Changed<'_>,
@@ -301,7 +230,9 @@ pub(super) fn answer(
         let found = find(&of.on(model, &Contact::new(cam, model.follower)), need, lever).ok()?;
         Some(ends(&found)).filter(|found_there| found_there.len() == ends(&found).len())
     };
-    let of_numbers = machines.and_then(|machines| machines.errors_of_numbers(&ends(&found), there));
+    // The number that is sought has no error.
+    let of_numbers =
+        machines.and_then(|machines| machines.without(&lever.path()).errors_of_numbers(&ends(&found), there));
     let error = |of: fn(&Found) -> Option<f64>, index: usize| {
         let of_cam = match (&certain, uncertain.of_cam) {
             (_, 0.0) => 0.0,

@@ -119,6 +119,11 @@ impl Place {
         Self { rpm, value: None }
     }
 
+    /// Unit that the name of a field of the value ends in: that of a speed, or none.
+    pub fn unit(&self) -> &'static str {
+        if self.value.is_none() { "_rpm" } else { "" }
+    }
+
     /// Value of the number that varies.
     pub fn across(&self) -> f64 {
         self.value.unwrap_or(self.rpm)

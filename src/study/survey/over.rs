@@ -4,7 +4,7 @@ use super::axis::{Place, Spacing, VariedNumber};
 use crate::cam::Cam;
 use crate::model::Model;
 use crate::orbit::{Family, FamilyError, Parameter};
-use crate::simulate::Machine;
+use crate::simulate::{Machine, angular_velocity};
 
 /// The machines of a model over one of its numbers.
 #[derive(Clone, Debug)]
@@ -60,6 +60,13 @@ impl<'a> Over<'a> {
     /// Builds the machines of `model` over its speed.
     pub fn speed(model: &'a Model) -> Result<Self, OverError> {
         Self::new(model, Parameter::Speed, None)
+    }
+
+    /// Builds the machines of another model, on its cam, over this number.
+    pub(crate) fn elsewhere<'b>(&self, model: &'b Model, cam: &Cam) -> Over<'b> {
+        let (parameter, rpm) = (self.parameter.clone(), self.rpm);
+        let machine = Machine::new(cam.clone(), &model.follower, angular_velocity(rpm));
+        Over { model, family: Family::of(model, &machine, rpm, vec![parameter.clone()]), parameter, rpm }
     }
 
     /// Whether the speed varies.

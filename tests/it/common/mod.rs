@@ -13,10 +13,12 @@ use corner_impact::border_collision::LocalMap;
 use corner_impact::cam::Cam;
 use corner_impact::corner::SideMap;
 use corner_impact::model::{Model, OSORIO_2008};
+use corner_impact::orbit::Parameter;
 use corner_impact::progress::Watch;
 use corner_impact::study::attractors::{AttractorsError, Resolution, Step};
+use corner_impact::study::design::needs::Lever;
 use corner_impact::study::speeds::{self, SpeedSurvey};
-use corner_impact::study::survey::{Over, Spacing};
+use corner_impact::study::survey::{Axis, Over, Spacing, Values};
 use nalgebra::{Matrix2, RowVector2, Vector2};
 
 /// The project's folder.
@@ -176,6 +178,11 @@ pub fn speeds(
     watch: &dyn Watch,
 ) -> Result<SpeedSurvey, AttractorsError> {
     speeds::speeds(&Over::speed(model).unwrap(), range, resolution, watch)
+}
+
+/// Values of a lever at which needs are answered.
+pub fn axis_of(lever: Lever, values: &Values) -> Axis {
+    Axis::new(Parameter::Field(lever.path()), values)
 }
 
 /// Speeds that are so far apart at most, rpm.

@@ -22,10 +22,11 @@ pub(super) struct Arguments {
     /// Leave out corners where only a derivative above this order jumps.
     #[arg(long, value_name = "N", default_value_t = Jet::HIGHEST_JUMP)]
     order: usize,
-    /// Draw lift, velocity and acceleration against the cam angle (.svg, .png or .pdf).
+    /// Draw lift, velocity and acceleration against the cam angle (.svg, .png or .pdf), and below them the shape of a cam whose lift follows from
+    /// its contour.
     #[arg(long, value_name = "FILE", value_parser = picture::picture, group = "picture")]
     out: Option<PathBuf>,
-    /// Draw the shape of the cam with the end of the follower on it instead: contour, path of a roller's centre, roller or face.
+    /// Draw the shape alone, of any cam, with the end of the follower on it: contour, path of a roller's centre, roller or face.
     #[arg(long, requires = "picture")]
     shape: bool,
     #[command(flatten)]
@@ -41,7 +42,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         let canvas = picture::Canvas::create(path, arguments.picture.request()?)?;
         let figure = match arguments.shape {
             true => shape_figure(&model, &cam, &model.name),
-            false => cam_figure(&cam, &model.name),
+            false => cam_figure(&model, &cam, &model.name),
         };
         canvas.write(figure, &model.units)?;
     }

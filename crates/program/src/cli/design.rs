@@ -9,7 +9,8 @@ use super::picture::{Canvas, PictureArguments, picture};
 use super::start::{BudgetArguments, StartArguments};
 use super::{AnswerArguments, CommandError, Exit, ModelArgument, Session, progress::watched};
 use crate::figures::design_figure;
-use corner_impact::model::{finite, parted};
+use corner_impact::model::{Model, finite, parted};
+use corner_impact::orbit::Parameter;
 use corner_impact::orbit::long_run::Budget;
 use corner_impact::study::design::denser::DRAWN;
 use corner_impact::study::design::loads::Load;
@@ -37,8 +38,8 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "R|LO:HI[:N]", value_parser = speeds, allow_hyphen_values = true)]
     rpm: Option<Speeds>,
     /// A number of the model that varies: from where to where, at how many values, and whether these are spaced by their logarithm. The table of
-    /// forces and loads goes over it at the one speed of --rpm; with --need, a table has what each need takes at each value of preload,
-    /// stiffness, damping or mass.
+    /// forces and loads goes over it at the one speed of --rpm; with --need, a table has what each need takes at each of its
+    /// values, and --rpm may be left out.
     #[arg(long, value_name = "NAME=LO:HI[:N][:log]", value_parser = axis, alias = "against", allow_hyphen_values = true)]
     over: Option<NamedSpan>,
     /// Values of a range of which no number is written.
@@ -79,15 +80,25 @@ fn limit(text: &str) -> Result<(Load, f64, Option<f64>), String> {
     Ok((load, number, unit.map(|unit| in_si(load, unit)).transpose()?))
 }
 
-/// The number that a table of needs goes over, and its values.
-fn against((name, span): &NamedSpan, usual: usize) -> Result<Option<(Lever, [f64; 2], u32)>, CommandError> {
-    let own = |lever: &Lever| [lever.to_string(), format!("follower.{lever}")].contains(name);
-    let Some(lever) = Lever::ALL.into_iter().find(own) else { return Ok(None) };
-    let Values { low, high, count, .. } = span.values(usual);
-    if low <= 0.0 {
-        return Err(CommandError::Words(format!("--over {name}={low}:{high}: with --need it must be above 0")));
+/// The number at whose values needs are answered, with the values; none if it is the speed.
+fn against(arguments: &Arguments, model: &Model, usual: usize) -> Result<Option<Axis>, CommandError> {
+    let Some((name, span)) = arguments.over.as_ref().filter(|_| !arguments.need.is_empty()) else { return Ok(None) };
+    let own = |lever: &Lever| [lever.to_string(), lever.path()].contains(name);
+    let axis_values = span.values(usual);
+    let Values { low, high, count, .. } = axis_values;
+    let parameter = match Lever::ALL.into_iter().find(own) {
+        Some(_) if low <= 0.0 => {
+            return Err(CommandError::Words(format!("--over {name}={low}:{high}: with --need it must be above 0")));
+        }
+        // A preload may be given to a model that has a rest position.
+        Some(lever) if lever == Lever::Preload => Parameter::Field(lever.path()),
+        _ => arguments.model.varied(model, name, "--over")?,
+    };
+    if parameter == Parameter::Speed {
+        return Ok(None);
     }
-    Ok(Some((lever, [low, high], values(count)?)))
+    values(count)?;
+    Ok(Some(Axis::new(parameter, &axis_values)))
 }
 
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
@@ -100,8 +111,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         Some(Speeds::Span(span)) => (Some(span.ends), span.count.map(values).transpose()?),
     };
     let usual = arguments.speeds as usize;
-    let needed = arguments.over.as_ref().filter(|_| !arguments.need.is_empty());
-    let trade = needed.map(|over| against(over, usual)).transpose()?.flatten();
+    let trade = against(arguments, &model, usual)?;
     // Without a speed, a table of needs is all that is asked for.
     let table = arguments.over.as_ref().filter(|_| trade.is_none() || rpm.is_some());
     let over = table.map(|(name, span)| -> Result<Axis, CommandError> {

@@ -24,6 +24,7 @@ use corner_impact::model::{Model, ModelError};
     \n\
     The page needs no network and no other file; its name is printed. It opens with the answer: where the follower\n\
     separates from the cam, how hard it hits, where motions coexist, what is proved.\n\
+    Each figure has the command below it that writes it alone. `corner-impact figure`, `speeds` and `design` take --height and --script.\n\
     Exit code: 0 everything checked agrees, 1 something disagrees, 2 bad model file, usage or file.")]
 pub(super) struct Arguments {
     #[command(flatten)]

@@ -14,7 +14,7 @@ pub(crate) const CAM: Entry = Entry {
     title: |subject| format!("{}: lift, velocity and acceleration of the cam", subject.model.name),
     draw: |subject, title| {
         drawn(
-            cam_figure(&subject.cam, title),
+            lift_figure(&subject.cam, title),
             format!(
                 "The lift of the cam and its first two derivatives against the angle that the cam has turned. {}",
                 corners_in_words(&subject.cam, "Vertical lines")
@@ -112,7 +112,7 @@ pub(crate) fn of_circles(cam: &Cam) -> bool {
 }
 
 /// Lift, velocity and acceleration of the cam against its angle in degrees, its corners marked.
-pub fn cam_figure(cam: &Cam, title: &str) -> Figure {
+pub(crate) fn lift_figure(cam: &Cam, title: &str) -> Figure {
     let corners = cam.corners();
     let marks = corner_marks(cam);
     let worth = corners.iter().filter(|corner| !cam.is_knot(corner)).count();

@@ -5,7 +5,7 @@
 
 use std::f64::consts::TAU;
 
-use crate::figures::cam::{corner_marks, corners_in_words, of_circles};
+use crate::figures::cam::{corner_marks, corners_in_words, lift_figure, of_circles};
 use crate::figures::{Entry, drawn};
 use corner_impact::cam::{Cam, Lift, Segment};
 use corner_impact::elementary;
@@ -102,6 +102,18 @@ pub fn shape_figure(model: &Model, cam: &Cam, title: &str) -> Figure {
     figure(title, cam, &Outline::of(model, cam))
 }
 
+/// Draws lift, velocity and acceleration of a model's cam and, if the lift follows from a contour, its shape below them.
+pub fn cam_figure(model: &Model, cam: &Cam, title: &str) -> Figure {
+    let figure = lift_figure(cam, title);
+    match model.cam.contact() {
+        Some(_) => {
+            let (x, shape) = shape_panel(cam, &Outline::of(model, cam));
+            Figure { panels: figure.panels.into_iter().chain([shape.across(x)]).collect(), ..figure }
+        }
+        None => figure,
+    }
+}
+
 impl Outline {
     /// Computes the outline of a model's cam, at the cam's end of a lever.
     fn of(model: &Model, cam: &Cam) -> Self {
@@ -159,8 +171,13 @@ impl Outline {
     }
 }
 
-/// Draws the outline, the corners, the axis and the follower's direction.
 fn figure(title: &str, cam: &Cam, outline: &Outline) -> Figure {
+    let (x, panel) = shape_panel(cam, outline);
+    Figure::new(title, x, vec![panel])
+}
+
+/// Draws the outline, the corners, the axis and the follower's direction; with the horizontal axis.
+fn shape_panel(cam: &Cam, outline: &Outline) -> (FigureAxis, Panel) {
     let farthest = outline.farthest();
     let mut series = if of_circles(cam) { circles(&outline.pieces) } else { segments(&outline.pieces) };
     let letters = letters(cam, outline, farthest);
@@ -180,8 +197,9 @@ fn figure(title: &str, cam: &Cam, outline: &Outline) -> Figure {
     // Of a roller from its centre.
     let from = outline.pitch.first().copied().unwrap_or([0.0, first]);
     let follower = [from, [from[0], from[1] + 0.45 * farthest]];
+    let pitch = if outline.pitch.is_empty() { "" } else { "path of the roller's centre" };
     series.extend([
-        Series::line("", Colour::Grey, Stroke::Thin, outline.pitch.iter().copied()),
+        Series::line(pitch, Colour::Grey, Stroke::Thin, outline.pitch.iter().copied()),
         Series::line("", Colour::Purple, Stroke::Solid, outline.follower.iter().copied()),
     ]);
     let turn = (0..=24).map(|step| {
@@ -201,7 +219,7 @@ fn figure(title: &str, cam: &Cam, outline: &Outline) -> Figure {
     let reach = 1.7 * farthest;
     let x = FigureAxis::new("from the axis, across", "m").over([-reach, reach]);
     let y = FigureAxis::new("from the axis, along the follower", "m").over([-1.3 * farthest, 1.3 * farthest]).scaled();
-    Figure::new(title, x, vec![Panel::new(y, 0.6, series)])
+    (x, Panel::new(y, 0.6, series))
 }
 
 /// Draws a cam of three circles as the paper does.

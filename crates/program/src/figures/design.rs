@@ -19,6 +19,9 @@ pub fn design_figure(found: &Design) -> Figure {
     if !found.round.is_empty() { round(found) } else { speeds(found) }
 }
 
+/// Name of the axis of the contact force: its part along the follower's motion.
+pub(super) const FORCE: &str = "contact force along the motion";
+
 fn force_axis(found: &Design, name: &str) -> FigureAxis {
     FigureAxis::new(name, found.units.force.name())
 }
@@ -26,7 +29,7 @@ fn force_axis(found: &Design, name: &str) -> FigureAxis {
 fn round(found: &Design) -> Figure {
     let points = found.round.iter().map(|[angle, force]| [angle.to_degrees(), found.force(*force)]);
     let line = Series::line("", Colour::Blue, Stroke::Solid, points);
-    let panel = Panel::new(force_axis(found, "contact force"), 0.5, vec![line]).with_zero();
+    let panel = Panel::new(force_axis(found, FORCE), 0.5, vec![line]).with_zero();
     let rpm = found.forces.first().map_or(f64::NAN, |at| at.place.rpm);
     let title = format!("{} at {rpm} rpm: contact force round the cam", found.model.name);
     let figure = Figure::new(&title, FigureAxis::degrees("cam angle").over(WHOLE_CAM), vec![panel]);
@@ -38,8 +41,8 @@ fn round(found: &Design) -> Figure {
     }
 }
 
-/// A quantity over the varied number: its place, value and uncertainty.
-type Known = (f64, f64, Option<f64>);
+/// A quantity over the varied number: its place, its value, and the range that its uncertainty leaves.
+type Known = (f64, f64, Option<[f64; 2]>);
 
 fn speeds(found: &Design) -> Figure {
     type Quantity = (&'static str, &'static str, f64, Option<Load>);
@@ -48,12 +51,11 @@ fn speeds(found: &Design) -> Figure {
     let range = extent(all.map(|place| place.across()));
     let across = Across::named(&found.over.name, &found.over.unit, found.over.spacing, range);
     let x = |place: Place| across.place(place.across());
-    let known = |(place, value, error): (Place, f64, Option<f64>)| {
-        (x(place), found.force(value), error.map(|error| found.force(error)))
+    let known = |(place, value, bounds): (Place, f64, Option<[f64; 2]>)| {
+        (x(place), found.force(value), bounds.map(|bounds| bounds.map(|end| found.force(end))))
     };
     let mut panels = Vec::new();
-    let least: Vec<Known> =
-        curves.forces.iter().map(|at| known((at.place, at.least.value, at.error.map(|it| it.total())))).collect();
+    let least: Vec<Known> = curves.forces.iter().map(|at| known((at.place, at.least.value, at.bounds()))).collect();
     let greatest: Vec<Known> = curves.greatest_forces().into_iter().map(known).collect();
     let open = open(found);
     let first = band(&open, &least);
@@ -63,7 +65,7 @@ fn speeds(found: &Design) -> Figure {
     series.extend(Series::line("least", Colour::Blue, Stroke::Solid, plain(&least)).if_any());
     if !series.is_empty() {
         series.extend(limit(found, &across, range, Load::Force));
-        panels.push(Panel::new(force_axis(found, "contact force"), 0.24, series).with_zero());
+        panels.push(Panel::new(force_axis(found, FORCE), 0.24, series).with_zero());
     }
     let quantities: [Quantity; 4] = [
         ("impact speed", "m/s", 1.0, Some(Load::ImpactSpeed)),
@@ -75,14 +77,13 @@ fn speeds(found: &Design) -> Figure {
         // In the order of `Loads::numbers`.
         panels.extend(quantities.into_iter().enumerate().map(|(index, (name, unit, scale, load))| {
             let value = |loads: &Loads| {
-                let error = loads.errors.map(|errors| scale * errors[index].total());
-                (x(loads.place), scale * loads.numbers()[index], error)
+                let bounds = loads.bounds(index).map(|bounds| bounds.map(|end| scale * end));
+                (x(loads.place), scale * loads.numbers()[index], bounds)
             };
             let values: Vec<Known> = curves.loads.iter().map(value).collect();
             let line = Series::line("", Colour::Vermilion, Stroke::Solid, plain(&values));
             let limits = load.map(|load| limit(found, &across, range, load)).unwrap_or_default();
-            // No load is below 0.
-            let series = band_above(0.0, "", &values).into_iter().chain([line]).chain(limits).collect();
+            let series = band("", &values).into_iter().chain([line]).chain(limits).collect();
             Panel::new(FigureAxis::new(name, unit), 0.15, series).with_zero()
         }));
     }
@@ -121,16 +122,10 @@ fn plain(values: &[Known]) -> impl Iterator<Item = [f64; 2]> {
 
 /// The band that the uncertainty of the machine leaves around values; `None` where there is no uncertainty.
 fn band(label: &str, values: &[Known]) -> Option<Series> {
-    band_above(f64::NEG_INFINITY, label, values)
-}
-
-/// The band of values that are not below `least`.
-fn band_above(least: f64, label: &str, values: &[Known]) -> Option<Series> {
-    let is_open = values.iter().any(|(.., error)| error.is_some_and(|error| error > 0.0));
-    let edges = values.iter().map(|(x, y, error)| {
-        let error = error.unwrap_or(f64::NAN);
-        let low = y - error;
-        [*x, if low < least { least } else { low }, y + error]
+    let is_open = values.iter().any(|(.., bounds)| bounds.is_some_and(|[low, high]| low < high));
+    let edges = values.iter().map(|(x, _, bounds)| {
+        let [low, high] = bounds.unwrap_or([f64::NAN; 2]);
+        [*x, low, high]
     });
     is_open.then(|| Series::band(label, Colour::Grey, edges))
 }
@@ -143,7 +138,7 @@ pub fn loads_diagram(title: &str, across: &Across, sweep: &[Vec<Loads>], load: L
         Load::ImpactSpeed => ("fastest impact of a revolution", "m/s"),
         Load::Gap => ("largest gap of a revolution", "m"),
         Load::Energy => ("energy lost in a revolution", "J"),
-        Load::Force => ("largest contact force of a revolution", units.force.name()),
+        Load::Force => ("largest contact force along the motion, of a revolution", units.force.name()),
     };
     let series = Series::points("", Colour::Blue, Marker::Dot, points);
     Figure::new(title, across.axis(), vec![Panel::new(FigureAxis::new(name, unit), 0.5, vec![series])])
@@ -164,22 +159,20 @@ fn trades(found: &Design) -> Figure {
         };
         let is_range = trade.pairs.iter().any(|pair| pair.other.is_some());
         let [bound, beyond] = if trade.parameter.is_upper_bound() { ["most", "least"] } else { ["least", "most"] };
-        let error = |pair: &RequiredPair| Some((pair.given, pair.found?, pair.error));
-        let known: Vec<Known> = trade.pairs.iter().filter_map(error).collect();
+        let known = |pair: &RequiredPair| Some((pair.given, pair.found?, pair.found_bounds()));
+        let known: Vec<Known> = trade.pairs.iter().filter_map(known).collect();
         let mut series: Vec<Series> = band(&open(found), &known).into_iter().collect();
         series.push(line(if is_range { bound } else { "" }, Stroke::Solid, |pair| pair.found));
         if is_range {
-            let error = |pair: &RequiredPair| Some((pair.given, pair.other?, pair.other_error));
-            series.extend(band("", &trade.pairs.iter().filter_map(error).collect::<Vec<_>>()));
+            let known = |pair: &RequiredPair| Some((pair.given, pair.other?, pair.other_bounds()));
+            series.extend(band("", &trade.pairs.iter().filter_map(known).collect::<Vec<_>>()));
             series.push(line(beyond, Stroke::Dashed, |pair| pair.other));
         }
         let name = if is_range { trade.parameter.to_string() } else { format!("{bound} {}", trade.parameter) };
         Panel::new(FigureAxis::new(&name, &trade.unit), 0.22, series)
     });
-    let (against, unit) = found
-        .trades
-        .first()
-        .map_or((String::new(), ""), |trade| (trade.against.to_string(), trade.against_unit.as_str()));
+    let (against, unit) =
+        found.trades.first().map_or((String::new(), ""), |trade| (trade.against.clone(), trade.against_unit.as_str()));
     let range = extent(found.trades.iter().flat_map(|trade| trade.pairs.iter().map(|pair| pair.given)));
     let needs: Vec<&str> = found.trades.iter().map(|trade| trade.need.as_str()).collect();
     let title = format!("{}: {}", found.model.name, needs.first().unwrap_or(&""));

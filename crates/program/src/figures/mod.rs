@@ -32,8 +32,8 @@ use corner_impact_plot::{self, Colour, Figure, FigureAxis, Series, Stroke};
 
 pub use basins::{basins_figure, shares_figure};
 pub use branches::branches_figure;
-pub use cam::{CornerMark, cam_figure, corner_marks};
-pub use cam_shape::{Outline, Piece, shape_figure};
+pub use cam::{CornerMark, corner_marks};
+pub use cam_shape::{Outline, Piece, cam_figure, shape_figure};
 pub use chaos::chaos_figure;
 pub use chart::{Coloured, chart_figure};
 pub use composition::{Composition, Line, Neighbour};

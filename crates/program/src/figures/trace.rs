@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 
 use crate::figures::cam::corner_marks;
+use crate::figures::design::FORCE;
 use crate::figures::{Captioned, Entry, FigureContext, drawn};
 use corner_impact::model::Unit;
 use corner_impact::section::{self, TraceSample};
@@ -183,7 +184,7 @@ pub fn with_force(mut figure: Figure, run: &TracedRun, mass: f64, unit: &Unit) -
     let first = run.samples.first().map_or(0.0, |sample| sample.turned);
     let points = run.samples.iter().map(|sample| [(sample.turned - first) / TAU, unit.told(mass * sample.pressing)]);
     let line = Series::line("", Colour::Blue, Stroke::Solid, points);
-    figure.panels.push(Panel::new(FigureAxis::new("contact force", unit.name()), 0.2, vec![line]).with_zero());
+    figure.panels.push(Panel::new(FigureAxis::new(FORCE, unit.name()), 0.2, vec![line]).with_zero());
     figure
 }
 

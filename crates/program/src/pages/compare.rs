@@ -4,7 +4,8 @@ use serde_json::Value;
 
 use crate::show::Paged;
 use crate::show::block::{Block, Column, Span, Table, TextMark, Words, words};
-use crate::show::digits::Digits;
+use crate::show::digits::{Digits, with_error};
+use crate::show::sources::Sources;
 use crate::show::words;
 use corner_impact::study::compare::{Change, ModelComparison};
 
@@ -46,10 +47,14 @@ impl Paged for ModelComparison {
             // The column appears only if it has informative values.
             let is_told = known.iter().filter_map(|change| change.times_error).any(|times| times <= MANY);
             let times = if is_told { "times error: the difference over how far it may be off. " } else { "" };
+            page.extend(speeds(self));
+            let sources = Sources::of(&self.measured, self.errors).if_any();
+            let open = sources.map_or("a measured cam", Sources::name);
+            let leave = if self.errors.are_none() { "leaves" } else { "leave" };
             let note = format!(
                 "The speeds of the corner impact and of separation come first, then what moved most. moved: the difference over \
-                 the size of the first. {times}Errors are how far routes differ, or an estimate's own, and what a measured cam \
-                 leaves open, of both models. Quantities with the same digits in both models share a line. All are computed. Where no unit \
+                 the size of the first. {times}Errors are how far routes differ, or an estimate's own, and what {open} \
+                 {leave} open, of both models. Quantities with the same digits in both models share a line. All are computed. Where no unit \
                  is named, positions are in "
             );
             page.push(Block::Note(words![
@@ -59,6 +64,10 @@ impl Paged for ModelComparison {
                 Span::Unit("m/s"),
                 ", times in s and speeds of linear ranges in rpm."
             ]));
+            let note = sources.filter(|sources| !sources.errors.are_none()).map(|sources| {
+                format!("{} A number with the same value and error in both models moves both alike.", sources.note())
+            });
+            page.extend(note.map(|note| Block::Note(note.into())));
         }
         page.extend(named("The first alone has", alone.iter().copied().filter(|change| change.b.is_none())));
         page.extend(named("The second alone has", alone.iter().copied().filter(|change| change.a.is_none())));
@@ -124,6 +133,20 @@ fn alike<'a>(changes: &[&'a Change]) -> Vec<Vec<&'a Change>> {
 /// Ratio of a difference to its error, or a bound if it is very large.
 fn times(error: f64) -> Words {
     if error > MANY { "> 1e6".into() } else { words![(error, Digits::Size)] }
+}
+
+/// Uncertainty of the difference of each main speed, by its sources, where numbers have errors.
+fn speeds(found: &ModelComparison) -> Option<Block> {
+    let sources = Sources::of(&found.measured, found.errors).if_any().filter(|it| !it.errors.are_none())?;
+    let of_speed = |change: &Change| {
+        let open = change.open.filter(|_| change.is_speed())?;
+        let (digits, total) = with_error(open.total());
+        let difference = change.difference?;
+        let words = words![format!("{}: moved by ", change.quantity), (difference, digits), " ± ", (total, digits)];
+        Some(words![words, format!(" rpm, {}", sources.parts(&open))])
+    };
+    let all: Vec<Words> = found.changes.iter().chain(&found.unchanged).filter_map(of_speed).collect();
+    (!all.is_empty()).then_some(Block::List(all))
 }
 
 fn moved(title: &str, changes: &[&Change]) -> Vec<Block> {

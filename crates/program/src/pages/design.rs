@@ -7,7 +7,7 @@ use crate::show::block::{Block, Column, Span, Table, TextMark, Words, words};
 use crate::show::digits::{Digits, with_error};
 use crate::show::page::text;
 use crate::show::sources::Sources;
-use crate::show::words::noise_unknown;
+use crate::show::words::{noise_unknown, spoken};
 use corner_impact::known::Evidence;
 use corner_impact::study::design::contact::Separation;
 use corner_impact::study::design::needs::Answer;
@@ -46,14 +46,31 @@ impl Paged for Design {
         page.extend(needs(self));
         page.extend(rounded(self));
         page.extend(self.trades.iter().flat_map(trade));
-        page.extend(sources(self).map(|sources| Block::Note(sources.note().into())));
+        page.extend(sources(self).map(|sources| Block::Note(format!("{}{}", sources.note(), exact(self)).into())));
         page
     }
+}
+
+/// Which of the uncertain numbers are exact in a part of the page.
+fn exact(found: &Design) -> String {
+    let is_uncertain = |name: &str| found.errors.uncertain().any(|(uncertain, _)| uncertain == name);
+    let varied = [Some(found.over.own_name()), found.trades.first().map(|trade| trade.against.as_str())];
+    let mut varied: Vec<&str> = varied.into_iter().flatten().filter(|name| is_uncertain(name)).collect();
+    varied.dedup();
+    let varied = varied.into_iter().map(|name| format!(" Where {0} varies, {0} is exact.", spoken(name)));
+    let is_sought = found.needs.iter().any(|answer| is_uncertain(&answer.lever.to_string()));
+    let sought = is_sought.then(|| " A number that is sought has no error of its own.".to_owned());
+    varied.chain(sought).collect()
 }
 
 /// Sources of the uncertainty of the machine.
 fn sources(found: &Design) -> Option<Sources<'_>> {
     Sources::of(&found.measured, found.errors).if_any()
+}
+
+/// Sources of the uncertainty in the table, where the number that varies is exact.
+fn table_sources(found: &Design) -> Option<Sources<'_>> {
+    Sources::of(&found.measured, found.table_errors()).if_any()
 }
 
 /// States in a sentence where the follower leaves the cam.
@@ -118,12 +135,12 @@ pub(crate) fn leaves(
 
 /// One of the places that the follower may leave first.
 fn place(place: &SeparationPlace, machines: &str) -> Words {
-    let [from, to] = place.cam_angles.map(f64::to_degrees);
+    let ([from, to], width) = place.within_a_turn();
+    let ([from, to], width) = ([from, to].map(f64::to_degrees), width.to_degrees());
     let share = words![(100.0 * place.share, Digits::Fixed(0)), format!(" % of {} likely {machines}", place.cams)];
-    let turn = if to >= 360.0 { to - 360.0 } else { to };
-    match to - from {
+    match width {
         width if width < 1.0 => words!["about ", (from, Digits::Fixed(0)), " deg for ", share],
-        _ => words![(from, Digits::Fixed(0)), " to ", (turn, Digits::Fixed(0)), " deg for ", share],
+        _ => words![(from, Digits::Fixed(0)), " to ", (to, Digits::Fixed(0)), " deg for ", share],
     }
 }
 
@@ -144,7 +161,7 @@ pub(crate) fn margin(found: &Design) -> Option<Words> {
 }
 
 pub(crate) fn speeds(found: &Design) -> Vec<Block> {
-    let is_open = sources(found).is_some();
+    let is_open = table_sources(found).is_some();
     let force = found.units.force.name();
     let mut columns =
         vec![number(found.over.head()), number(format!("least force {force}")), number("at deg").missable(2)];
@@ -179,8 +196,7 @@ pub(crate) fn speeds(found: &Design) -> Vec<Block> {
                 Some(loads) => {
                     let error = |index: usize| loads.errors.map(|errors| errors[index].total());
                     // In per cent, which no document field has.
-                    // Never off it for more than the whole time.
-                    let off_cam = error(2).map(|error| 100.0 * error.min(1.0 - loads.off_cam));
+                    let off_cam = error(2).map(|error| 100.0 * error);
                     let force = error(4).map(|error| found.force(error));
                     let unknown = if is_open && loads.errors.is_none() { " ± ?" } else { "" };
                     cells.extend([
@@ -215,7 +231,7 @@ pub(crate) fn speeds(found: &Design) -> Vec<Block> {
         );
         blocks.push(Block::Note(words.as_str().into()));
         if found.loads.iter().any(|loads| loads.errors.is_some()) {
-            let words = match sources(found) {
+            let words = match table_sources(found) {
                 Some(Sources { cam: Some(_), errors }) if errors.are_none() => {
                     "from runs with cams that fit the rows".to_owned()
                 }
@@ -236,7 +252,7 @@ pub(crate) fn speeds(found: &Design) -> Vec<Block> {
 
 /// Where the uncertainty of the impact speed comes from, at the last value with loads.
 fn hardest(found: &Design) -> Option<Words> {
-    let sources = sources(found).filter(|sources| !sources.errors.are_none())?;
+    let sources = table_sources(found).filter(|sources| !sources.errors.are_none())?;
     let loads = found.loads.iter().rfind(|loads| loads.impact_speed > 0.0 && loads.errors.is_some())?;
     let error = loads.errors.map(|errors| errors[0])?;
     let at = if found.over.is_speed() { " rpm" } else { "" };
@@ -251,7 +267,7 @@ fn hardest(found: &Design) -> Option<Words> {
 }
 
 fn limits(found: &Design) -> Vec<Block> {
-    let open = match sources(found) {
+    let open = match table_sources(found) {
         Some(Sources { cam: Some(_), errors }) if errors.are_none() => "; for the cam as drawn, with the ± above",
         Some(_) => "; for the machine as it is given, with the ± above",
         None => "",
@@ -310,12 +326,12 @@ fn needs(found: &Design) -> Vec<Block> {
         let mut table = Table::new(&of_need[0].need, columns);
         for answer in of_need {
             let Answer { lever, now, unit, note, known, .. } = answer;
-            let digits = if *known == Evidence::Computed { Digits::Significant(9) } else { Digits::Significant(3) };
+            let digits = |value: f64| Digits::of(value, if *known == Evidence::Computed { 9 } else { 3 });
             let bound = if answer.is_upper_bound { "at most" } else { "at least" };
             // If any value will do, there is no uncertainty, and the note says so.
             let unknown = if sources.is_some() && answer.error.is_none() && note.is_empty() { " ± ?" } else { "" };
-            let value = answer.value.map(|value| words![with_open(value, total(answer.error), digits), unknown]);
-            let other = answer.other.map(|other| with_open(other, total(answer.other_error), digits));
+            let value = answer.value.map(|value| words![with_open(value, total(answer.error), digits(value)), unknown]);
+            let other = answer.other.map(|other| with_open(other, total(answer.other_error), digits(other)));
             let (bound, to) = match (value, other) {
                 (None, _) => ("", "none".into()),
                 (Some(value), None) => (bound, value),
@@ -337,7 +353,7 @@ fn needs(found: &Design) -> Vec<Block> {
         blocks.push(Block::Note("Each alone, with the others kept.".into()));
         if let Some(sources) = sources.filter(|sources| !sources.errors.are_none()) {
             let part = |answer: &Answer| {
-                let error = answer.error?;
+                let error = answer.error.filter(|error| error.total() > 0.0)?;
                 let (digits, total) = with_error(error.total());
                 Some(words![format!("{} ± ", answer.lever), (total, digits), format!(": {}", sources.parts(&error))])
             };
@@ -354,16 +370,21 @@ fn rounded(found: &Design) -> Vec<Block> {
     let columns = [
         number("rounded over deg"),
         number("leaves the cam at rpm"),
+        number("change %").missable(1),
         number(words!["largest jerk ", Span::Unit("m/rad^3")]),
     ];
     let mut table = Table::new("The cam with its corners rounded", columns);
+    let speed = |rpm: f64| words![(rpm, Digits::Significant(7))];
+    let own = Some(found.separation.speed()).filter(|rpm| *rpm > 0.0 && rpm.is_finite()).map_or("".into(), speed);
+    table.row(["none".into(), own, "".into(), "infinite".into()]);
     for at in &found.rounded {
-        let speed = at.separation_rpm.map_or("".into(), |rpm| words![(rpm, Digits::Significant(7))]);
-        table.row([words![(at.corner_rounding_deg, SIX)], speed, words![(at.jerk, SIX)]]);
+        let change = at.separation_change.map_or("".into(), |part| words![(100.0 * part, Digits::Fixed(2))]);
+        let speed = at.separation_rpm.map_or("".into(), speed);
+        table.row([words![(at.corner_rounding_deg, SIX)], speed, change, words![(at.jerk, SIX)]]);
     }
-    let words = "The acceleration of the cam jumps, and its jerk is infinite there. Rounded by a polynomial (corner_rounding_deg), which keeps \
-                 the lifts and slopes on both sides, and whose acceleration goes beyond both by a twelfth of the jump for that, over \
-                 however short an angle:";
+    let words = "The acceleration of the cam jumps, so that its jerk is infinite. Rounding the corners (corner_rounding_deg) gains a finite jerk, \
+                 which is the smaller the wider the rounding. It costs or gains speed: the rounded acceleration goes beyond both sides of the \
+                 jump by a twelfth of it, but over a short angle.";
     vec![Block::Heading("Jumps of the acceleration".into()), Block::paragraph(words), Block::Table(table)]
 }
 
@@ -395,19 +416,22 @@ fn with_open(value: f64, error: Option<f64>, digits: Digits) -> Words {
 
 fn trade(trade: &Trade) -> [Block; 2] {
     let Trade { need, parameter, unit, against, against_unit, pairs, known } = trade;
-    let digits = if *known == Evidence::Computed { SIX } else { Digits::Significant(3) };
-    let columns = [number(format!("{against} {against_unit}")), number(format!("{parameter} {unit}"))];
+    let digits = |value: f64| Digits::of(value, if *known == Evidence::Computed { 6 } else { 3 });
+    let columns = [number(format!("{} {against_unit}", spoken(against))), number(format!("{parameter} {unit}"))];
     let mut table = Table::new(need, columns);
     for RequiredPair { given, found, error, other, other_error, again } in pairs {
-        let found = found.map(|value| with_open(value, *error, digits));
-        let mut cell = match (found, other.map(|value| with_open(value, *other_error, digits))) {
+        let with_error = |value: f64, error: &Option<SourcedUncertainty>| {
+            with_open(value, error.map(|it| it.total()), digits(value))
+        };
+        let found = found.map(|value| with_error(value, error));
+        let mut cell = match (found, other.map(|value| with_error(value, other_error))) {
             (None, _) => "none".into(),
             (Some(found), None) => found,
             (Some(found), Some(other)) if parameter.is_upper_bound() => words![other, " to ", found],
             (Some(found), Some(other)) => words![found, " to ", other],
         };
         if let Some(again) = again {
-            cell = words![cell, ", and ", (*again, digits)];
+            cell = words![cell, ", and ", (*again, digits(*again))];
         }
         table.row([words![(*given, SIX)], cell]);
     }
@@ -416,5 +440,5 @@ fn trade(trade: &Trade) -> [Block; 2] {
         true => "most ",
         false => "least ",
     };
-    [Block::Heading(format!("{need}: the {bound}{parameter} for each {against}").into()), Block::Table(table)]
+    [Block::Heading(format!("{need}: the {bound}{parameter} for each {}", spoken(against)).into()), Block::Table(table)]
 }

@@ -76,20 +76,24 @@ fn unit(found: &SpeedSurvey) -> String {
     found.over.words("").trim_end().to_owned()
 }
 
-/// Uncertainty of an end, for the choice of digits, rpm. An end of unknown uncertainty gets the smallest known
-/// one. If none is known, it gets no decimals.
+/// Uncertainty of an end, for the choice of digits. An end of unknown uncertainty gets the smallest known one. If none is known, a speed gets
+/// no decimals, and another value three digits of the range.
 fn open(found: &SpeedSurvey, end: &Transition) -> Option<f64> {
     const WHOLE: f64 = 10.0;
+    let coarse = if found.over.is_speed() { WHOLE } else { 0.1 * (found.range[1] - found.range[0]) };
     let best = || ends(found).filter_map(|end| end.error).map(|error| error.total()).reduce(f64::min);
     let total = end.error.map(|error| error.total());
-    total.or_else(|| sources(found).map(|_| best().unwrap_or(WHOLE)))
+    total.or_else(|| sources(found).map(|_| best().unwrap_or(coarse)))
 }
 
 /// Speed at which the follower first leaves the cam.
 pub(crate) fn detachment(found: &SpeedSurvey) -> Words {
     let Some(separation) = found.separation else {
         return match found.detachment() {
-            Some([value, _]) => words![(value, Digits::Significant(9)), unit(found)],
+            Some([value, _]) => {
+                let value = (value, Digits::Significant(9));
+                Sources::of(&found.measured, found.errors).value(value, &unit(found), found.detachment_error())
+            }
             None => "no value in between was located".into(),
         };
     };
@@ -152,21 +156,22 @@ pub(crate) fn uncertainty(found: &SpeedSurvey) -> Vec<Block> {
         sources.why()
     )));
     if !sources.errors.are_none() {
-        blocks.push(Block::List(found.attractors.iter().flat_map(|attractor| parts(sources, attractor)).collect()));
+        let of_one = |attractor| parts(sources, attractor, &unit(found));
+        blocks.push(Block::List(found.attractors.iter().flat_map(of_one).collect()));
     }
     blocks.push(Block::paragraph(sources.note()));
     blocks
 }
 
 /// Parts of the uncertainty of an attractor's ends.
-fn parts(sources: Sources<'_>, attractor: &AttractorRow) -> impl Iterator<Item = Words> {
-    let of_end = move |(what, end): (&'static str, &Option<Transition>)| {
+fn parts(sources: Sources<'_>, attractor: &AttractorRow, unit: &str) -> Vec<Words> {
+    let of_end = |(what, end): (&'static str, &Option<Transition>)| {
         let (end, error) = end.as_ref().and_then(|end| Some((end, end.error?)))?;
         let (digits, total) = with_error(error.total());
-        let [id, from] = [format!("{} {what} ", attractor.id), format!(" rpm: {}", sources.parts(&error))];
+        let [id, from] = [format!("{} {what} ", attractor.id), format!("{unit}: {}", sources.parts(&error))];
         Some(words![id, (end.value(), digits), " ± ", (total, digits), from])
     };
-    [("from", &attractor.birth), ("to", &attractor.death)].into_iter().filter_map(of_end)
+    [("from", &attractor.birth), ("to", &attractor.death)].into_iter().filter_map(of_end).collect()
 }
 
 /// Frequency of rests of a motion that bounces chaotically in between; for how long chaos was seen, where runs were too short for that.

@@ -4,6 +4,7 @@
 use std::fmt::{Display, Write};
 
 use crate::show::digits::Digits;
+use crate::show::sources::Sources;
 use corner_impact::border_collision::EventCurve;
 use corner_impact::estimate::Estimate;
 use corner_impact::flight::State;
@@ -13,6 +14,7 @@ use corner_impact::orbit::branch::{Branch, SpecialKind};
 use corner_impact::orbit::long_run::LongRun;
 use corner_impact::section::TraceSample;
 use corner_impact::simulate::{Event, Machine, Motion};
+use corner_impact::study::attractors::Transition;
 use corner_impact::study::basins::{Basin, Basins, BasinsOver};
 use corner_impact::study::chart::{Chart, Charted, class};
 use corner_impact::study::design::loads::Loads;
@@ -211,11 +213,26 @@ pub(crate) fn loads(over: &str, sweep: &[Vec<Loads>], units: &Units) -> String {
     lines
 }
 
+/// Columns of where an attractor begins and ends, with the parts of the uncertainty, for a machine that is not exact.
+const ENDS: &str = ",from,from_error,from_error_cam,from_error_numbers,to,to_error,to_error_cam,to_error_numbers";
+
+/// Cells of [`ENDS`]; empty where an attractor does not end within the range, and where an uncertainty is unknown.
+fn ends(attractor: &AttractorRow) -> String {
+    let of_end = |end: &Option<Transition>| {
+        let error = end.as_ref().and_then(|end| end.error);
+        let parts = [error.map(|it| it.total()), error.map(|it| it.cam), error.map(|it| it.numbers)].map(cell);
+        format!(",{},{}", cell(end.as_ref().map(Transition::value)), parts.join(","))
+    };
+    [&attractor.birth, &attractor.death].map(of_end).concat()
+}
+
 /// Table of the attractors at each value of the grid.
 pub(crate) fn speeds(found: &SpeedSurvey) -> String {
+    let is_uncertain = Sources::of(&found.measured, found.errors).if_any().is_some();
     let mut lines = format!(
-        "{},attractor,kind,revolutions,impacts,growth_rate,growth_error,share,share_error,coexisting,followed\n",
-        found.over.name
+        "{},attractor,kind,revolutions,impacts,growth_rate,growth_error,share,share_error,coexisting,followed{}\n",
+        found.over.name,
+        if is_uncertain { ENDS } else { "" }
     );
     let mut all: Vec<(&AttractorRow, &At)> =
         found.attractors.iter().flat_map(|attractor| attractor.at.iter().map(move |at| (attractor, at))).collect();
@@ -227,9 +244,10 @@ pub(crate) fn speeds(found: &SpeedSurvey) -> String {
         let (turns, impacts) = (cell(period.map(|period| period.0)), cell(period.map(|period| period.1)));
         let (rate, error, followed) = (growth.value, growth.error, at.followed);
         let (id, kind, share, share_error) = (&attractor.id, at.ending.kind(), at.share.value, at.share.error);
+        let ends = if is_uncertain { ends(attractor) } else { String::new() };
         let _ = writeln!(
             lines,
-            "{value},{id},{kind},{turns},{impacts},{rate},{error},{share},{share_error},{coexisting},{followed}"
+            "{value},{id},{kind},{turns},{impacts},{rate},{error},{share},{share_error},{coexisting},{followed}{ends}"
         );
     }
     lines
@@ -304,7 +322,8 @@ pub(crate) fn figure(figure: &Figure, digits: FigureDigits) -> String {
     let word = |text: &str| format!("\"{}\"", text.replace('"', "\"\""));
     for (panel_number, panel) in figure.panels.iter().enumerate() {
         for (series_number, series) in panel.series.iter().enumerate() {
-            let across = [&figure.x, &panel.y].map(|axis| format!("{} ({})", axis.label, axis.unit).replace(" ()", ""));
+            let x = panel.own_x.as_ref().unwrap_or(&figure.x);
+            let across = [x, &panel.y].map(|axis| format!("{} ({})", axis.label, axis.unit).replace(" ()", ""));
             let heads = format!(
                 "{},{}",
                 word(&across.join(", ")),

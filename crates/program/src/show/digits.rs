@@ -27,6 +27,13 @@ pub enum Digits {
 }
 
 impl Digits {
+    /// Significant digits of a value, with a power of ten where zeros would replace them.
+    pub(crate) fn of(value: f64, digits: usize) -> Self {
+        let least = elementary::powf(10.0_f64, 1.0 - digits as f64);
+        let is_small = value.abs() < least && value.abs() >= tolerance::DISPLAYED_ZERO.value;
+        if is_small { Self::Power(digits) } else { Self::Significant(digits) }
+    }
+
     /// Text for a terminal and for a text file: `-1.5e-9`.
     pub(crate) fn text(self, value: f64) -> String {
         match self {

@@ -52,11 +52,11 @@ figure = plt.figure(figsize=(WIDTH / 25.4, WIDTH / 25.4 * PAGE[1] / PAGE[0]))
 for number, panel in enumerate(PANELS):
     left, top, wide, high = panel["frame"]
     frame = figure.add_axes((*place(left, top + high), wide / PAGE[0], high / PAGE[1]))
-    frame.set(xlim=ACROSS["range"], ylim=panel["range"])
-    is_last = number + 1 == len(PANELS)
-    frame.set_xticks(ACROSS["ticks"], ACROSS["labels"] if is_last else [""] * len(ACROSS["ticks"]))
+    across = panel["across"]
+    frame.set(xlim=across["range"], ylim=panel["range"])
+    frame.set_xticks(across["ticks"], across["labels"] if across["is_labelled"] else [""] * len(across["ticks"]))
     frame.set_yticks(panel["ticks"], panel["labels"])
-    for lines, line in ((MARKS, frame.axvline), (panel["marks"], frame.axhline)):
+    for lines, line in ((MARKS if across["has_marks"] else [], frame.axvline), (panel["marks"], frame.axhline)):
         for at, is_dashed in lines:
             line(at, color="#8a8a8a", linewidth=0.8 * UNIT, dashes=(2, 3) if is_dashed else (1, 0))
     for index, series in enumerate(panel["series"]):
@@ -65,9 +65,9 @@ for number, panel in enumerate(PANELS):
             look = {"frameon": False, "borderpad": 0, "borderaxespad": 0, "handlelength": 1.6, "handletextpad": 0.48}
             at = place(*series["legend"])
             figure.add_artist(plt.Axes.legend(frame, [drawn], [series["label"]], loc="center left", bbox_to_anchor=at, bbox_transform=figure.transFigure, **look))
-    for x, y, words, across, up in panel["words"]:
-        away = [4 * UNIT * {"left": 1, "bottom": 1, "center": 0, "right": -1, "top": -1}[side] for side in (across, up)]
-        frame.annotate(words, (x, y), away, textcoords="offset points", ha=across, va=up)
+    for x, y, words, beside, up in panel["words"]:
+        away = [4 * UNIT * {"left": 1, "bottom": 1, "center": 0, "right": -1, "top": -1}[side] for side in (beside, up)]
+        frame.annotate(words, (x, y), away, textcoords="offset points", ha=beside, va=up)
 for x, y, words, angle, size in TEXTS:
     side = "center" if angle else "left"
     up = {"va": "bottom", "rotation_mode": "anchor"} if angle else {"va": "baseline"}

@@ -19,7 +19,6 @@ pub(crate) fn matplotlib(figure: &Figure, look: &Look, data: &str) -> String {
     let _ = writeln!(out, "DATA = {}", quoted(data));
     let _ = writeln!(out, "WIDTH = {:.2}  # mm", look.points() / MILLIMETRE);
     let _ = writeln!(out, "PAGE = ({:?}, {:?})", look.across(), layout.height);
-    let _ = writeln!(out, "ACROSS = {{{}}}", axis(layout.range, &layout.ticks));
     let _ = writeln!(out, "MARKS = {}", lines(&figure.marks));
     let _ = writeln!(out, "PANELS = [");
     for (panel, place) in figure.panels.iter().zip(&layout.panels) {
@@ -27,6 +26,10 @@ pub(crate) fn matplotlib(figure: &Figure, look: &Look, data: &str) -> String {
         let _ = writeln!(out, "    {{");
         let _ = writeln!(out, "        \"frame\": ({left:.2}, {top:.2}, {width:.2}, {height:.2}),");
         let _ = writeln!(out, "        {},", axis(place.range, &place.ticks));
+        let across = &place.across;
+        let flags = [across.name.is_some(), !across.is_own].map(python);
+        let flags = format!("\"is_labelled\": {}, \"has_marks\": {}", flags[0], flags[1]);
+        let _ = writeln!(out, "        \"across\": {{{}, {flags}}},", axis(across.range, &across.ticks));
         let _ = writeln!(out, "        \"marks\": {},", lines(&panel.marks));
         let _ = writeln!(out, "        \"words\": [{}],", words(panel).join(", "));
         let over_regions = panel.series.iter().any(|series| matches!(series.data, Data::Region { .. }));
@@ -52,13 +55,19 @@ fn texts(layout: &Layout) -> Vec<(&Text, u32, f64)> {
     let title = layout.title.iter().map(|text| (text, 0, TITLE));
     let names = layout.panels.iter().flat_map(|panel| &panel.name).map(|text| (text, 90, TEXT));
     let marks = layout.panels.iter().flat_map(|panel| &panel.marks).chain(&layout.marks).filter(|mark| mark.inside);
-    let labels = marks.filter_map(|mark| mark.label.as_ref()).chain([&layout.name]).chain(&layout.note);
+    let across = layout.panels.iter().filter_map(|panel| panel.across.name.as_ref());
+    let labels = marks.filter_map(|mark| mark.label.as_ref()).chain(across).chain(&layout.note);
     title.chain(names).chain(labels.map(|text| (text, 0, TEXT))).collect()
 }
 
 /// A string as Python writes it.
 fn quoted(text: &str) -> String {
     serde_json::Value::from(text).to_string()
+}
+
+/// A yes or no as Python writes it.
+fn python(is: bool) -> &'static str {
+    if is { "True" } else { "False" }
 }
 
 /// A number as Python reads it.
@@ -76,7 +85,7 @@ fn axis([low, high]: [f64; 2], ticks: &[Tick]) -> String {
 
 /// Reference lines, each with whether it is dashed.
 fn lines(marks: &[Mark]) -> String {
-    let line = |mark: &Mark| format!("({}, {})", number(mark.at), if mark.label.is_empty() { "False" } else { "True" });
+    let line = |mark: &Mark| format!("({}, {})", number(mark.at), python(!mark.label.is_empty()));
     format!("[{}]", marks.iter().map(line).collect::<Vec<_>>().join(", "))
 }
 
@@ -136,7 +145,7 @@ fn style(series: &Series, entry: Option<[f64; 2]>) -> String {
             Marker::Plus => ("+", 6.8),
         };
         let is_filled = matches!(marker, Marker::Dot | Marker::Disc | Marker::Below);
-        let filled = if is_filled { "True" } else { "False" };
+        let filled = python(is_filled);
         let _ = write!(out, ", \"marker\": {}, \"size\": {size:?}, \"filled\": {filled}", quoted(shape));
     }
     match &series.data {

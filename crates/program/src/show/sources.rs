@@ -103,16 +103,21 @@ impl<'a> Sources<'a> {
 
     /// A speed with its uncertainty and where that comes from.
     pub(crate) fn speed(self, rpm: f64, digits: Digits, error: Option<SourcedUncertainty>) -> Words {
+        self.value((rpm, digits), " rpm", error)
+    }
+
+    /// A value in a unit, with a space before it, with its uncertainty and where that comes from.
+    pub(crate) fn value(self, (value, digits): (f64, Digits), unit: &str, error: Option<SourcedUncertainty>) -> Words {
         match (error.filter(|error| error.total().is_finite()), self.if_any()) {
             (Some(error), Some(sources)) => {
                 let (digits, total) = with_error(error.total());
                 let from = if sources.cam.is_some() { ": " } else { ", " };
-                words![(rpm, digits), " ± ", (total, digits), format!(" rpm{from}{}", sources.parts(&error))]
+                words![(value, digits), " ± ", (total, digits), format!("{unit}{from}{}", sources.parts(&error))]
             }
             (None, Some(sources)) => {
-                words![(rpm, digits), format!(" rpm, and how far off is not known: {}", sources.why())]
+                words![(value, digits), format!("{unit}, and how far off is not known: {}", sources.why())]
             }
-            _ => words![(rpm, digits), " rpm"],
+            _ => words![(value, digits), unit],
         }
     }
 }
