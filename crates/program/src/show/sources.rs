@@ -5,7 +5,7 @@ use corner_impact::model::FollowerErrors;
 use corner_impact::uncertainty::SourcedUncertainty;
 
 use super::block::{Words, words};
-use super::digits::{Digits, with_error};
+use super::digits::{Digits, at_most, part_of_error, with_error};
 use super::words::{accuracy, listed, spoken};
 
 /// Sources of the uncertainty on a page.
@@ -44,11 +44,11 @@ impl<'a> Sources<'a> {
     /// Parts of an uncertainty: `13 from the cam (lift rounded to 0.001 mm), 45 from the numbers (stiffness 40, mass 20)`. For a cam alone only its
     /// accuracy.
     pub(crate) fn parts(self, error: &SourcedUncertainty) -> String {
-        let (digits, _) = with_error(error.total());
-        let shown = |part: f64| digits.text(part);
-        let each = error.of_each().into_iter().map(|(name, part)| (spoken(name), shown(part)));
+        let seen = |part: f64| part_of_error(part, error.total());
+        let shown = |part: f64| seen(part).unwrap_or_else(|| "0".to_owned());
+        let each = error.of_each().into_iter();
         let each: Vec<String> =
-            each.filter(|(_, part)| is_seen(part)).map(|(name, part)| format!("{name} {part}")).collect();
+            each.filter_map(|(name, part)| Some(format!("{} {}", spoken(name), seen(part)?))).collect();
         let each = match (each.as_slice(), error.each) {
             ([], None) => " (together)".to_owned(),
             ([], Some(_)) => String::new(),
@@ -106,8 +106,12 @@ impl<'a> Sources<'a> {
         match (error.filter(|error| error.total().is_finite()), self.if_any()) {
             (Some(error), Some(sources)) => {
                 let (digits, total) = with_error(error.total());
-                let from = if sources.cam.is_some() { ": " } else { ", " };
-                words![(rpm, digits), " ± ", (total, digits), format!(" rpm{from}{}", sources.parts(&error))]
+                let from = format!(" rpm{}{}", if sources.cam.is_some() { ": " } else { ", " }, sources.parts(&error));
+                // A ± that reaches 0 is no longer the same on both sides.
+                match error.total() < rpm {
+                    true => words![(rpm, digits), " ± ", (total, digits), from],
+                    false => words![(rpm, digits), ", ", at_most(rpm + error.total()), from],
+                }
             }
             (None, Some(sources)) => {
                 words![(rpm, digits), format!(" rpm, and how far off is not known: {}", sources.why())]
@@ -115,9 +119,4 @@ impl<'a> Sources<'a> {
             _ => words![(rpm, digits), " rpm"],
         }
     }
-}
-
-/// Whether digits are not those of 0.
-fn is_seen(digits: &str) -> bool {
-    digits.bytes().any(|letter| (b'1'..=b'9').contains(&letter))
 }
