@@ -332,8 +332,6 @@ pub struct Contradicted {
 impl Remarks {
     /// Checks the cam of a model; no remarks on a cam that is not a table.
     pub fn on(model: &Model) -> Result<Self, ModelError> {
-        /// Distance of a smoothed cam from a row, over the spread of the rows, that no noise makes.
-        const FAR_SMOOTHED: f64 = 4.5;
         let Some(profile) = model.table() else { return Ok(Self::default()) };
         let Some(own) = profile.spline.smoothing() else {
             return Ok(Self { strays: strays(profile), ..Self::default() });
@@ -347,7 +345,7 @@ impl Remarks {
                 let allowed = (2.0 * profile.reading.half_step()).max(tolerance::ULP.value * profile.rise());
                 // Rows that are one number on a dwell have no noise beyond their decimals.
                 let is_still = fitted.dwells_deg().iter().any(|dwell| range(profile, dwell) <= allowed);
-                let is_noise = !is_still && distance <= FAR_SMOOTHED * spread;
+                let is_noise = !is_still && distance <= spread / tolerance::FAR_SMOOTHED.value;
                 // A slip in a row keeps the cam away from it as well.
                 let is_far =
                     strays(profile).is_empty() && !is_noise && allowed < tolerance::SMOOTHED_AWAY.value * distance;

@@ -83,7 +83,8 @@ impl Model {
         let Follower { mass, stiffness, rest_position, gravity, .. } = self.follower;
         let lowest = cam.lowest().value;
         let (rise, compressed) = (cam.top() - lowest, lowest - rest_position);
-        let [risen, pressed, pulled] = [rise, compressed, gravity].map(|length| units.length.inside(length));
+        let [risen, pulled] = [rise, gravity].map(|length| units.length.inside(length));
+        let (length, shown) = (units.length.name(), |length: f64| (length * 1e4).round() / 1e4);
         let weights = stiffness * compressed / (mass * units.length.told(GRAVITY));
         let own = (stiffness / mass).sqrt() / TAU * 60.0;
         let slowest = rpm.or(self.study.map(|study| [study.rpm_min, study.rpm_max])).map(|[low, _]| low);
@@ -93,7 +94,7 @@ impl Model {
         let written = units.mass.told(mass);
         let meant = if risen > LARGEST_RISE {
             let meant = if says_length { "is it in the unit that is said?" } else { "did you mean mm?" };
-            format!("the lift rises by {risen:.4} m: {meant}")
+            format!("the lift rises by {} {length}: {meant}", shown(rise))
         } else if pulled.abs() > MOST_GRAVITY {
             format!("gravity of {pulled} m/s^2: did you mean mm/s^2?")
         } else if !says_stiffness && is_soft {
@@ -101,7 +102,8 @@ impl Model {
         } else if is_compressed {
             let (times, unit) = (compressed / rise, units.stiffness.name());
             format!(
-                "the spring is pressed together by {pressed:.4} m, {times:.0} times as far as the lift rises: is its stiffness in {unit}?"
+                "the spring is pressed together by {} {length}, {times:.0} times as far as the lift rises: is its stiffness in {unit}?",
+                shown(compressed)
             )
         } else if !says_mass && weights > MOST_WEIGHTS && weights.is_finite() {
             let (force, unit) = (units.force.told(stiffness * compressed), units.force.name());

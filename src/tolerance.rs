@@ -47,6 +47,9 @@ table! {
     /// Ratio of gaps between the rows of a table below which rows count as missing.
     TABLE_GAP = 0.1, "the median gap over the widest: ten median gaps without a row are rows that are missing, and a spline \
         would make up the lift there; a table that is finer where the lift curves stays below";
+    /// Part of a lobe between two rows above which they are too few for its accelerations.
+    LOBE_ROWS = 1.0 / 16.0, "of a lobe from one row to the next: four rows for each of the four accelerations of a lobe, up and down on either side, as many as tell a steep rise of the \
+        acceleration from a jump";
     /// Noise above which the rows of a table count as noisy.
     NOISE_SEEN = 1e-9, "of the lift: rows with nine digits more than that are computed, and a spline through them has the noise of \
         none";
@@ -70,6 +73,8 @@ table! {
     /// Spread of rows over a smoothing tolerance, below which the tolerance is reported as too large.
     SMOOTHED_AWAY = 1.0 / 30.0, "of the tolerance: a gauge that is right to thirty times what its rows spread by would be used for no cam, and \
         a spline that far from them leaves out what the cam has";
+    /// Spread of rows over the distance of a smoothed cam from one of them, below which no noise makes that distance.
+    FAR_SMOOTHED = 1.0 / 4.5, "of the distance: normal noise leaves one of 100,000 rows as far, and a table has fewer";
     /// Least jump of the second derivative that counts as a corner in rows.
     CORNER_SHARE = 0.2, "of the largest second derivative: a smaller one is what a jump of the third derivative makes over a few rows";
     /// Largest distance of rows from two cubics that meet at a corner, for rows with less noise than that.
@@ -117,6 +122,8 @@ table! {
         smooth release the velocity over the cam is of the size of its square, and known to half of its digits";
     /// Difference of the second term of the sum of infinitely many impacts from the first.
     CHATTER_REMAINDER = 1e-8, "squared, of the sum: of a turn of 1e-7 rad it leaves 1e-15, the rounding of an angle";
+    /// Difference of the slopes of a result, down and up from a number, above which its uncertainty is not linear.
+    CURVED = 1.0 / 3.0, "of all slopes together: with less a straight line has the spread of a parabola to three hundredths, less than the rounding of ±";
     /// Difference of the slopes of a result that counts as a curve.
     UNCERTAINTY_SEEN = 1e-6, "of the result, for one standard deviation of a number: an angle where a force is least is known to the root \
         of an ulp, and no smaller part of a result is shown";

@@ -316,9 +316,8 @@ impl Step {
 }
 
 /// Returns the uncertainty of the number at `index` of each machine's numbers, by differences. None where the result is curved: the slopes on
-/// the two sides differ by a third of all slopes together.
+/// the two sides differ by more than a part of all slopes together.
 fn linear(number: f64, index: usize, steps: &[Step], sides: &[[Vec<f64>; 2]]) -> Option<SourcedUncertainty> {
-    const CURVED: f64 = 1.0 / 3.0;
     let rounding = tolerance::JET_ROUNDING.value * number.abs();
     let slope = |(step, [low, high]): (&Step, &[Vec<f64>; 2])| {
         let apart = high[index] - low[index];
@@ -329,7 +328,9 @@ fn linear(number: f64, index: usize, steps: &[Step], sides: &[[Vec<f64>; 2]]) ->
     let is_straight = |(step, sides): (&Step, &[Vec<f64>; 2])| {
         let [low, high] = [0, 1].map(|side| (sides[side][index] - number) / step.to[side]);
         let is_one_sided = step.to.contains(&0.0);
-        is_one_sided || (high - low).abs() <= (CURVED * all).max(tolerance::UNCERTAINTY_SEEN.value * number.abs())
+        is_one_sided
+            || (high - low).abs()
+                <= (tolerance::CURVED.value * all).max(tolerance::UNCERTAINTY_SEEN.value * number.abs())
     };
     if !steps.iter().zip(sides).all(is_straight) {
         return None;

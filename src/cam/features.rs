@@ -294,12 +294,17 @@ impl<'a> Rows<'a> {
     /// Places where the second derivative jumps.
     fn corners(&self) -> FoundCorners {
         /// Rows examined on either side, a scale at a time.
-        const SCALES: [isize; 3] = [6, 12, 24];
+        const SCALES: [isize; 4] = [6, 12, 24, 48];
+        /// Rows on either side that are examined however far apart they are.
+        const FEW: isize = 24;
+        /// Angle on either side over which more rows are examined, rad: those of 24 rows that are a degree apart.
+        const WIDE: f64 = 0.45;
+        let is_near = |reach: isize| reach <= FEW || reach as f64 * self.gap <= WIDE;
         let count = self.angles.len() as isize;
         let is_certain = |jump: &Jump| tolerance::CORNER_CERTAIN.value * jump.evidence >= 1.0;
         let mut found: Vec<Jump> = Vec::new();
         let apart = |one: f64, two: f64| ((one - two + 0.5 * TAU).rem_euclid(TAU) - 0.5 * TAU).abs();
-        for reach in SCALES.into_iter().filter(|reach| 4 * reach < count) {
+        for reach in SCALES.into_iter().filter(|reach| 4 * reach < count && is_near(*reach)) {
             let half = reach / 2;
             // One-sided second differences cheaply show where a corner is likely: where they differ most.
             let differ = |row: isize| (self.bend(row + half, half) - self.bend(row - half, half)).abs();

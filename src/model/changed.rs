@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::fields::{Field, Fields, Value};
+use super::quantity::ModelNumber;
 use super::{Model, ModelError, Numeral, Smoothing, SmoothingTolerance, Spline, TableProfile, nearest};
 
 impl Model {
@@ -50,7 +51,14 @@ impl Model {
         let (mut fields, mut new) = (self.fields.clone(), Vec::new());
         for (name, number) in numbers {
             let path = match Fields::number_of(name) {
-                Some(number) => self.path_in(&["follower"], number, &[])?.to_owned() + &name[number.len()..],
+                Some(number) => {
+                    let path = self.path_in(&["follower"], number, &[]);
+                    let is_exact = path.is_err() && self.path_in(&["cam", "study"], number, &[]).is_ok();
+                    if is_exact {
+                        return Err(self.reject(number, ModelNumber::without_error()));
+                    }
+                    path?.to_owned() + &name[number.len()..]
+                }
                 None => self.path_in(&["follower", "cam", "study"], name, &[])?.to_owned(),
             };
             if new.iter().any(|(changed, _)| *changed == path) {

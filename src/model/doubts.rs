@@ -41,21 +41,35 @@ impl TableProfile {
         self.file.as_ref().map_or_else(|| "cam.rows".to_owned(), |file| format!("{file}, line {}", row.line))
     }
 
-    /// Rows too far apart for an acceleration.
+    /// Too few rows on a lobe, or in a hollow, for its accelerations.
     fn coarse(&self) -> Option<String> {
-        /// Gap between rows from which on they leave an acceleration open, degrees.
-        const COARSE: f64 = 15.0;
-        let mut gaps = self.gaps();
-        let middle = gaps.len() / 2;
-        let (_, median, _) = gaps.select_nth_unstable_by(middle, f64::total_cmp);
-        (*median >= COARSE).then(|| {
+        let highest = self.rows.iter().map(|row| row.lift).fold(f64::NEG_INFINITY, f64::max);
+        let above = |row: &TableRow| 1.0 - (highest - row.lift) / self.rise();
+        let [lobe, hollow] = [self.rows_of_one(above), self.rows_of_one(|row| 1.0 - above(row))];
+        let (rows, what) = if lobe <= hollow { (lobe, "lobe") } else { (hollow, "hollow") };
+        let fewest = tolerance::LOBE_ROWS.value.recip();
+        (rows < fewest).then(|| {
             format!(
-                "{}: the rows are {} deg apart, too far to know an acceleration, on which separation and impacts depend; give rows 5 deg apart \
-                 or closer",
+                "{}: {rows:.0} rows on a {what} are too few to know its accelerations, on which separation and impacts depend; give {fewest} or more",
                 self.place(),
-                (*median * 1000.0).round() / 1000.0
             )
         })
+    }
+
+    /// Number of rows of one lobe, of which `part` is the height over the largest, from 0 to 1.
+    fn rows_of_one(&self, part: impl Fn(&TableRow) -> f64) -> f64 {
+        /// Heights, over the largest, below which a lobe has not begun, and above which there is one.
+        const FOOT: f64 = 0.05;
+        const BODY: f64 = 0.5;
+        let heights: Vec<f64> = self.rows.iter().map(part).collect();
+        let from = heights.iter().enumerate().min_by(|one, two| one.1.total_cmp(two.1)).map_or(0, |(index, _)| index);
+        let (mut lobes, mut rows, mut is_on) = (0_u32, 0_u32, false);
+        for height in heights[from..].iter().chain(&heights[..from]) {
+            rows += u32::from(*height > FOOT);
+            lobes += u32::from(!is_on && *height > BODY);
+            is_on = *height > BODY || is_on && *height > FOOT;
+        }
+        f64::from(rows) / f64::from(lobes.max(1))
     }
 
     /// A step of the lift between two level stretches, as a gauge leaves that slips.
@@ -96,28 +110,50 @@ impl TableProfile {
         ))
     }
 
-    /// Rows that are missing where the lift changes.
+    /// Rows that are missing where the lift changes, or turns.
     fn missing(&self) -> Option<String> {
         /// Gap over those beside it from which on rows are missing.
         const WIDE: f64 = 2.5;
         /// Part of the rise by which the lift changes over the gap.
         const CHANGE: f64 = 0.01;
+        /// Difference of the slopes at the ends of a gap over the largest slope, from which on the lift turns within the gap.
+        const TURNS: f64 = 0.05;
         let (gaps, count) = (self.gaps(), self.rows.len());
         let change = |index: usize| (self.rows[(index + 1) % count].lift - self.rows[index].lift).abs();
+        let slope = |index: usize| {
+            let index = index % count;
+            (self.rows[(index + 1) % count].lift - self.rows[index].lift) / gaps[index]
+        };
+        let steepest = (0..count).map(|index| slope(index).abs()).fold(0.0, f64::max);
+        // Slope at the edge of a gap, of the parabola through the three rows that are nearest on that side.
+        let at_edge = |near: usize, far: usize| {
+            let [near_gap, far_gap] = [near, far].map(|index| gaps[index % count]);
+            slope(near) + (slope(near) - slope(far)) * near_gap / (near_gap + far_gap)
+        };
+        let turns = |index: usize| {
+            let before = at_edge(index + count - 1, index + count - 2);
+            (at_edge(index + 1, index + 2) - before).abs() > TURNS * steepest
+        };
+        let changes = |index: usize| change(index) > CHANGE * self.rise();
         let is_wide = |index: &usize| {
             let beside = gaps[(index + 1) % count].max(gaps[(index + count - 1) % count]);
-            gaps[*index] >= WIDE * beside && change(*index) > CHANGE * self.rise()
+            gaps[*index] >= WIDE * beside && (changes(*index) || turns(*index))
         };
         let index = (0..count).find(is_wide)?;
         let (row, reading) = (self.rows[index], &self.reading);
-        let size = reading.in_model.told(change(index));
+        let value = reading.holds.value();
+        let what = match changes(index) {
+            true => {
+                let size = reading.in_model.told(change(index));
+                format!("the {value} changes by {} {}", (size * 1e6).round() / 1e6, reading.unit)
+            }
+            false => format!("the {value} turns"),
+        };
         Some(format!(
-            "{}: no row between {} and {} deg, where the lift changes by {} {}: are rows missing? The spline makes up what lies between",
+            "{}: no row between {} and {} deg, where {what}: are rows missing? The spline makes up what lies between",
             self.row_place(&row),
             row.angle_deg,
             ((row.angle_deg + gaps[index]) % 360.0 * 1e9).round() / 1e9,
-            (size * 1e6).round() / 1e6,
-            reading.unit
         ))
     }
 }

@@ -151,10 +151,13 @@ impl Fields {
 
     /// The number at a path, within a range.
     pub(super) fn number_within(&mut self, path: &str, allowed: Allowed) -> Result<f64, ModelError> {
-        match *self.take(path)? {
-            Value::Number(number) if allowed.contains(number) => Ok(number),
-            _ => Err(self.reject(path, allowed.to_string())),
+        if let Value::Number(number) = *self.take(path)?
+            && allowed.contains(number)
+        {
+            return Ok(number);
         }
+        let has_error = self.is_table(path) && self.has(&Self::error_of(path));
+        Err(self.reject(path, if has_error { ModelNumber::without_error() } else { allowed.to_string() }))
     }
 
     /// Complains where there is nothing at a path.

@@ -3,7 +3,7 @@
 use serde::{Serialize, Serializer};
 
 use super::fields::{Field, Fields, Value};
-use super::quantity::{Allowed, MODEL_NUMBERS, ModelNumber};
+use super::quantity::{Allowed, ModelNumber};
 use super::units::Units;
 use super::{Model, ModelError};
 
@@ -61,7 +61,7 @@ impl FollowerErrors {
 
     /// Names of the numbers in their table, in the order of [`Self::all`].
     pub fn names() -> impl Iterator<Item = &'static str> {
-        MODEL_NUMBERS.iter().filter_map(|number| number.path.strip_prefix("follower."))
+        ModelNumber::of_follower()
     }
 
     /// Standard deviations of all numbers, 0 for an exact number.
@@ -141,7 +141,7 @@ impl Model {
 
 impl Fields {
     /// Path of a number's error.
-    fn error_of(path: &str) -> String {
+    pub(super) fn error_of(path: &str) -> String {
         format!("{path}.{}", FollowerErrors::ERROR)
     }
 

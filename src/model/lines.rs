@@ -105,7 +105,7 @@ fn unquoted(text: &str) -> &str {
 }
 
 /// Rewrites a number as Rust reads it: with a decimal point, the exponent of Fortran as any other, a minus sign as a hyphen, and nothing between
-/// thousands.
+/// thousands: neither an apostrophe nor a blank.
 pub(super) fn decimal(text: &str, decimal_comma: bool) -> Cow<'_, str> {
     if text.bytes().all(|byte| byte.is_ascii_digit() || b"+-.eE".contains(&byte)) {
         return Cow::Borrowed(text);
@@ -114,12 +114,16 @@ pub(super) fn decimal(text: &str, decimal_comma: bool) -> Cow<'_, str> {
         ',' if decimal_comma => '.',
         'd' | 'D' => 'e',
         '\u{2212}' | '–' => '-',
-        '’' | '\u{a0}' | '\u{202f}' => '\'',
+        // A cell has a blank only where blanks do not part the columns.
+        '’' | ' ' | '\u{a0}' | '\u{2009}' | '\u{202f}' => '\'',
         letter => letter,
     };
     let text: String = text.chars().map(letter).collect();
-    let mut groups = text.split(['\'', '.']).skip(1).take(text.matches('\'').count());
-    let are_thousands = groups.all(|group| group.len() == 3 && group.bytes().all(|digit| digit.is_ascii_digit()));
+    let is_number = |group: &str| group.bytes().all(|digit| digit.is_ascii_digit());
+    let mut groups = text.split(['\'', '.']).take(1 + text.matches('\'').count());
+    let first = groups.next().unwrap_or_default().trim_start_matches(['+', '-']);
+    let are_thousands =
+        (1..=3).contains(&first.len()) && is_number(first) && groups.all(|group| group.len() == 3 && is_number(group));
     Cow::Owned(if are_thousands { text.replace('\'', "") } else { text })
 }
 
@@ -156,12 +160,14 @@ impl Separator {
 
     /// Cells of a line, without quotes.
     pub(super) fn cells(self, line: &str) -> impl Iterator<Item = &str> {
+        // Beside usual blanks between the columns a thin or a hard one parts thousands.
+        let is_typed = line.trim().contains([' ', '\t']);
         let parts = move |letter: char| match self {
             Self::Comma => letter == ',',
             Self::Semicolon => letter == ';',
             Self::Tab => letter == '\t',
             Self::Bar => letter == '|',
-            Self::Blanks => letter.is_whitespace(),
+            Self::Blanks => letter.is_whitespace() && !(is_typed && "\u{a0}\u{2009}\u{202f}".contains(letter)),
         };
         let trimmed = match self {
             // Tabs part the cells, of which the first may be empty.

@@ -21,6 +21,9 @@ mod profile;
 mod quantity;
 mod rows;
 mod table;
+mod table_fields;
+mod table_file;
+mod table_profile;
 mod table_units;
 mod text;
 mod toml;
@@ -42,7 +45,7 @@ pub use numeral::{Numeral, finite, parted};
 pub(crate) use profile::{
     ArcsProfile, MOST_COEFFICIENTS, MotionSegment, PolynomialSegment, ProgramProfile, RectifiedSineProfile,
 };
-pub use profile::{CORNER_ROUNDING, LEVER_RATIO};
+pub use profile::{CONTACTS, CORNER_ROUNDING, LEVER_RATIO};
 pub use profile::{CamProfile, ContourProfile, FollowerContact, HarmonicProfile, ProfileChange, StandardMotion};
 #[doc(hidden)]
 pub use quantity::{Dimension, MODEL_NUMBERS, ModelNumber};

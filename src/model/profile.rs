@@ -4,7 +4,8 @@ use serde::{Serialize, Serializer};
 
 use super::ModelError;
 use super::fields::Fields;
-use super::table::{self, TableProfile};
+use super::table::TableProfile;
+use super::table_file;
 use crate::tolerance;
 
 /// The lift law of a `[cam]` table.
@@ -309,13 +310,16 @@ static CAM_LAWS: [(&str, ReadProfile); 7] = [
     ("rectified-sine", rectified_sine),
     ("program", program),
     ("polynomial", polynomial),
-    ("table", |fields| table::read(fields).map(CamProfile::Table)),
+    ("table", |fields| table_file::read(fields).map(CamProfile::Table)),
     ("contour", |fields| {
         let contact = contact(fields)?;
-        Ok(CamProfile::Contour(ContourProfile { table: table::read_contour(fields)?, contact }))
+        Ok(CamProfile::Contour(ContourProfile { table: table_file::read_contour(fields)?, contact }))
     }),
 ];
 
+/// Values of the field `contact`.
+#[doc(hidden)]
+pub const CONTACTS: &str = "a name or a roller: \"point\", \"flat\", { roller_radius = 0.01 }";
 /// Field of the angle over which corners are rounded.
 #[doc(hidden)]
 pub const CORNER_ROUNDING: &str = "cam.corner_rounding_deg";
@@ -355,7 +359,7 @@ fn contact(fields: &mut Fields) -> Result<FollowerContact, ModelError> {
     match fields.word(PATH, "point") {
         Some("point") => Ok(FollowerContact::Point),
         Some("flat") => Ok(FollowerContact::Flat),
-        _ => Err(fields.reject(PATH, "must be a name or a roller: \"point\", \"flat\", { roller_radius = 0.01 }")),
+        _ => Err(fields.reject(PATH, format!("must be {CONTACTS}"))),
     }
 }
 

@@ -183,6 +183,17 @@ impl ModelNumber {
         self.path.rsplit('.').next().unwrap_or(self.path)
     }
 
+    /// Names of the numbers of the follower, which are those that may have an error.
+    pub(super) fn of_follower() -> impl Iterator<Item = &'static str> {
+        MODEL_NUMBERS.iter().filter_map(|number| number.path.strip_prefix("follower."))
+    }
+
+    /// Complaint about the error of another number.
+    pub(super) fn without_error() -> String {
+        let names: Vec<&str> = Self::of_follower().collect();
+        format!("takes a number without an error; numbers of [follower] take one: {}", names.join(", "))
+    }
+
     /// Allowed range in words, for a complaint.
     pub fn allowed(&self) -> String {
         self.allowed.to_string()

@@ -9,7 +9,7 @@ use std::iter;
 use serde::Serialize;
 
 use super::ModelError;
-use super::above::{Chosen, LineAbove};
+use super::above::{Chosen, Columns, LineAbove};
 use super::heading::{ProseUnit, prose_units};
 use super::lines::{Holds, Separator, Table, decimal, has_numbers, is_rule, number, without_comment};
 use super::table_units::LiftUnit;
@@ -88,6 +88,26 @@ impl<'a> Table<'a> {
         ModelError { line: complaint.line, ..ModelError::file(&self.file, words) }
     }
 
+    /// Refuses a row with `####` in place of a number that is read, or before one, where it would begin a comment.
+    fn has_no_hidden(&self, separator: Separator, width: usize, columns: Columns) -> Result<(), ModelError> {
+        let is_hidden = |cell: &&str| cell.len() > 1 && cell.bytes().all(|letter| letter == b'#');
+        let last = columns[0].max(columns[1]);
+        for (index, text) in self.text.lines().enumerate().filter(|(_, text)| text.contains("##")) {
+            let cells = separator.filled_cells(text);
+            let hidden = cells.iter().take(last + 1).find(|cell| is_hidden(cell));
+            let mut others = cells.iter().filter(|cell| !is_hidden(cell) && !cell.is_empty());
+            // A line of `## ##` between blanks is a comment.
+            let is_row = cells.len() == width
+                && (separator != Separator::Blanks || others.clone().next().is_some())
+                && others.all(|cell| number(cell.trim_end_matches('°'), true).is_some());
+            if let Some(cell) = hidden.filter(|_| is_row) {
+                let words = "is what a spreadsheet prints for a number that is wider than its column: widen the column, and save the table again";
+                return Err(self.reject(index + 1, "cell", cell, words.to_owned()));
+            }
+        }
+        Ok(())
+    }
+
     /// Refuses a column that the model chooses by a number or a name that no line has.
     fn has_columns(
         &self,
@@ -164,7 +184,7 @@ impl<'a> Table<'a> {
         });
         let filled = || filled().skip(usize::from(said.is_some()));
         let is_number = |text: &str| {
-            let before = |letter: char| letter.is_whitespace() || "\"|+-.\u{2212}".contains(letter);
+            let before = |letter: char| letter.is_whitespace() || "\"|,;+-.\u{2212}".contains(letter);
             text.trim_start_matches(before).starts_with(|letter: char| letter.is_ascii_digit())
         };
         // Below a header even a line without a number is a row, with a slip.
@@ -186,9 +206,17 @@ impl<'a> Table<'a> {
         let shown = if is_one { above.last().map_or(first, |(_, text)| *text) } else { first };
         let separator = said.unwrap_or_else(|| Separator::of(shown));
         let width = separator.filled_cells(first).len();
-        // A slip in a first row makes it no title.
-        let is_slip = |text: &str| is_number(text) && separator.filled_cells(text).len() == width;
-        let begins = found - above.iter().rev().take_while(|(_, text)| is_slip(text)).count();
+        // A slip in a first row, or an empty cell, makes it no title; below a header a number alone is a row.
+        let is_slip = |&(index, &(line, text)): &(usize, &(usize, &str))| {
+            // What ends a line is cut off where it is a tab or a bar.
+            let is_cut = || {
+                self.text.lines().nth(line - 1).is_some_and(|line| line.trim_end_matches(' ').ends_with(['\t', '|']))
+            };
+            let is_as_wide =
+                separator.filled_cells(text).len() <= width && (separator.cells(text).count() >= width || is_cut());
+            is_number(text) && (is_as_wide || above[..index].iter().any(|(_, text)| self.is_header(text, chosen)))
+        };
+        let begins = found - above.iter().enumerate().rev().take_while(is_slip).count();
         let first_line = filled().nth(begins).map_or(0, |(line, _)| line);
         let comments = lines().take_while(|(line, _)| *line < first_line).filter_map(|(line, text)| {
             let (text, comment) = without_comment(text);
@@ -216,9 +244,10 @@ impl<'a> Table<'a> {
                     "has {width} columns without names: say which are {one} and {two} in [cam], as {first} = 1 and {second} = 2 do"
                 );
                 let rows = || filled().skip(begins).map(|(_, text)| text);
-                return Err(self.complain(None, words + commas(separator, rows())));
+                return Err(self.complain(None, words + twofold(separator, rows())));
             }
         };
+        self.has_no_hidden(separator, width, columns)?;
         let mut layout = TableLayout {
             separator,
             decimal_comma: false,
@@ -278,8 +307,10 @@ impl<'a> Table<'a> {
             }
             // A decimal comma would be one more.
             if filled_cells > most {
-                let words =
-                    format!("has {filled_cells} columns, and {what} has {most}{}", commas(separator, iter::once(text)));
+                let words = format!(
+                    "has {filled_cells} columns, and {what} has {most}{}",
+                    twofold(separator, iter::once(text))
+                );
                 return Err(self.reject(line, "row", text.trim(), words));
             }
             let [Some(angle), Some(lift)] = found else {
@@ -349,13 +380,23 @@ fn slip(cell: &str, decimal_comma: bool) -> Option<&'static str> {
     }
 }
 
-/// Advice about a row that may have its columns and its decimals behind commas.
-fn commas<'a>(separator: Separator, mut rows: impl Iterator<Item = &'a str>) -> &'static str {
-    if separator == Separator::Comma && rows.all(|row| !row.contains('.')) {
-        "; if commas are decimal as well, part the columns by semicolons, or write decimal points"
-    } else {
-        ""
+/// Advice about rows that may have the sign between their columns also in their numbers: decimal commas, or blanks between thousands.
+fn twofold<'a>(separator: Separator, mut rows: impl Iterator<Item = &'a str>) -> &'static str {
+    let has_thousands = |row: &str| separator.cells(row).skip(1).any(|cell| is_three(cell.split(['.', ',']).next()));
+    match separator {
+        Separator::Comma if rows.all(|row| !row.contains('.')) => {
+            "; if commas are decimal as well, part the columns by semicolons, or write decimal points"
+        }
+        Separator::Blanks if rows.any(has_thousands) => {
+            "; if blanks part thousands as well, part the columns by semicolons, or write nothing between thousands"
+        }
+        _ => "",
     }
+}
+
+/// Whether a part of a number is three digits, as behind a sign between thousands.
+fn is_three(part: Option<&str>) -> bool {
+    part.is_some_and(|part| part.len() == 3 && part.bytes().all(|digit| digit.is_ascii_digit()))
 }
 
 /// Digits by three behind the commas or points of all numbers, which may part thousands.
@@ -373,10 +414,9 @@ struct Thousands {
 
 impl Thousands {
     fn see(&mut self, angle: &str, lift: &str) {
-        let is_three = |behind: &str| behind.len() == 3 && behind.bytes().all(|digit| digit.is_ascii_digit());
         for cell in [angle, lift] {
             if let Some((_, behind)) = cell.split_once(',') {
-                self.is_decided |= !is_three(behind);
+                self.is_decided |= !is_three(Some(behind));
                 self.example.get_or_insert_with(|| cell.to_owned());
             }
         }
@@ -384,7 +424,7 @@ impl Thousands {
         // Points are decimal but where numbers below a thousand have none.
         match lift.split_once('.') {
             Some((before, behind)) => {
-                self.is_decided |= before.starts_with('0') || !is_three(behind);
+                self.is_decided |= before.starts_with('0') || !is_three(Some(behind));
                 self.example.get_or_insert_with(|| lift.to_owned());
             }
             None => self.has_whole |= lift.contains(|digit: char| ('1'..='9').contains(&digit)),

@@ -170,6 +170,33 @@ fn three_arcs_as_a_table_lift_as_three_arcs() {
     }
 }
 
+/// Rows of three arcs, as far apart as a gauge has them, show the corners of flank, nose and top, and no other; and the first separation of a face or
+/// a roller is that of the arcs to its ±. Where the flank leaves the base circle the radius has too small a jump for a corner.
+#[test]
+fn three_arcs_are_found_in_their_rows() {
+    let own = arcs("");
+    let all = own.corners().iter().map(|corner| corner.angle.to_degrees());
+    let corners: Vec<f64> = all.filter(|corner| (100.0..260.0).contains(corner)).collect();
+    assert_eq!(corners.len(), 4);
+    for count in [360, 720, 1440] {
+        let csv = polar(count, |angle| (1e4 * own.lift(angle).value).round() / 1e4);
+        for contact in [FLAT.to_owned(), roller((10.0, 0.0))] {
+            let (model, found) = read(&csv, &format!("spline = \"smoothing\"\n{contact}")).unwrap();
+            let likely = PlausibleCams::of(&model).unwrap().unwrap();
+            let told = &likely.measured.corners_deg;
+            let is_there = |one: &f64| told.iter().any(|other| (one - other).abs() < 1.0);
+            assert!(corners.iter().all(is_there) && told.len() == corners.len(), "{count}: {told:?}, {corners:?}");
+            let speed = |model: &Model, cam: &Cam| Contact::new(cam, model.follower).separation().speed();
+            let (one, other) = (speed(&model, &found), speed(&model, &arcs(&contact)));
+            let error = likely.errors(&[one], |model, cam| Some(vec![speed(model, cam)])).unwrap()[0];
+            assert!(
+                (one - other).abs() <= error && error < 0.06 * other,
+                "{count} {contact}: {one} ± {error}, {other}"
+            );
+        }
+    }
+}
+
 /// The spline's own envelope, by a search among half a million points of SciPy's spline through the same rows.
 #[test]
 #[ignore = "slow"]

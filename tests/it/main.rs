@@ -21,6 +21,7 @@ mod cam_laws;
 mod cam_sheet;
 mod cam_table;
 mod canonical;
+mod cells;
 mod certify;
 mod chaos;
 mod chart;

@@ -12,7 +12,7 @@ use corner_impact::progress::Unwatched;
 use corner_impact::study::attractors::{Cause, Resolution, Step, Transition};
 use corner_impact::study::design::contact::{Contact, Separation};
 use corner_impact::study::design::needs::Answer;
-use corner_impact::study::design::{Asked, design, known};
+use corner_impact::study::design::{Asked, Design, SeparationPlace, design, known};
 use corner_impact::study::locate::locate;
 use corner_impact::study::orbit::{OrbitQuery, orbits};
 use corner_impact::study::speeds::SpeedSurvey;
@@ -1532,6 +1532,10 @@ fn two_places_that_may_be_left_first_are_both_named() {
     let open = sentence.split("Where is open").nth(1).unwrap();
     let report: String = report.split('<').filter_map(|part| part.split_once('>')).map(|(_, text)| text).collect();
     assert!(common::in_one_line(&report).contains(&format!("Where is open{open}")), "{open}");
+    // One place that all likely cams share is not open.
+    let one = SeparationPlace { share: 1.0, ..found.places[0] };
+    let page = crate::common::in_one_line(&Design { places: vec![one], ..found }.text().unwrap());
+    assert!(page.contains(". Each of 16 likely cams lets go at 1") && !page.contains("is open"), "{page}");
 }
 
 /// Coarse rows with four decimals of an exact motion: the note advises the tolerance that the decimals allow, with which the answer is right, and

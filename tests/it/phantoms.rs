@@ -259,8 +259,8 @@ impl Sampled {
     }
 }
 
-/// Finds cams without corners that are given some, or are given more dwells than they have.
-fn alarms(count: u64) -> Vec<String> {
+/// Finds cams without corners that are given some, or are given more dwells than they have, among those from a seed on.
+fn alarms(from: u64, count: u64) -> Vec<String> {
     let alarm = |seed: u64| {
         let mut random = Random(seed << 32);
         let (truth, sampled) = loop {
@@ -275,13 +275,16 @@ fn alarms(count: u64) -> Vec<String> {
         let is_alarm = !corners.is_empty() || dwells > truth.dwells() + 1;
         is_alarm.then(|| format!("{}: corners {corners:?}, {dwells} dwells", sampled.about))
     };
-    (0..count).into_par_iter().filter_map(alarm).collect()
+    (from..from + count).into_par_iter().filter_map(alarm).collect()
 }
+
+/// First of the seeds that the constants of the test were not set on.
+const OTHERS: u64 = 1_000_000;
 
 /// Of 200 cams without corners none is given one.
 #[test]
 fn a_cam_without_corners_is_given_none() {
-    let alarms = alarms(200);
+    let alarms = alarms(0, 200);
     assert!(alarms.is_empty(), "{alarms:#?}");
 }
 
@@ -290,9 +293,53 @@ fn a_cam_without_corners_is_given_none() {
 #[ignore = "slow"]
 fn hardly_any_cam_without_corners_is_given_one() {
     let count = if std::env::var_os("PROPERTIES").is_some() { 5000 } else { 1000 };
-    let alarms = alarms(count);
-    println!("{} alarms on {count} cams without corners", alarms.len());
-    assert!(alarms.len() as u64 * 5000 <= 9 * count, "{}: {alarms:#?}", alarms.len());
+    let own = alarms(0, count);
+    println!("{} alarms on {count} cams without corners", own.len());
+    assert!(own.len() as u64 * 5000 <= 9 * count, "{}: {own:#?}", own.len());
+    // On other cams the limit holds for corners; 14 of 5000 have an alarm, 13 of these a dwell that is none.
+    let others = alarms(OTHERS, count);
+    let with_corner = others.iter().filter(|alarm| !alarm.contains("corners []")).count();
+    println!("{} alarms on {count} others, {with_corner} with a corner", others.len());
+    assert!(with_corner as u64 * 5000 <= 9 * count && others.len() as u64 * 5000 <= 20 * count, "{others:#?}");
+}
+
+/// More rows of a cam of constant accelerations have the corners that fewer have, clean and rounded to a micrometre.
+#[test]
+fn more_rows_have_the_corners_that_fewer_have() {
+    for (start, [up, top, down], rise) in
+        [(7.0, [90.0, 30.0, 120.0], 8.0), (0.3, [60.0, 0.0, 60.0], 10.0), (3.1, [150.0, 10.0, 140.0], 12.0)]
+    {
+        let lift = |angle: f64| {
+            let half = |x: f64| if x < 0.5 { 2.0 * x * x } else { 1.0 - 2.0 * (1.0 - x) * (1.0 - x) };
+            match (angle + 360.0 - start) % 360.0 {
+                at if at < up => rise * half(at / up),
+                at if at < up + top => rise,
+                at if at < up + top + down => rise * half((up + top + down - at) / down),
+                _ => 0.0,
+            }
+        };
+        for rounding in [1e-12, 1e-3] {
+            let found = |step: f64| {
+                let row = |index: u32| {
+                    let angle = step * f64::from(index);
+                    (angle, (lift(angle) / rounding).round() * rounding)
+                };
+                let rows = (0..(360.0 / step).round() as u32).map(row).collect();
+                Sampled { rows, noise: 0.0, step, about: String::new() }.found().0
+            };
+            let coarse = found(2.0);
+            assert!(coarse.len() >= 4, "{start}: {coarse:?}");
+            for step in [0.5, 0.25, 0.1] {
+                let fine = found(step);
+                let is_there = |one: &&f64| fine.iter().any(|other| (*one - other).abs() < 1.0);
+                assert_eq!(
+                    coarse.iter().filter(|one| !is_there(one)).count(),
+                    0,
+                    "{start} {rounding} {step}: {fine:?} {coarse:?}"
+                );
+            }
+        }
+    }
 }
 
 /// Power of the test, as `docs/reliability.md` has it: corners of programs that begin with an acceleration, by how far the jump bends the cam

@@ -15,11 +15,11 @@ pub(crate) fn lift(angle: f64) -> f64 {
 }
 
 /// A row for each of these angles.
-fn rows(angles: impl IntoIterator<Item = i32>, row: impl Fn(f64, f64) -> String) -> String {
+pub(crate) fn rows(angles: impl IntoIterator<Item = i32>, row: impl Fn(f64, f64) -> String) -> String {
     angles.into_iter().map(f64::from).map(|angle| row(angle, lift(angle)) + "\n").collect()
 }
 
-fn plain(angle: f64, lift: f64) -> String {
+pub(crate) fn plain(angle: f64, lift: f64) -> String {
     format!("{angle},{lift:.4}")
 }
 
@@ -35,7 +35,7 @@ pub(crate) fn model(folder: &TempDir, table: &str, fields: &str) -> Result<Model
     Model::read(&file).map_err(|error| error.to_string())
 }
 
-fn table(model: &Model) -> &TableProfile {
+pub(crate) fn table(model: &Model) -> &TableProfile {
     let CamProfile::Table(table) = &model.cam else { panic!("{:?}", model.cam) };
     table
 }
@@ -566,7 +566,7 @@ fn rows_that_leave_the_cam_open_are_noted() {
     for (csv, says) in [
         (
             rows(every(30), |angle, _| format!("{angle},{:.4}", 5.0 - 5.0 * angle.to_radians().cos())),
-            "the rows are 30 deg apart, too far to know an acceleration",
+            "11 rows on a lobe are too few to know its accelerations",
         ),
         (
             of(every(1), 0.05),

@@ -367,8 +367,9 @@ fn errors_that_make_no_sense_are_refused() {
         ("stiffness", "{ value = 0, error = 1 }", "follower.stiffness.error = 1", "must be 0 or less"),
         ("restitution", "{ value = 0.5, error = 0.6 }", "follower.restitution.error = 0.6", "0.5 or less"),
         ("restitution", "{ value = 1.5, error = 0.1 }", "follower.restitution = 1.5", "from 0 to 1"),
-        ("base_radius", "{ value = 0.4, error = 0.1 }", "cam.base_radius", "finite number above 0"),
-        ("rpm_min", "{ value = 600, error = 0.1 }", "study.rpm_min", "finite number above 0"),
+        ("base_radius", "{ value = 0.4, error = 0.1 }", "cam.base_radius", "takes a number without an error"),
+        ("base_radius", "{ value = 0.4 }", "cam.base_radius", "finite number above 0"),
+        ("rpm_min", "{ value = 600, error = 0.1 }", "study.rpm_min", "numbers of [follower] take one: mass, damping"),
     ];
     for (field, text, says, allowed) in cases {
         let text = common::osorio_text(&[(field, text)]);
@@ -380,6 +381,39 @@ fn errors_that_make_no_sense_are_refused() {
     }
     let words = common::text(common::corner_impact(["design", "--set", "mass.error=1"]).stderr);
     assert!(words.contains("follower.mass.error") && words.contains("0.6105 or less"), "{words}");
+}
+
+/// The parts of a ± are rounded as the whole is: that of the only uncertain number is the whole.
+#[test]
+fn parts_are_rounded_as_the_whole_is() {
+    let said = |error: &str| {
+        let set = format!("mass.error={error}");
+        let page =
+            common::text(common::corner_impact(["design", "--rpm", "100:120", "--speeds", "2", "--set", &set]).stdout);
+        let page = common::in_one_line(&page);
+        let whole = page.split(" ± ").nth(1).unwrap().split(' ').next().unwrap().to_owned();
+        (page, whole)
+    };
+    for error in ["0.001", "0.002", "0.003", "0.005", "0.007", "0.011", "0.013"] {
+        let (page, whole) = said(error);
+        assert!(page.contains(&format!(" ± {whole} rpm, from the numbers (mass {whole})")), "{error}: {page}");
+    }
+    // Less than half of the last place is not shown.
+    let words =
+        ["design", "--rpm", "100:120", "--speeds", "2", "--set", "mass.error=0.005", "--set", "stiffness.error=1e-9"];
+    let page = common::in_one_line(&common::text(common::corner_impact(words).stdout));
+    assert!(!page.contains("stiffness 0"), "{page}");
+}
+
+/// A ± that reaches 0 is none: a speed is above 0, and has a bound instead.
+#[test]
+fn a_speed_that_may_be_0_has_a_bound() {
+    let set =
+        ["design", "--rpm", "100:120", "--speeds", "2", "--set", "mass.error=0.6", "--set", "stiffness.error=715"];
+    let page = common::in_one_line(&common::text(common::corner_impact(set).stdout));
+    let sentence = page.split("The follower leaves the cam at ").nth(1).unwrap();
+    let speed = sentence.split("force), at ").nth(1).unwrap().split(" rpm").next().unwrap();
+    assert!(speed.contains(", < ") && !speed.contains('±'), "{speed}");
 }
 
 /// Every page with a ± says what it is of, within 80 columns.

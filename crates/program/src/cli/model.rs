@@ -8,7 +8,7 @@ use super::picture::ends_in;
 use super::{CommandError, progress::watched, session::Session};
 use crate::show::command::{changed, named, shell_word};
 use crate::show::notes;
-use corner_impact::model::{Model, ModelError, ModelNumber, Numeral, Units, finite, nearest, parted};
+use corner_impact::model::{CONTACTS, Model, ModelError, ModelNumber, Numeral, Units, finite, nearest, parted};
 use corner_impact::orbit::Parameter;
 use corner_impact::untrusted;
 
@@ -155,7 +155,13 @@ fn error_of(name: &str) -> Option<&str> {
 fn change(text: &str) -> Result<Change, String> {
     let (name, number) =
         text.split_once('=').ok_or("must be NAME=VALUE: a number of the model, and what it is to be")?;
-    number_of(name, number)
+    number_of(name, number).map_err(|words| match name.trim().rsplit('.').next() {
+        _ if number.contains(|letter: char| letter.is_ascii_digit()) => words,
+        Some("contact") => {
+            format!("{words}: NAME=VALUE changes numbers; contact stands under [cam] in the file, as {CONTACTS}")
+        }
+        _ => format!("{words}: NAME=VALUE changes numbers; words stand in the file"),
+    })
 }
 
 /// A number as it is typed. A unit is held against the model's once that is read.

@@ -114,7 +114,7 @@ pub(crate) fn measured(measured: &Measured) -> Vec<Block> {
     }
     let accuracy = match measured.step_m {
         Some(_) => words::accuracy(measured),
-        None => "lifts with all digits of a double".to_owned(),
+        None => format!("{} with all digits of a double", measured.reading.holds.values()),
     };
     let (digits, error) = with_error(measured.curvature_error);
     blocks.push(Block::paragraph(words![

@@ -4,7 +4,7 @@ use crate::pages::cam::follower;
 use crate::pages::source;
 use crate::show::Paged;
 use crate::show::block::{Block, Column, Span, Table, TextMark, Words, words};
-use crate::show::digits::{Digits, with_error};
+use crate::show::digits::{Digits, at_most, with_error};
 use crate::show::page::text;
 use crate::show::sources::Sources;
 use crate::show::words::{noise_unknown, spoken};
@@ -99,8 +99,15 @@ pub(crate) fn leaves(
             Some(sources) if !places.is_empty() => words![
                 "The follower leaves the cam first at ",
                 sources.speed(rpm, Digits::Fixed(6), error),
-                ". Where is open: ",
-                Words::joined(places.iter().map(|it| place(it, sources.machines())).collect::<Vec<_>>(), ", "),
+                ". ",
+                match places {
+                    [one] =>
+                        words![format!("Each of {} likely {} lets go at ", one.cams, sources.machines()), angles(one)],
+                    _ => words![
+                        "Where is open: ",
+                        Words::joined(places.iter().map(|it| place(it, sources.machines())).collect::<Vec<_>>(), ", ")
+                    ],
+                },
                 " (computed from the contact force)."
             ],
             Some(sources) => words![
@@ -135,12 +142,17 @@ pub(crate) fn leaves(
 
 /// One of the places that the follower may leave first.
 fn place(place: &SeparationPlace, machines: &str) -> Words {
+    let share = (100.0 * place.share, Digits::Fixed(0));
+    words![angles(place), " for ", share, format!(" % of {} likely {machines}", place.cams)]
+}
+
+/// The angles of a place.
+fn angles(place: &SeparationPlace) -> Words {
     let ([from, to], width) = place.within_a_turn();
     let ([from, to], width) = ([from, to].map(f64::to_degrees), width.to_degrees());
-    let share = words![(100.0 * place.share, Digits::Fixed(0)), format!(" % of {} likely {machines}", place.cams)];
     match width {
-        width if width < 1.0 => words!["about ", (from, Digits::Fixed(0)), " deg for ", share],
-        _ => words![(from, Digits::Fixed(0)), " to ", (to, Digits::Fixed(0)), " deg for ", share],
+        width if width < 1.0 => words!["about ", (from, Digits::Fixed(0)), " deg"],
+        _ => words![(from, Digits::Fixed(0)), " to ", (to, Digits::Fixed(0)), " deg"],
     }
 }
 
@@ -330,8 +342,8 @@ fn needs(found: &Design) -> Vec<Block> {
             let bound = if answer.is_upper_bound { "at most" } else { "at least" };
             // If any value will do, there is no uncertainty, and the note says so.
             let unknown = if sources.is_some() && answer.error.is_none() && note.is_empty() { " ± ?" } else { "" };
-            let value = answer.value.map(|value| words![with_open(value, total(answer.error), digits(value)), unknown]);
-            let other = answer.other.map(|other| with_open(other, total(answer.other_error), digits(other)));
+            let value = answer.value.map(|value| words![positive(value, total(answer.error), digits(value)), unknown]);
+            let other = answer.other.map(|other| positive(other, total(answer.other_error), digits(other)));
             let (bound, to) = match (value, other) {
                 (None, _) => ("", "none".into()),
                 (Some(value), None) => (bound, value),
@@ -399,10 +411,7 @@ fn load(value: f64, error: Option<f64>, digits: Digits, is_told: bool) -> Words 
         true if !is_told && error < KNOWN * value => words![(value, digits)],
         true if is_told => words![(value, open), " ± ", (rounded, open)],
         true => words![(value, open)],
-        false => {
-            let most = with_error(value + error);
-            format!("< {}", most.0.text(most.1)).into()
-        }
+        false => at_most(value + error).into(),
     }
 }
 
@@ -411,6 +420,14 @@ fn with_open(value: f64, error: Option<f64>, digits: Digits) -> Words {
     match error.filter(|error| *error > 0.0).map(with_error) {
         Some((digits, error)) => words![(value, digits), " ± ", (error, digits)],
         None => words![(value, digits)],
+    }
+}
+
+/// A value of a quantity that is not negative, with its uncertainty.
+fn positive(value: f64, error: Option<f64>, digits: Digits) -> Words {
+    match error.filter(|error| *error >= value.abs()) {
+        Some(error) => words![(value, digits), ", ", at_most(value + error)],
+        None => with_open(value, error, digits),
     }
 }
 

@@ -80,8 +80,27 @@ pub(crate) fn with_error(error: f64) -> (Digits, f64) {
         return (Digits::Significant(9), error);
     }
     let place = 1.0 - elementary::log10(error).floor();
+    (Digits::Fixed(place.clamp(0.0, 12.0) as usize), rounded_up(error, place))
+}
+
+/// Text of a part of an error, rounded up to the place of the whole error as the whole is; `None` for less than half of that place.
+pub(crate) fn part_of_error(part: f64, whole: f64) -> Option<String> {
+    let (digits, _) = with_error(whole);
+    let place = 1.0 - elementary::log10(whole).floor();
+    let is_seen = part * elementary::powf(10.0_f64, place) >= 0.5;
+    (is_seen || !part.is_finite()).then(|| digits.text(rounded_up(part, place)))
+}
+
+/// A number rounded up to this many decimals; fewer than none are whole tens.
+fn rounded_up(number: f64, place: f64) -> f64 {
     let unit = elementary::powf(10.0_f64, place);
-    (Digits::Fixed(place.clamp(0.0, 12.0) as usize), (error * unit).ceil() / unit)
+    (number * unit).ceil() / unit
+}
+
+/// Upper bound of a number that is not negative and has an error as large as itself: `< 0.13`.
+pub(crate) fn at_most(bound: f64) -> String {
+    let (digits, bound) = with_error(bound);
+    format!("< {}", digits.text(bound))
 }
 
 /// Decimals of a number, zero or more, rounded down, as a lower bound must be.

@@ -5,7 +5,7 @@ use corner_impact::model::FollowerErrors;
 use corner_impact::uncertainty::SourcedUncertainty;
 
 use super::block::{Words, words};
-use super::digits::{Digits, with_error};
+use super::digits::{Digits, at_most, part_of_error, with_error};
 use super::words::{accuracy, listed, spoken};
 
 /// Sources of the uncertainty on a page.
@@ -44,11 +44,11 @@ impl<'a> Sources<'a> {
     /// Parts of an uncertainty: `13 from the cam (lift rounded to 0.001 mm), 45 from the numbers (stiffness 40, mass 20)`. For a cam alone only its
     /// accuracy.
     pub(crate) fn parts(self, error: &SourcedUncertainty) -> String {
-        let (digits, _) = with_error(error.total());
-        let shown = |part: f64| digits.text(part);
-        let each = error.of_each().into_iter().map(|(name, part)| (spoken(name), shown(part)));
+        let seen = |part: f64| part_of_error(part, error.total());
+        let shown = |part: f64| seen(part).unwrap_or_else(|| "0".to_owned());
+        let each = error.of_each().into_iter();
         let each: Vec<String> =
-            each.filter(|(_, part)| is_seen(part)).map(|(name, part)| format!("{name} {part}")).collect();
+            each.filter_map(|(name, part)| Some(format!("{} {}", spoken(name), seen(part)?))).collect();
         let each = match (each.as_slice(), error.each) {
             ([], None) => " (together)".to_owned(),
             ([], Some(_)) => String::new(),
@@ -103,7 +103,19 @@ impl<'a> Sources<'a> {
 
     /// A speed with its uncertainty and where that comes from.
     pub(crate) fn speed(self, rpm: f64, digits: Digits, error: Option<SourcedUncertainty>) -> Words {
-        self.value((rpm, digits), " rpm", error)
+        match error.filter(|error| error.total().is_finite() && error.total() >= rpm) {
+            // A ± that reaches 0 is no longer the same on both sides.
+            Some(error) => {
+                let (from, bound) = (format!(" rpm{}", self.from(&error)), at_most(rpm + error.total()));
+                words![(rpm, with_error(error.total()).0), ", ", bound, from]
+            }
+            None => self.value((rpm, digits), " rpm", error),
+        }
+    }
+
+    /// Where an uncertainty comes from, behind it.
+    fn from(self, error: &SourcedUncertainty) -> String {
+        format!("{}{}", if self.cam.is_some() { ": " } else { ", " }, self.parts(error))
     }
 
     /// A value in a unit, with a space before it, with its uncertainty and where that comes from.
@@ -111,8 +123,7 @@ impl<'a> Sources<'a> {
         match (error.filter(|error| error.total().is_finite()), self.if_any()) {
             (Some(error), Some(sources)) => {
                 let (digits, total) = with_error(error.total());
-                let from = if sources.cam.is_some() { ": " } else { ", " };
-                words![(value, digits), " ± ", (total, digits), format!("{unit}{from}{}", sources.parts(&error))]
+                words![(value, digits), " ± ", (total, digits), format!("{unit}{}", sources.from(&error))]
             }
             (None, Some(sources)) => {
                 words![(value, digits), format!("{unit}, and how far off is not known: {}", sources.why())]
@@ -120,9 +131,4 @@ impl<'a> Sources<'a> {
             _ => words![(value, digits), unit],
         }
     }
-}
-
-/// Whether digits are not those of 0.
-fn is_seen(digits: &str) -> bool {
-    digits.bytes().any(|letter| (b'1'..=b'9').contains(&letter))
 }
