@@ -28,7 +28,7 @@ rest_position = -0.02
 restitution = 0.6
 [cam]
 law = "table"
-interpolation = "quintic"
+spline = "quintic"
 file = "lobe.csv"
 """
 

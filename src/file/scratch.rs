@@ -102,7 +102,11 @@ fn emptied(folder: &Path, files: &[(&str, &str)]) -> io::Result<()> {
     for (name, _) in files {
         let path = folder.join(name);
         let inside: Vec<&Path> = path.ancestors().skip(1).take_while(|inside| *inside != folder).collect();
-        if inside.iter().all(|inside| is_own(inside, fs::Metadata::is_dir)) && is_own(&path, fs::Metadata::is_file) {
+        // Behind a link lies somebody else's folder, in which an empty one stays as well.
+        if !inside.iter().all(|inside| is_own(inside, fs::Metadata::is_dir)) {
+            continue;
+        }
+        if is_own(&path, fs::Metadata::is_file) {
             fs::remove_file(&path)?;
         }
         folders.extend(inside.into_iter().map(Path::to_owned));

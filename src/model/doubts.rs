@@ -44,7 +44,8 @@ impl TableProfile {
     /// Too few rows on a lobe, or in a hollow, for its accelerations.
     fn coarse(&self) -> Option<String> {
         let highest = self.rows.iter().map(|row| row.lift).fold(f64::NEG_INFINITY, f64::max);
-        let above = |row: &TableRow| 1.0 - (highest - row.lift) / self.rise();
+        let rise = self.rise();
+        let above = |row: &TableRow| 1.0 - (highest - row.lift) / rise;
         let [lobe, hollow] = [self.rows_of_one(above), self.rows_of_one(|row| 1.0 - above(row))];
         let (rows, what) = if lobe <= hollow { (lobe, "lobe") } else { (hollow, "hollow") };
         let fewest = tolerance::LOBE_ROWS.value.recip();
@@ -85,7 +86,8 @@ impl TableProfile {
             return None;
         }
         // Rounding leaves a step between two level stretches, too, where the lift creeps.
-        let least = (6.0 * self.reading.half_step()).max(tolerance::ON_BASE.value * self.rise());
+        let rise = self.rise();
+        let least = (6.0 * self.reading.half_step()).max(tolerance::ON_BASE.value * rise);
         let lift = |index: usize| self.rows[index % count].lift;
         let range = |from: usize| {
             let lifts = (from..from + LEVEL).map(lift);
@@ -94,7 +96,7 @@ impl TableProfile {
         let step = |index: usize| lift(index + LEVEL) - lift(index + LEVEL - 1);
         let is_slip = |index: &usize| {
             let size = step(*index).abs();
-            size > least && size < LARGEST * self.rise() && range(*index).max(range(index + LEVEL)) <= RANGE * size
+            size > least && size < LARGEST * rise && range(*index).max(range(index + LEVEL)) <= RANGE * size
         };
         let index = (0..count).find(is_slip)?;
         let row = self.rows[(index + LEVEL) % count];
@@ -134,7 +136,8 @@ impl TableProfile {
             let before = at_edge(index + count - 1, index + count - 2);
             (at_edge(index + 1, index + 2) - before).abs() > TURNS * steepest
         };
-        let changes = |index: usize| change(index) > CHANGE * self.rise();
+        let least = CHANGE * self.rise();
+        let changes = |index: usize| change(index) > least;
         let is_wide = |index: &usize| {
             let beside = gaps[(index + 1) % count].max(gaps[(index + count - 1) % count]);
             gaps[*index] >= WIDE * beside && (changes(*index) || turns(*index))

@@ -130,6 +130,10 @@ fn only_what_this_program_made_is_removed() {
     let redirected = copied(&left, "corner-impact.redirected", "corner-impact.redirected");
     fs::rename(redirected.join("derivations"), &outside).unwrap();
     symlink(&outside, redirected.join("derivations")).unwrap();
+    // Not even an empty one of somebody else's folders goes.
+    let empty = outside.join("balls");
+    let _ = fs::remove_dir_all(&empty);
+    fs::create_dir(&empty).unwrap();
     let is_kept = |path: &Path| !path.starts_with(&left) && !path.starts_with(&added) && !path.starts_with(&redirected);
     let kept = || all(at).into_iter().filter(|(path, ..)| is_kept(path)).collect::<Vec<_>>();
     let (before, scripts) = (kept(), all(&outside));

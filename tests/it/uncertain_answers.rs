@@ -111,7 +111,7 @@ fn a_detachment_over_a_number_has_the_parts_of_the_others() {
     near(end["error"].as_f64().unwrap(), whole.total(), 1e-12);
     assert!(end.get("error_rpm").is_none() && end["error_parts"]["numbers"].as_f64().is_some(), "{end}");
     let page = common::in_one_line(&found.text().unwrap());
-    assert!(page.contains("2003 ± 41 N/m, from the numbers (mass 40)"), "{page}");
+    assert!(page.contains("2003 ± 41 N/m, from the numbers (mass 41)"), "{page}");
     assert!(page.contains("by the errors of mass. ") && !page.contains("errors of mass and stiffness"), "{page}");
 }
 
