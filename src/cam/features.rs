@@ -1,8 +1,9 @@
 //! Corners and dwells, found in the rows of a table.
 //!
 //! A dwell is a stretch over which rows stay within their noise, without a trend. It must be so long that a curvature hidden by noise is a
-//! small part of the cam's largest, and the lift must move on where it ends: a base circle that runs out is none. It is taken to end a
-//! little inside: a motion leaves it too slowly to be seen at first.
+//! small part of the cam's largest, and the lift must move on where it ends. A stretch that is left slowly is none if it and as many rows
+//! on one side follow one smooth motion within their noise: so do the parts of a base circle that runs out. A dwell is taken to end a little
+//! inside: a motion leaves it too slowly to be seen at first.
 //!
 //! A corner is where the rows on both sides fit a jump of the second derivative better than any smooth motion, by a test
 //! (`corner_test`). The jump must also be no small part of the largest curvature. A corner with less evidence is doubtful.
@@ -144,6 +145,14 @@ pub(crate) fn strays(profile: &TableProfile) -> Vec<Stray> {
     (0..lifts.len()).filter(|row| is_far[*row]).map(stray).collect()
 }
 
+/// Polynomial of fourth degree that is nearest to rows.
+struct Trend {
+    /// Whether it takes more from their squares than noise gives it.
+    is_seen: bool,
+    /// Whether the rows are as near to it as their noise allows.
+    is_smooth: bool,
+}
+
 impl<'a> Rows<'a> {
     fn new(angles: &'a [f64], lifts: &'a [f64], half_step: f64) -> Self {
         /// Angle over which curvatures are taken, rad.
@@ -205,7 +214,7 @@ impl<'a> Rows<'a> {
         const RISE: f64 = 0.2;
         /// Longest way over which a motion that has left a dwell stays within the room once more, over the way that it needed to leave.
         const LEAVING: f64 = 0.6;
-        /// Length over that way from which a stretch without a trend is a dwell, however slowly it is left.
+        /// Length over that way from which a stretch may be a dwell, however slowly it is left.
         const LONG: f64 = 10.0;
         let count = self.angles.len() as isize;
         let room = FAR * self.noise;
@@ -251,8 +260,14 @@ impl<'a> Rows<'a> {
                 let last = self.stays(row + way, way, count, room);
                 (self.row(last).0 - self.row(row + way).0).abs() <= LEAVING * smooth + 1.5 * self.gap
             };
-            let is_left = end - start > LONG * smooth || moves_on(ends[0], -1) && moves_on(ends[1], 1);
-            if to - from > 0.0 && is_left && self.is_level(ends, [from, to]) {
+            // So does a slope or a crest of a base circle that runs out. There the stretch and as many rows on one side follow one smooth motion.
+            let beyond = ends[1] - ends[0] + 1;
+            let goes_on =
+                |more: [isize; 2]| self.trend(more, None).is_some_and(|trend| trend.is_seen && trend.is_smooth);
+            let is_part = || goes_on([ends[0] - beyond, ends[1]]) || goes_on([ends[0], ends[1] + beyond]);
+            let is_left = moves_on(ends[0], -1) && moves_on(ends[1], 1) || end - start > LONG * smooth && !is_part();
+            let is_level = || self.trend(ends, Some([from, to])).is_none_or(|trend| !trend.is_seen);
+            if to - from > 0.0 && is_left && is_level() {
                 let start = from.rem_euclid(TAU);
                 found.push([start, start + to - from]);
             }
@@ -277,18 +292,25 @@ impl<'a> Rows<'a> {
         (start..=end).map(|row| self.row(row).1).sum::<f64>() / (end - start + 1) as f64
     }
 
-    /// Whether rows between two angles show no trend: no polynomial of fourth degree takes more from their squares than noise gives it.
-    fn is_level(&self, [start, end]: [isize; 2], [from, to]: [f64; 2]) -> bool {
+    /// Trend of the rows from one to another, or of those of them between two angles, rad; none of so few rows that a polynomial goes
+    /// through all of them.
+    fn trend(&self, [start, end]: [isize; 2], within: Option<[f64; 2]>) -> Option<Trend> {
         const DEGREE: i32 = 4;
+        /// Largest deviation of a mean square by noise, in standard deviations.
+        const FAR: f64 = 3.0;
+        let [from, to] = within.unwrap_or([start, end].map(|row| self.row(row).0));
         let inside = (start..=end).map(|row| self.row(row)).filter(|(angle, _)| (from..=to).contains(angle));
         let (angles, lifts): (Vec<f64>, Vec<f64>) =
             inside.map(|(angle, lift)| (2.0 * (angle - from) / (to - from) - 1.0, lift)).unzip();
-        let Some(polynomials) = Orthonormal::new(&angles, DEGREE).filter(|_| angles.len() > DEGREE as usize + 1) else {
-            return true;
-        };
+        let free = angles.len().checked_sub(DEGREE as usize + 1).filter(|free| *free > 0)?;
+        let polynomials = Orthonormal::new(&angles, DEGREE)?;
         let mut lifts = DVector::from_iterator(lifts.len(), lifts.iter().map(|lift| lift - lifts[0]));
         let trend: f64 = polynomials.take(&mut lifts)[1..].iter().sum();
-        tolerance::DWELL_TREND.value * trend <= self.noise * self.noise
+        let square = self.noise * self.noise;
+        Some(Trend {
+            is_seen: tolerance::DWELL_TREND.value * trend > square,
+            is_smooth: lifts.norm_squared() <= square * (free as f64 + FAR * (2.0 * free as f64).sqrt()),
+        })
     }
 
     /// Places where the second derivative jumps.
