@@ -177,8 +177,8 @@ def test_a_model_shows_its_cam(paper: Model) -> None:
 
 def test_pictures_take_the_looks_of_the_command() -> None:
     paper = Model.paper()
-    narrow = ET.fromstring(paper.cam_picture(width="85mm", height="150mm", theme="print"))
-    for name, length in [("width", 85), ("height", 150)]:
+    narrow = ET.fromstring(paper.cam_picture(width="85mm", height="160mm", theme="print"))
+    for name, length in [("width", 85), ("height", 160)]:
         assert float(narrow.attrib[name].removesuffix("pt")) == pytest.approx(length * 72 / 25.4, abs=1)
     words = [text.text for text in narrow.iter() if text.tag.endswith("}text")]
     assert paper.name not in words and "cam angle θ (deg)" in words
