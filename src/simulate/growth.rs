@@ -80,7 +80,9 @@ impl Record {
             return Ok(f64::NEG_INFINITY);
         }
         let (direction, grown) = carried.ended(motion);
-        self.direction = direction;
+        if grown > f64::NEG_INFINITY {
+            self.direction = direction;
+        }
         Ok(grown)
     }
 
@@ -147,7 +149,8 @@ impl<'a> Carried<'a> {
 
     /// Time of the flight from the last impact to `to`, s.
     fn time_to(&self, to: Goal) -> f64 {
-        let turned = (to.revolution - self.at.revolution) as f64 * TAU + (to.cam_angle - self.at.cam_angle);
+        let turns = to.revolution as f64 - self.at.revolution as f64;
+        let turned = turns * TAU + (to.cam_angle - self.at.cam_angle);
         turned / self.machine.angular_velocity()
     }
 
@@ -173,7 +176,10 @@ impl<'a> Carried<'a> {
     fn rescale(&mut self) {
         let size = self.deviation.norm();
         self.grown += elementary::ln(size);
-        self.deviation /= size;
+        // What is nothing stays so.
+        if size > 0.0 {
+            self.deviation /= size;
+        }
     }
 }
 
