@@ -27,7 +27,7 @@ pub enum What {
 }
 
 impl Need {
-    /// How the answer to this need is known: separation is computed, loads are sampled by runs.
+    /// Evidence for the answer to this need: separation is computed, loads are sampled by runs.
     pub(super) fn known(&self) -> Evidence {
         if self.what == What::NoSeparation { Evidence::Computed } else { Evidence::Sampled }
     }

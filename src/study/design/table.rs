@@ -111,7 +111,7 @@ pub struct Passed {
     pub value: f64,
     /// Unit of the limit.
     pub unit: String,
-    /// Where the limit is first exceeded, located to a thousandth below the first table value that exceeds it. If that is the first value
+    /// The value at which the limit is first exceeded, located to a thousandth below the first table value that exceeds it. If that is the first value
     /// of the table, it is returned itself. None if no value exceeds the limit.
     pub at: Option<Place>,
 }
@@ -253,7 +253,7 @@ impl LoadTable<'_> {
         Ok(curves)
     }
 
-    /// Where a load first exceeds a limit, in the displayed unit, by the forces and loads of the table.
+    /// The value at which a load first exceeds a limit, in the displayed unit, by the forces and loads of the table.
     pub fn passed(
         &self,
         (limit, value): (Load, f64),

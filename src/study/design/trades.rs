@@ -81,7 +81,7 @@ pub struct Trade {
     pub against_unit: String,
     /// Pairs of a given and a found value; the found value is none if no value meets the need.
     pub pairs: Vec<RequiredPair>,
-    /// How the values are known, as for the need alone.
+    /// Evidence for the values, as for the need alone.
     pub known: Evidence,
 }
 

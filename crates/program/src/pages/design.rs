@@ -51,7 +51,7 @@ impl Paged for Design {
     }
 }
 
-/// Which of the uncertain numbers are exact in a part of the page.
+/// The uncertain numbers that are exact in a part of the page.
 fn exact(found: &Design) -> String {
     let is_uncertain = |name: &str| found.errors.uncertain().any(|(uncertain, _)| uncertain == name);
     let varied = [Some(found.over.own_name()), found.trades.first().map(|trade| trade.against.as_str())];

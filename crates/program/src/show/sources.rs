@@ -113,7 +113,7 @@ impl<'a> Sources<'a> {
         }
     }
 
-    /// Where an uncertainty comes from, behind it.
+    /// The parts of an uncertainty, to stand behind it.
     fn from(self, error: &SourcedUncertainty) -> String {
         format!("{}{}", if self.cam.is_some() { ": " } else { ", " }, self.parts(error))
     }
