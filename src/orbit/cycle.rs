@@ -316,7 +316,6 @@ impl Cycle {
                 velocity_before: impact.velocity_before,
                 velocity_after: struck.leaving.velocity,
                 cam_velocity: struck.cam_velocity,
-                cam_curvature: struck.lift.curvature,
                 segment: impact.segment,
             }
         };

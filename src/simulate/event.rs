@@ -5,6 +5,7 @@ use std::ops::ControlFlow;
 
 use serde::Serialize;
 
+use crate::cam::Lift;
 use crate::flight::{Flight, State};
 
 /// Kind of event.
@@ -47,8 +48,6 @@ pub struct Event {
     pub velocity_after: f64,
     /// c', m/s; at a corner, that of the segment which was hit.
     pub cam_velocity: f64,
-    /// c'', m/rad^2, of the same segment.
-    pub cam_curvature: f64,
     /// Index of the segment of the cam.
     pub segment: usize,
 }
@@ -82,6 +81,9 @@ pub trait Observer {
 
     /// Receives an event; may end the run right after it.
     fn event(&mut self, event: &Event) -> ControlFlow<()>;
+
+    /// Receives the lift, of the segment that is hit, of the impact whose event comes next.
+    fn strikes(&mut self, _lift: &Lift) {}
 
     /// Receives a stretch of free flight that has just been flown: its start state and its duration, s.
     fn flight(&mut self, _flight: &Flight, _from: State, _time: f64) {}

@@ -6,6 +6,7 @@ use std::ops::ControlFlow;
 use nalgebra::Vector2;
 
 use super::{Event, EventKind, Goal, ImpactTally, Machine, Motion, Observer, SimulateError};
+use crate::cam::Lift;
 use crate::elementary;
 use crate::estimate::Estimate;
 use crate::flight::{Response, State};
@@ -139,12 +140,23 @@ struct Carried<'a> {
     /// Cam and follower right after the last impact.
     at: Goal,
     state: State,
+    /// Curvature of the lift at the impact that comes next, m/rad^2.
+    curvature: f64,
 }
 
 impl<'a> Carried<'a> {
     fn new(machine: &'a Machine, motion: &Motion, direction: Vector2<f64>, met: &'a mut ImpactTally) -> Self {
         let begun = motion.after(0);
-        Self { machine, met, begun, deviation: direction, grown: 0.0, at: begun, state: motion.state }
+        Self {
+            machine,
+            met,
+            begun,
+            deviation: direction,
+            grown: 0.0,
+            at: begun,
+            state: motion.state,
+            curvature: f64::NAN,
+        }
     }
 
     /// Time of the flight from the last impact to `to`, s.
@@ -184,6 +196,10 @@ impl<'a> Carried<'a> {
 }
 
 impl Observer for Carried<'_> {
+    fn strikes(&mut self, lift: &Lift) {
+        self.curvature = lift.curvature;
+    }
+
     fn event(&mut self, event: &Event) -> ControlFlow<()> {
         /// Squared size beyond which the deviation is scaled, or below its inverse: far from the ends of a double's range.
         const LARGE: f64 = 1e100;
@@ -204,7 +220,7 @@ impl Observer for Carried<'_> {
             acceleration_before: flight.acceleration(before),
             acceleration_after: flight.acceleration(after),
             cam_velocity: event.cam_velocity,
-            cam_acceleration: omega * omega * event.cam_curvature,
+            cam_acceleration: omega * omega * self.curvature,
         };
         let [position, velocity] = self.flown(&response).into();
         let [[a, _], [c, d]] = rates.saltation_rows();

@@ -610,7 +610,8 @@ impl Machine {
         motion.settled = moved <= 2.0 * tolerance::LAST_TURN.value;
         motion.last_impact = angle;
         self.leave(motion, lift, relative_rebound(self.restitution, velocity_before, cam_velocity));
-        let impact = self.event(motion, EventKind::Impact, [velocity_before, cam_velocity], lift.curvature);
+        let impact = self.event(motion, EventKind::Impact, velocity_before, cam_velocity);
+        observer.strikes(lift);
         // A stick that follows from the impact belongs to it, also for an observer that has seen enough: the run continues from there as if
         // it had not been split.
         let enough = observer.event(&impact).is_break();
@@ -622,13 +623,7 @@ impl Machine {
         if enough { Step::Broken } else { step }
     }
 
-    fn event(
-        &self,
-        motion: &Motion,
-        kind: EventKind,
-        [velocity_before, cam_velocity]: [f64; 2],
-        cam_curvature: f64,
-    ) -> Event {
+    fn event(&self, motion: &Motion, kind: EventKind, velocity_before: f64, cam_velocity: f64) -> Event {
         let over = motion.cam_angle >= TAU;
         Event {
             kind,
@@ -638,7 +633,6 @@ impl Machine {
             velocity_before,
             velocity_after: motion.state.velocity,
             cam_velocity,
-            cam_curvature,
             segment: motion.segment,
         }
     }
@@ -646,8 +640,7 @@ impl Machine {
     /// Reports a stick or release: an event without a change of velocity.
     fn report(&self, motion: &Motion, kind: EventKind, observer: &mut impl Observer) -> Step {
         let velocity = motion.state.velocity;
-        let lift = motion.lift.unwrap_or_else(|| self.cam().segments()[motion.segment].law.lift(motion.cam_angle));
-        let event = self.event(motion, kind, [velocity; 2], lift.curvature);
+        let event = self.event(motion, kind, velocity, velocity);
         if observer.event(&event).is_break() { Step::Broken } else { Step::Event }
     }
 }

@@ -130,7 +130,6 @@ fn motion() -> TracedRun {
         velocity_before: -1.0,
         velocity_after: 1.0,
         cam_velocity: 0.0,
-        cam_curvature: 0.0,
         segment: 0,
     };
     TracedRun { rpm: 60.0, samples: (0..600).map(sample).collect(), events: [0.2, 0.6].map(impact).to_vec() }

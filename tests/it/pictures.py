@@ -15,7 +15,8 @@ for name in sys.argv[1:]:
     page, panels, rows = drawn["PAGE"], drawn["PANELS"], drawn["rows"]
     entries = [series["legend"][1] for panel in panels for series in panel["series"] if "legend" in series]
     assert ROW * len(set(entries)) <= page[1] / 6 + 0.01, f"{name}: {len(set(entries))} rows of {page[1]}"
-    axes = [("across", drawn["ACROSS"]), *((f"panel {number}", panel) for number, panel in enumerate(panels))]
+    axes = [(f"panel {number}", panel) for number, panel in enumerate(panels)]
+    axes += [(f"across panel {number}", panel["across"]) for number, panel in enumerate(panels)]
     names = [words for _, _, words, angle, _ in drawn["TEXTS"] if angle]
     for axis, at in axes:
         # The bars of attractors have names instead of numbers.
@@ -29,7 +30,7 @@ for name in sys.argv[1:]:
     for number, frame in enumerate(frames):
         lines = [len(line.get_xdata()) for line in frame.lines]
         # Reference lines have two points each.
-        points = sum(lines) - 2 * (len(panels[number]["marks"]) + len(drawn["MARKS"]))
+        points = sum(lines) - 2 * (len(panels[number]["marks"]) + len(drawn["MARKS"]) * panels[number]["across"]["has_marks"])
         kinds = {index: it["kind"] for index, it in enumerate(panels[number]["series"])}
         of_kind = [(kinds[key[1]], len(of)) for key, of in rows.items() if key[0] == number]
         wanted = sum(count for kind, count in of_kind if kind not in ("band", "region"))

@@ -397,18 +397,8 @@ fn an_impact_at_a_whole_turn_is_carried_on_from_the_end_of_its_segment() {
         let cam_velocity = machine.angular_velocity() * lift.slope;
         let (velocity_before, velocity_after) = (cam_velocity - 1.0, cam_velocity + 0.8);
         let (kind, position) = (EventKind::Impact, lift.value);
-        let (revolution, cam_curvature) = (1, lift.curvature);
-        let event = Event {
-            kind,
-            revolution,
-            cam_angle,
-            position,
-            velocity_before,
-            velocity_after,
-            cam_velocity,
-            cam_curvature,
-            segment,
-        };
+        let event =
+            Event { kind, revolution: 1, cam_angle, position, velocity_before, velocity_after, cam_velocity, segment };
         let mut variation = Variation::new(&machine, &machine.start_on_cam(0.0, 1.0).unwrap());
         let _ = variation.event(&event);
         variation.matrix()
