@@ -7,7 +7,7 @@ CARGO ?= cargo
 RELEASE := --release --locked
 
 .DEFAULT_GOAL := help
-.PHONY: help verify report quick test properties python slurm-test check audit derive derive-check theorems claims pictures review wasm mutants mutants-sample fuzz soak bench bench-each bench-peers clean
+.PHONY: help verify report quick test properties python slurm-test check audit derive derive-check theorems claims pictures review wasm mutants mutants-sample fuzz soak bench bench-each bench-growth bench-peers clean
 
 # Python and its packages, once; again when the list of packages changes.
 PYTHON ?= python3
@@ -136,6 +136,10 @@ bench: ## time a revolution: the scan-and-bisect baseline and the simulator side
 
 bench-each: ## the same pieces of work one by one, with criterion's statistics
 	$(CARGO) bench --locked --bench simulate
+
+bench-growth: ## how the work of each command grows with its size (a quarter of an hour)
+	$(CARGO) build $(RELEASE) --quiet --bins
+	$(PYTHON) benches/growth.py
 
 # Its own packages, apart from what the checks use.
 PEERS := benches/peers/.venv/.ready

@@ -1,6 +1,6 @@
 """How the work of each command grows with its size: processor seconds, size by size, and the power between neighbouring sizes.
 
-  python benches/growth.py [--seconds 30] [--only WORD]
+  python benches/growth.py [--seconds 30] [--only WORD]      or make bench-growth
 
 Prints a table in Markdown. A row ends at the first size that takes longer than so many seconds. The program is that of
 `cargo build --release`; start-up, some 10 ms, is taken off.
