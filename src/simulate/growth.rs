@@ -22,6 +22,7 @@ use crate::impact::ImpactRates;
 pub fn growth(machine: &Machine, mut motion: Motion, revolutions: u64) -> Result<f64, SimulateError> {
     let mut record = Record::over(revolutions.max(1));
     record.take(machine, &mut motion, revolutions)?;
+    // One block of all revolutions, unless the follower sticks in it or there are none.
     Ok(match record.means.of_blocks.as_slice() {
         [mean] => *mean,
         _ => record.means.sum,
@@ -168,12 +169,11 @@ impl<'a> Carried<'a> {
 
     /// Deviation after a flight with these responses.
     fn flown(&self, response: &Response) -> Vector2<f64> {
-        let (omega, spring, [position, velocity]) =
-            (self.machine.angular_velocity(), self.machine.flight().omega0_squared(), self.deviation.into());
-        let Response { step, impulse, impulse_rate } = *response;
+        let (omega, [position, velocity]) = (self.machine.angular_velocity(), self.deviation.into());
+        let matrix = self.machine.flight().propagator_by(response);
         Vector2::new(
-            (1.0 - spring * step) * position + omega * impulse * velocity,
-            impulse_rate * velocity - spring * impulse / omega * position,
+            matrix[(0, 0)] * position + matrix[(0, 1)] * omega * velocity,
+            matrix[(1, 0)] / omega * position + matrix[(1, 1)] * velocity,
         )
     }
 

@@ -42,7 +42,7 @@ fn a_row_with_an_empty_cell_is_no_title() {
     is_the_lobe(&format!("24\nangle,lift\n{}", rows(0..360, plain)), "", 1.0);
 }
 
-/// What spreadsheets print for a number that is wider than its column is named, and what begins a comment is one.
+/// The signs that a spreadsheet prints for a number wider than its column are named as such; at the start of a line they begin a comment.
 #[test]
 fn a_number_that_a_spreadsheet_hides_is_named() {
     let hidden = "is what a spreadsheet prints for a number that is wider than its column";

@@ -42,12 +42,7 @@ impl UncertainEnds<'_> {
     /// Uncertainty of an end; none if it is exact or unknown. A number that varies is exact there.
     fn error(&self, family: &AttractorFamily, side: usize) -> Option<SourcedUncertainty> {
         let end = family.ends[side].as_ref()?;
-        if self.over.is_speed() {
-            return self.among(self.machines.uncertain()?, family, end, side);
-        }
-        let (model, cam) = self.over.model(end.value()).ok()?;
-        let here = self.machines.elsewhere(self.over.parameter.name(), &model, &cam).ok()?;
-        self.among(here.uncertain()?, family, end, side)
+        self.over.uncertain_at(self.machines, end.value(), |machines| self.among(machines, family, end, side)).ok()?
     }
 
     /// Uncertainty of an end among machines: by the equations of its event, or by runs if it is known by runs.

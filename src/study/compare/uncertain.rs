@@ -1,7 +1,7 @@
 //! Uncertainty of the differences between two machines: by a measured cam, and by the errors of the follower's numbers.
 //!
-//! What both machines have in common moves both alike, and leaves less of the difference open: one measured cam under both, and each number
-//! that has one value and one error in both. All else is independent of the other machine.
+//! One measured cam under both followers, and each number that has one value and one error in both models, move both machines alike, and leave
+//! less of the difference open. All else is independent of the other machine.
 
 use std::collections::BTreeMap;
 

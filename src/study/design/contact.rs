@@ -90,6 +90,11 @@ impl Separation {
             Self::Never => f64::INFINITY,
         }
     }
+
+    /// The speed, rpm, if the follower leaves at some speeds and not at others.
+    pub fn at_speed(&self) -> Option<f64> {
+        Some(self.speed()).filter(|rpm| *rpm > 0.0 && rpm.is_finite())
+    }
 }
 
 impl<'a> Contact<'a> {

@@ -26,14 +26,12 @@ pub(super) fn rounded(model: &Model, cam: &Cam, separation: Separation) -> Vec<R
     /// Angles of the rounding, degrees.
     const ANGLES: [f64; 4] = [1.0, 2.0, 5.0, 10.0];
     let jumps = cam.corners().iter().any(|corner| corner.jump_order == 2);
-    let located = |rpm: f64| Some(rpm).filter(|rpm| *rpm > 0.0 && rpm.is_finite());
     let at = |angle: f64| {
         let model = model.with_number(CORNER_ROUNDING, angle).ok()?;
         let cam = Cam::new(&model).ok()?;
         let jerk = |sign: f64| -cam.least([0.0, 0.0, 0.0, sign]).value;
-        let speed = Contact::new(&cam, model.follower).separation().speed();
-        let separation_rpm = located(speed);
-        let separation_change = separation_rpm.zip(located(separation.speed())).map(|(rpm, own)| rpm / own - 1.0);
+        let separation_rpm = Contact::new(&cam, model.follower).separation().at_speed();
+        let separation_change = separation_rpm.zip(separation.at_speed()).map(|(rpm, own)| rpm / own - 1.0);
         Some(Rounded { corner_rounding_deg: angle, separation_rpm, jerk: jerk(1.0).max(jerk(-1.0)), separation_change })
     };
     if jumps { ANGLES.into_iter().filter_map(at).collect() } else { Vec::new() }

@@ -153,13 +153,7 @@ impl LoadTable<'_> {
         numbers: [f64; N],
         of: impl Fn(&Model, &Cam) -> Option<[f64; N]> + Sync,
     ) -> Result<Option<[SourcedUncertainty; N]>, StudyError> {
-        let Some(machines) = self.machines.uncertain() else { return Ok(None) };
-        if self.over.is_speed() {
-            return Ok(machines.error(numbers, of));
-        }
-        let (model, cam) = self.over.model(value)?;
-        let here = machines.elsewhere(self.over.parameter.name(), &model, &cam)?;
-        Ok(here.uncertain().and_then(|machines| machines.error(numbers, of)))
+        Ok(self.over.uncertain_at(self.machines, value, |machines| machines.error(numbers, of))?)
     }
 
     /// Separation of the machine at a value, whose contact is this.

@@ -5,6 +5,7 @@ use crate::cam::Cam;
 use crate::model::Model;
 use crate::orbit::{Family, FamilyError, Parameter};
 use crate::simulate::{Machine, angular_velocity};
+use crate::uncertainty::PlausibleMachines;
 
 /// The machines of a model over one of its numbers.
 #[derive(Clone, Debug)]
@@ -60,6 +61,23 @@ impl<'a> Over<'a> {
     /// Builds the machines of `model` over its speed.
     pub fn speed(model: &'a Model) -> Result<Self, OverError> {
         Self::new(model, Parameter::Speed, None)
+    }
+
+    /// Returns an uncertainty among the machines that may be there at a value, where the number that varies is exact; none if they are exact.
+    /// `machines` are those in place of the model's own.
+    pub(crate) fn uncertain_at<T>(
+        &self,
+        machines: &PlausibleMachines<'_>,
+        value: f64,
+        of: impl FnOnce(&PlausibleMachines<'_>) -> Option<T>,
+    ) -> Result<Option<T>, FamilyError> {
+        let Some(machines) = machines.uncertain() else { return Ok(None) };
+        if self.is_speed() {
+            return Ok(of(machines));
+        }
+        let (model, cam) = self.model(value)?;
+        let here = machines.elsewhere(self.parameter.name(), &model, &cam)?;
+        Ok(here.uncertain().and_then(of))
     }
 
     /// Builds the machines of another model, on its cam, over this number.

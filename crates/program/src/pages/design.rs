@@ -387,7 +387,7 @@ fn rounded(found: &Design) -> Vec<Block> {
     ];
     let mut table = Table::new("The cam with its corners rounded", columns);
     let speed = |rpm: f64| words![(rpm, Digits::Significant(7))];
-    let own = Some(found.separation.speed()).filter(|rpm| *rpm > 0.0 && rpm.is_finite()).map_or("".into(), speed);
+    let own = found.separation.at_speed().map_or("".into(), speed);
     table.row(["none".into(), own, "".into(), "infinite".into()]);
     for at in &found.rounded {
         let change = at.separation_change.map_or("".into(), |part| words![(100.0 * part, Digits::Fixed(2))]);
