@@ -89,6 +89,9 @@ table! {
     /// Inverse of the trend of rows from which a stretch is no dwell.
     DWELL_TREND = 1.0 / 25.0, "of the trend, in squared standard deviations, of the four coefficients of a polynomial together: noise gives more to one \
         dwell in 20000, and a base circle that runs out by three times its noise over thirty rows gives more";
+    /// Inverse of the deviation of a mean square up to which a polynomial follows rows within their noise.
+    DWELL_SMOOTH = 1.0 / 3.0, "of the deviation, in standard deviations of a mean square: noise gives more to one stretch of rows in 700, and \
+        that stretch stays a dwell";
     /// Width by which the ranges of a segment's lift and derivatives may exceed the true ranges.
     RANGE_WIDTH = 1e-3, "of the range, which is halved into pieces until what is added for what lies between the samples is \
         below this: closer ranges would save a search for contacts less than they cost";

@@ -296,8 +296,6 @@ impl<'a> Rows<'a> {
     /// through all of them.
     fn trend(&self, [start, end]: [isize; 2], within: Option<[f64; 2]>) -> Option<Trend> {
         const DEGREE: i32 = 4;
-        /// Largest deviation of a mean square by noise, in standard deviations.
-        const FAR: f64 = 3.0;
         let [from, to] = within.unwrap_or([start, end].map(|row| self.row(row).0));
         let inside = (start..=end).map(|row| self.row(row)).filter(|(angle, _)| (from..=to).contains(angle));
         let (angles, lifts): (Vec<f64>, Vec<f64>) =
@@ -309,7 +307,7 @@ impl<'a> Rows<'a> {
         let square = self.noise * self.noise;
         Some(Trend {
             is_seen: tolerance::DWELL_TREND.value * trend > square,
-            is_smooth: lifts.norm_squared() <= square * (free as f64 + FAR * (2.0 * free as f64).sqrt()),
+            is_smooth: lifts.norm_squared() <= square * (free as f64 + (2.0 * free as f64).sqrt() / tolerance::DWELL_SMOOTH.value),
         })
     }
 
