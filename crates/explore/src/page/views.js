@@ -13,8 +13,9 @@
 //     option(name, otherwise), setOption(name, value)   options of this view, kept in the state
 //     model()                      `found` of the view `model` (numbers, units, corners...), null before the first answer
 //     value(number), assign(number, value, { moving })  a number of the model by its path, or "rpm"
-//     ask(question, { lane, coarse, slow, silent })     -> Promise of `found`, or null when superseded or refused (the panel says so).
-//                                  Fills in the model; the same question is not asked twice. `slow` for answers of over 0.2 s.
+//     ask(question, { lane, coarse, rough, slow, silent })   -> Promise of `found`, or null when superseded or refused (the panel
+//                                  says so). Fills in the model; the same question is not asked twice. `rough` are the fields that
+//                                  a coarse question has instead. `slow` for answers of over 0.2 s.
 //     answer(lane)                 the last whole answer of a lane: { found, command, known, how }
 //     plot(host, options)          an Explore.plot whose select and choose are linked
 //     select(motion)               shows a motion in every view; null for none.   onSelect(fn) is told of it
@@ -132,25 +133,29 @@
         context.plots.push(plot);
         return plot;
       },
-      ask: (question, { lane = view.name, coarse = false, slow = false, silent = false } = {}) => {
-        const whole = { model: app.question(), ...question };
-        const key = JSON.stringify(whole);
+      ask: (question, { lane = view.name, coarse = false, rough = null, slow = false, silent = false } = {}) => {
         if (!lanes.has(lane)) lanes.set(lane, { key: null, answer: null, promise: null });
         const last = lanes.get(lane);
+        const full = { model: app.question(), ...question };
+        // The full answer, where it is at hand, is better than a coarse one.
+        if (last.promise && last.key === JSON.stringify(full)) return last.promise;
+        const whole = coarse && rough ? { ...full, ...rough } : full;
+        const key = JSON.stringify(whole);
         if (last.key === key && last.promise) return last.promise;
         last.key = key;
         if (!silent) panel.status(coarse ? "" : "computing\u2026");
-        last.promise = app.transport.ask(whole, lane, { slow }).then((answer) => {
-          if (last.key !== key) return null;
-          if (!silent) panel.status("");
+        const done = () => { if (last.key === key && !silent) panel.status(""); };
+        last.promise = app.transport.ask(whole, lane, { slow, coarse }).then((answer) => {
+          done();
           if (answer.error) { last.answer = null; panel.error(answer.error); app.refused(answer.error); return null; }
           last.answer = { ...answer, coarse };
           panel.error(null);
           if (!silent) panel.known(answer.known, answer.how);
           return answer.found;
         }, (problem) => {
-          if (problem === Explore.superseded) return null;
-          if (last.key === key) { last.key = null; panel.status(""); panel.error({ sentence: problem.message || String(problem) }); }
+          done();
+          if (last.key === key) last.promise = null;
+          if (problem !== Explore.superseded) panel.error({ sentence: problem.message || String(problem) });
           return null;
         });
         return last.promise;
