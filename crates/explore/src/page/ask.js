@@ -118,15 +118,13 @@
   const inside = () => {
     let instance = null;
     const reply = (text) => {
-      const { memory, allocate, respond, length, release } = instance.exports;
+      const { memory, allocate, answer, answer_length } = instance.exports;
       const bytes = new TextEncoder().encode(text);
       const asked = allocate(bytes.length);
       new Uint8Array(memory.buffer, asked, bytes.length).set(bytes);
-      const found = respond(asked, bytes.length);
-      const size = length();
-      const answer = new TextDecoder().decode(new Uint8Array(memory.buffer, found, size));
-      release(asked, bytes.length);
-      return answer;
+      // Memory may have grown meanwhile: the view of it is made anew.
+      const found = answer();
+      return new TextDecoder().decode(new Uint8Array(memory.buffer, found, answer_length()));
     };
     let ready = null;
     self.onmessage = async ({ data }) => {

@@ -45,10 +45,18 @@ const Explore = {};
   };
   Explore.fixed = (value, places) => (value === null || value === undefined || Number.isNaN(value) ? "\u2013" : signed(Number(value).toFixed(places)));
   Explore.quantity = (value, unit, digits) => `${Explore.number(value, digits)}${unit ? `${unit === "\u00b0" ? "" : "\u00a0"}${unit}` : ""}`;
+  /** A name of the model file as words: base_radius is "base radius", flank_start_deg "flank start". */
+  Explore.spaced = (name) => name.replace(/_(deg|rpm)$/, "").replace(/_/g, " ");
   Explore.degrees = (radians) => (radians * 180) / Math.PI;
   Explore.radians = (degrees) => (degrees * Math.PI) / 180;
   /** The angle between 0 and 360 degrees. */
   Explore.turned = (radians) => ((Explore.degrees(radians) % 360) + 360) % 360;
+  /** A column of angles in degrees, whatever the unit that its name ends in. */
+  Explore.angles = (found, start) => {
+    const name = Object.keys(found || {}).find((key) => key.startsWith(start));
+    if (!name) return [];
+    return name.endsWith("_deg") ? found[name] : found[name].map((each) => (each === null ? null : Explore.degrees(each)));
+  };
   /** The column whose name begins with `start`: position_m or position_mm, as the model has it. */
   Explore.column = (found, start) => {
     const name = found && (start in found ? start : Object.keys(found).find((key) => key.startsWith(start)));

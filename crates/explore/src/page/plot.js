@@ -1,10 +1,11 @@
 // A plot on the page: draws scenes (see draw.js) on a canvas and lets the reader point, drag, pinch and use the keyboard.
 //
 //   const plot = Explore.plot(host, { label, aspect: 0.6, least: 240, describe: () => text, select(motion), choose(motion),
-//                                     zoom({ x: [low, high], y: [low, high] }), back(), free: true (no rectangle) })
+//                                     zoom({ x: [low, high], y: [low, high] }), back(), scrub(x, done) (a drag moves the cursor) })
 //   plot.draw(scene)            draws; `scene.description` (one or two sentences that say the result) is what a screen reader reads
 //   plot.mark([{ x, y }])       rings on top: the motion that is selected somewhere else; [] takes them away
 //   plot.svg(width = 860)       the scene as an SVG file with the colours of paper
+//   plot.cursor(x)              an upright line on top, cheap enough for every frame
 //   plot.scene, plot.redraw()
 // Pointing: the nearest datum of a layer with `hover` or `motion` shows its box and calls `select(motion)`; a click or Enter
 // calls `choose(motion)`; a dragged rectangle, a pinch, + and - call `zoom`; Escape and a double click call `back`.
@@ -116,7 +117,7 @@
     tip.hidden = true;
     Object.entries({ role: "img", tabindex: "0", "aria-label": options.label || "" }).forEach(([name, value]) => canvas.setAttribute(name, value));
     tip.setAttribute("aria-hidden", "true");
-    const plot = { element, canvas, options, scene: null, place: null, marked: [], at: null, box: null };
+    const plot = { element, canvas, options, scene: null, place: null, marked: [], at: null, box: null, line: null };
     let size = [0, 0];
 
     const fit = () => {
@@ -153,6 +154,7 @@
       if (!plot.place) return;
       const [pen, theme, { across, up, box }] = [Explore.canvasPen(to), Explore.theme(element), plot.place];
       pen.clip(box);
+      if (plot.line !== null) { const at = across(plot.line); pen.path([at, at], [box.top, box.bottom], { stroke: theme.ink, width: 1.5 }); }
       if (plot.marked.length) {
         const [xs, ys] = [plot.marked.map(({ x }) => across(x)), plot.marked.map(({ y }) => up(y))];
         pen.marks(xs, ys, "ring", 17, theme.paper); pen.marks(xs, ys, "ring", 14, theme.ink);
@@ -162,6 +164,7 @@
       pen.unclip();
     };
     plot.mark = (places) => { plot.marked = places || []; if (plot.place) plot.overlay(); };
+    plot.cursor = (x) => { plot.line = x; if (plot.place) plot.overlay(); };
     plot.svg = (width = 860) => {
       if (!plot.scene) return null;
       const height = Math.round((width * size[1]) / (size[0] || width)) || width * 0.6;

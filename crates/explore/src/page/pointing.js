@@ -81,7 +81,8 @@
       if (drag) {
         drag.moved = drag.moved || Math.hypot(px - drag.px, py - drag.py) > 5;
         if (drag.rule) { if (drag.moved) moveRule(drag.rule, px, py, false); return; }
-        if (drag.moved && options.zoom && !options.free) {
+        if (options.scrub && drag.moved) { options.scrub(plot.place.across.back(held(px, plot.place.box.left, plot.place.box.right)), false); return; }
+        if (drag.moved && options.zoom) {
           const { box } = plot.place;
           const [x, y] = [ordered([held(drag.px, box.left, box.right), held(px, box.left, box.right)]), ordered([held(drag.py, box.top, box.bottom), held(py, box.top, box.bottom)])];
           plot.box = [...x, ...y];
@@ -89,7 +90,7 @@
           return;
         }
       }
-      canvas.style.cursor = ruleAt(plot, px, py, 8) ? (plot.scene.layers.some((layer) => layer && layer.kind === "rule" && layer.move && layer.y !== undefined) ? "row-resize" : "col-resize") : options.zoom && !options.free ? "crosshair" : "default";
+      canvas.style.cursor = ruleAt(plot, px, py, 8) ? (plot.scene.layers.some((layer) => layer && layer.kind === "rule" && layer.move && layer.y !== undefined) ? "row-resize" : "col-resize") : options.zoom ? "crosshair" : "default";
       const at = nearest(plot, px, py, REACH[event.pointerType] || 18);
       if (!at && !plot.at) return;
       if (at && plot.at && at.layer === plot.at.layer && at.index === plot.at.index) return;
@@ -109,6 +110,7 @@
       plot.box = null;
       if (rule && moved) { moveRule(rule, x, y, true); return; }
       if (box) { plot.overlay(); if (box[1] - box[0] > 6 && box[3] - box[2] > 6) zoomTo(box); return; }
+      if (options.scrub && !nearest(plot, px, py, 12)) { options.scrub(plot.place.across.back(x), true); return; }
       if (moved) return;
       const at = nearest(plot, px, py, REACH[event.pointerType] || 18);
       plot.point(at, false);
@@ -160,7 +162,8 @@
       const { box } = plot.place;
       const middle = plot.at ? [plot.at.px, plot.at.py] : [(box.left + box.right) / 2, (box.top + box.bottom) / 2];
       const arrow = event.key.startsWith("Arrow");
-      if (arrow && event.shiftKey && nudge(event.key)) { /* moved */ }
+      if (arrow && event.shiftKey && options.scrub) options.scrub(plot.place.across.back(plot.place.across(plot.line ?? plot.scene.x.range[0]) + (event.key === "ArrowRight" || event.key === "ArrowUp" ? 3 : -3)), true);
+      else if (arrow && event.shiftKey && nudge(event.key)) { /* moved */ }
       else if (arrow) walk(event.key);
       else if ((event.key === "+" || event.key === "=") && options.zoom) zoomBy(2, ...middle);
       else if (event.key === "-" && options.zoom) zoomBy(0.5, ...middle);

@@ -10,7 +10,7 @@
 "use strict";
 (() => {
   const same = (a, b) => JSON.stringify(a) === JSON.stringify(b);
-  Explore.start = { file: null, text: null, set: {}, rpm: null, over: { name: "rpm", range: null }, zoom: null, start: null, slow: 100, views: {}, story: null };
+  Explore.start = { file: null, text: null, set: {}, rpm: null, over: { name: "rpm", range: null }, zoom: null, start: null, slow: 50, views: {}, story: null };
 
   // The address: `#rpm=678&set.follower.restitution=0.7` ----------------------------------------------------------------------
 
@@ -55,7 +55,7 @@
     need("rpm", kept.rpm === null || Number.isFinite(kept.rpm));
     need("slow", Number.isFinite(kept.slow) && kept.slow >= 1);
     need("over", isObject(kept.over) && typeof kept.over.name === "string" && (kept.over.range === null || isRange(kept.over.range)));
-    need("zoom", kept.zoom === null || (isObject(kept.zoom) && isRange(kept.zoom.x) && isRange(kept.zoom.y)));
+    need("zoom", kept.zoom === null || (isObject(kept.zoom) && isRange(kept.zoom.x) && (kept.zoom.y === null || isRange(kept.zoom.y))));
     need("start", kept.start === null || (isObject(kept.start) && Object.values(kept.start).every((each) => Number.isFinite(each))));
     need("story", kept.story === null || isObject(kept.story));
     need("views", Object.values(kept.views).every(isObject));

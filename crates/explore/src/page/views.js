@@ -10,7 +10,7 @@
 //   context: {
 //     state()                      the state now (never change it in place; see state.js)
 //     change(patch, { moving })    changes it; `moving` while something is dragged (one step of undo for the whole drag)
-//     option(name, otherwise), setOption(name, value)   options of this view, kept in the state
+//     option(name, otherwise), setOption(name, value, how, more)   options of this view, kept in the state; `more` changes with it
 //     model()                      `found` of the view `model` (numbers, units, corners...), null before the first answer
 //     value(number), assign(number, value, { moving })  a number of the model by its path, or "rpm"
 //     ask(question, { lane, coarse, rough, slow, silent })   -> Promise of `found`, or null when superseded or refused (the panel
@@ -119,7 +119,7 @@
       state: () => app.store.state,
       change: (patch, how) => app.store.change(patch, how),
       option: (name, otherwise) => (name in own() ? own()[name] : otherwise),
-      setOption: (name, value, how) => app.store.change({ views: { ...app.store.state.views, [view.name]: { ...own(), [name]: value } } }, how),
+      setOption: (name, value, how, more = {}) => app.store.change({ ...more, views: { ...app.store.state.views, [view.name]: { ...own(), [name]: value } } }, how),
       model: () => app.model,
       value: (number) => app.value(number),
       assign: (number, value, how) => app.assign(number, value, how),
