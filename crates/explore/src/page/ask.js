@@ -144,6 +144,7 @@
     return WebAssembly.compile(plain);
   };
 
+  // One worker is kept for quick questions, two take slow ones, so that a slow view does not wait for another.
   /** The program as a WebAssembly module inside the page: base64 of its gzip. */
   Explore.module = (base64) => {
     const compiled = unpack(base64.replace(/\s+/g, ""));
@@ -185,6 +186,6 @@
         },
       };
     };
-    return { ...Explore.pool([worker(false), worker(true)]), kind: "module", ready: compiled };
+    return { ...Explore.pool([worker(false), worker(true), worker(true)]), kind: "module", ready: compiled };
   };
 })();

@@ -9,7 +9,7 @@
 
   // Events of the document of `speeds --json`: what attractors begin, end and pass with, and separation -----------------------
 
-  const eventsOf = (document, varied) => {
+  const eventsOf = (sheet, varied) => {
     const found = new Map();
     const where = (event) => (varied === "rpm" ? event.speed_rpm : event.value ?? event.speed_rpm);
     const add = (event, what, attractor) => {
@@ -17,13 +17,15 @@
       const key = `${event.cause} ${where(event)}`;
       if (!found.has(key)) found.set(key, { ...event, at: where(event), whose: [] });
       found.get(key).whose.push(`${attractor.id} ${what}`);
+      const span = (attractor.to ?? attractor.to_rpm) - (attractor.from ?? attractor.from_rpm);
+      found.get(key).span = Math.max(found.get(key).span ?? 0, span);
     };
-    (document.attractors || []).forEach((attractor) => {
+    (sheet.attractors || []).forEach((attractor) => {
       add(attractor.birth, "begins", attractor);
       add(attractor.death, "ends", attractor);
       (attractor.passes || []).forEach((event) => add({ cause: "corner-impact", ...event }, "passes", attractor));
     });
-    if (document.detachment_rpm && varied === "rpm") found.set("separation", { cause: "separation", at: document.detachment_rpm, located: true, whose: [], error_rpm: document.detachment_error_rpm });
+    if (sheet.detachment_rpm && varied === "rpm") found.set("separation", { cause: "separation", at: sheet.detachment_rpm, located: true, whose: [], error_rpm: sheet.detachment_error_rpm });
     return [...found.values()].sort((a, b) => a.at - b.at);
   };
   const told = (event, name, unit) => {
@@ -43,7 +45,7 @@
   // The view ---------------------------------------------------------------------------------------------------------------
 
   Explore.view({
-    name: "diagram", title: "Bifurcation diagram", wide: true,
+    name: "diagram", title: "Bifurcation diagram",
     mount(panel, context) {
       const visited = { list: [null], at: 0 };
       const zoomTo = (zoom) => context.change({ zoom });
@@ -54,7 +56,7 @@
         zoomTo(visited.list[to]);
         return true;
       };
-      const plot = context.plot(panel.body, { label: "Bifurcation diagram", aspect: 0.52, least: 300, zoom: ({ x, y }) => zoomTo({ x, y }), back: () => step(-1) });
+      const plot = context.plot(panel.body, { label: "Bifurcation diagram", aspect: 0.66, least: 300, zoom: ({ x, y }) => zoomTo({ x, y }), back: () => step(-1) });
       const over = Explore.menu("Over", [["rpm", "speed (rpm)"]], "rpm", (name) => context.change({ over: { name, range: null }, zoom: null }));
       const shown = Explore.menu("Shows", Object.entries(SHOWN), "angle", (value) => context.setOption("shows", value, {}, context.state().zoom ? { zoom: { ...context.state().zoom, y: null } } : {}));
       const all = Explore.check("all attractors", false, (on) => context.setOption("all", on));
@@ -62,7 +64,7 @@
       const back = Explore.button("\u2190 Back", () => step(-1), { title: "The rectangle before (Escape)" });
       const on = Explore.button("Forward \u2192", () => step(1));
       const whole = Explore.button("Whole range", () => zoomTo(null));
-      const fields = ["From", "to"].map((label, index) => {
+      const fields = ["From", "To"].map((label, index) => {
         const input = Explore.element("input", { type: "text", inputmode: "decimal", onchange: () => {
           const range = [...seen.x];
           range[index] = Number(input.value.replace(",", "."));
@@ -73,7 +75,7 @@
       panel.options.append(over, shown, ...fields.map(({ element }) => element), all, events, back, on, whole);
       const key = Explore.element("div", {});
       panel.body.append(key);
-      const seen = { x: [0, 1], found: null, document: null, motions: null };
+      const seen = { x: [0, 1], found: null, sheet: null };
 
       /** The number that varies: its name, unit and range. */
       const varied = (state) => {
@@ -125,7 +127,7 @@
         const unit = { angle: "\u00b0", before: units.velocity, after: units.velocity, position: units.length }[which];
         const ys = column(found, which);
         const range = state.zoom && state.zoom.y ? state.zoom.y : which === "angle" ? [0, 360] : Explore.extent([ys], 0.04);
-        const list = context.option("events", true) && seen.document ? eventsOf(seen.document, axis.name) : [];
+        const list = context.option("events", true) && seen.sheet ? eventsOf(seen.sheet, axis.name) : [];
         const now = context.value(axis.name);
         const shownEvents = list.filter(({ at }) => at >= seen.x[0] && at <= seen.x[1]);
         plot.draw({
@@ -142,8 +144,12 @@
         heading(shownEvents, axis, found);
       };
       const heading = (list, axis, found) => {
-        const word = list.length ? list.slice(0, 3).map((event) => `${causeOf(event.cause)[0]} at ${Explore.number(event.at, 6)}`).join(", ") + (list.length > 3 ? ` and ${list.length - 3} more` : "") : null;
-        panel.heading(word ? `Over the ${axis.label}${axis.unit ? ` (${axis.unit})` : ""}: ${word}` : `Impacts over the ${axis.label}, ${Explore.number(seen.x[0], 5)} to ${Explore.quantity(seen.x[1], axis.unit, 5)}`);
+        // What concerns a thousandth of the range only, or is known by runs alone, is on the picture but not in the heading.
+        const wide = (seen.x[1] - seen.x[0]) / 100;
+        const main = list.filter((event) => event.located && (event.span ?? Infinity) > wide).map((event) => `${causeOf(event.cause)[0]} at ${Explore.number(event.at, 6)}`);
+        const named = main.slice(0, 3).join(", ") + (main.length > 3 ? ` and ${main.length - 3} more` : "");
+        const unit = axis.unit ? `\u00a0${axis.unit}` : "";
+        panel.heading(named ? `${named[0].toUpperCase()}${named.slice(1)}${main.length > 3 ? "" : unit}` : `Impacts over the ${axis.label}, ${Explore.number(seen.x[0], 5)} to ${Explore.number(seen.x[1], 5)}${unit}`);
         const failed = (found.failed || []).length;
         panel.note(failed ? `${failed} of ${found.values.length} values could not be run. ${found.failed[0].sentence}` : "Drag a rectangle to compute it anew. Drag the line to change the number in every view.");
       };
@@ -172,8 +178,8 @@
             draw(state);
           }
           if (coarse || !context.option("events", true)) return;
-          const document = await context.ask({ view: "speeds", ...question, count: 24, starts: 6 }, { lane: "diagram-events", slow: true, silent: true });
-          if (document) { seen.document = document; draw(context.state()); }
+          const sheet = await context.ask({ view: "speeds", ...question, over: { ...question.over, count: 16 }, count: 16, starts: 4 }, { lane: "diagram-events", slow: true, silent: true });
+          if (sheet) { seen.sheet = sheet; draw(context.state()); }
         },
         highlight(motion) {
           if (!motion || !seen.axis) { plot.mark([]); return; }

@@ -67,7 +67,8 @@ const Explore = {};
     let [low, high] = [Infinity, -Infinity];
     for (const list of lists) for (const value of list) if (value !== null && Number.isFinite(value)) { if (value < low) low = value; if (value > high) high = value; }
     if (low > high) return [0, 1];
-    const more = high > low ? (high - low) * margin : Math.abs(low) * margin || margin;
+    // Values that differ by rounding alone are one value.
+    const more = high - low > 1e-9 * Math.max(Math.abs(low), Math.abs(high)) ? (high - low) * margin : Math.abs(low) * margin || margin;
     return [low - more, high + more];
   };
 

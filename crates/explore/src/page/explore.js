@@ -35,10 +35,12 @@
     };
     /** Another model: its speed, its range and its start are its own. */
     app.take = (file, text, step = null) => app.store.change({ file, text, set: {}, rpm: step ? now().rpm : null, over: { name: "rpm", range: null }, zoom: null, start: null, story: null }, { step });
-    /** The speed that a model is shown at first: the middle of its study or of its usual range. */
+    /** The speed that a model is shown at first: the roundest near the middle of its study or of its usual range. */
     app.usual = () => {
-      const range = app.model.study || app.model.speeds;
-      return range ? Number(((range[0] + range[1]) / 2).toPrecision(3)) : 600;
+      const [low, high] = app.model.study || app.model.speeds || [400, 800];
+      const middle = (low + high) / 2;
+      const round = [1000, 500, 200, 100, 50, 20, 10, 5, 2, 1].map((unit) => Math.round(middle / unit) * unit).find((each) => each > 0 && Math.abs(each - middle) <= (high - low) / 8);
+      return round || Number(middle.toPrecision(3));
     };
     app.select = (motion, from) => { app.selecting.forEach((fn) => fn(motion)); app.views.highlight(motion, from); };
     app.choose = (motion) => {

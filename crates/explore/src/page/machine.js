@@ -60,13 +60,15 @@
     const follower = outline.follower || [];
     if (frame.flash > 0 && frame.touch) {
       const size = 14 + 34 * frame.flash;
-      pen.marks([across(frame.touch[0])], [up(frame.touch[1] + raise)], "disc", size, theme.gold, 0.25 + 0.5 * frame.flash);
+      pen.marks([across(frame.touch[0])], [up(frame.touch[1])], "disc", size, theme.gold, 0.25 + 0.5 * frame.flash);
     }
     if (follower.length) draw(turned(follower, 0, raise), { stroke: theme.blue, width: 2, fill: theme.paper, close: follower.length > 2 });
-    const foot = follower.length ? Math.max(...follower.map(([, y]) => y)) : frame.tip;
-    draw([[0, 0], [foot + raise, box.y[1]]], { stroke: theme.blue, width: 5 });
-    pen.text(8, 14, `cam angle ${Explore.fixed(((Explore.degrees(angle) % 360) + 360) % 360, 1)}\u00b0`, { colour: theme.soft });
-    pen.text(8, 30, frame.state, { colour: theme.soft });
+    const foot = follower.length ? Math.max(...follower.map(([, y]) => y)) : frame.tip + box.radius * 0.16;
+    // A point is drawn as the end of a cone.
+    if (!follower.length) draw([[0, box.radius * 0.07, -box.radius * 0.07], [frame.tip + raise, foot + raise, foot + raise]], { stroke: theme.blue, width: 1.5, fill: theme.blue, close: true });
+    draw([[0, 0], [foot + raise, box.y[1] * 2]], { stroke: theme.blue, width: Math.max(3, (across(box.radius) - across(0)) * 0.09) });
+    pen.text(4, height - 24, `cam angle ${Explore.fixed(((Explore.degrees(angle) % 360) + 360) % 360, 1)}\u00b0`, { colour: theme.soft });
+    pen.text(4, height - 9, frame.state, { colour: theme.soft });
   };
 
   // The two strips --------------------------------------------------------------------------------------------------------------
@@ -87,11 +89,13 @@
     const value = name === "gap" ? Explore.column(found, "gap_") : Explore.column(found, "contact_force_");
     const range = Explore.extent([value], 0.08);
     if (name === "gap") range[0] = Math.min(range[0], 0);
-    if (name === "force") { range[0] = Math.min(0, range[0]); range[1] = Math.max(range[1], 1e-9); }
+    const silent = name === "force" && !value.some((each) => each > 0);
+    if (name === "force") [range[0], range[1]] = silent ? [0, 1] : [Math.min(0, range[0]), range[1]];
     const row = (index) => [["time", `${Explore.fixed(time[index], 2)} ms`], ["cam angle", `${Explore.fixed(((angle[index] % 360) + 360) % 360, 1)}\u00b0`],
       [name === "gap" ? "gap" : "contact force", Explore.quantity(value[index], name === "gap" ? units.length : units.force, 4)]];
     return {
-      x, y: { label: name === "gap" ? "gap" : "contact force", unit: name === "gap" ? units.length : units.force, range },
+      message: silent ? "impacts only" : null,
+      x, y: { ticks: silent ? [0] : undefined, label: name === "gap" ? "gap" : "contact force", unit: name === "gap" ? units.length : units.force, range },
       layers: [
         name === "gap" ? { kind: "band", x: time, low: time.map(() => 0), high: value, colour: "blue", alpha: 0.18 } : null,
         { kind: "line", x: time, y: value, colour: name === "gap" ? "blue" : "green", width: 1.8, hover: (index) => ({ rows: row(index), known: "computed" }) },
@@ -109,7 +113,7 @@
   };
 
   Explore.view({
-    name: "machine", title: "The machine in motion",
+    name: "machine", title: "The machine in motion", place: "machine",
     mount(panel, context) {
       const canvas = make("canvas", { class: "machine", role: "img", tabindex: "0", "aria-label": "The cam and its follower" });
       const strips = make("div", { class: "strips" });
@@ -134,9 +138,11 @@
         const angle = motion.angle0 + motion.rate * time;
         const gapNow = at(motion.time, motion.gap, time);
         const flashes = motion.impacts.filter(({ when }) => time >= when && time - when < motion.glow);
-        const flash = flashes.length ? Math.max(...flashes.map(({ when, strength }) => (1 - (time - when) / motion.glow) * (0.35 + 0.65 * strength))) : 0;
+        const bright = ({ when, strength }) => (1 - (time - when) / motion.glow) * (0.35 + 0.65 * strength);
+        const last = flashes[flashes.length - 1];
+        const flash = last ? bright(last) : 0;
         const contact = gapNow !== null && gapNow <= motion.largest * 1e-9;
-        return { angle, position: at(motion.time, motion.position, time), flash, touch: [0, motion.tip], tip: motion.tip,
+        return { angle, position: at(motion.time, motion.position, time), flash, touch: [0, motion.tip + (last ? last.height - cam.lift[0] : 0)], tip: motion.tip,
           state: contact ? `on the cam, force ${Explore.quantity(at(motion.time, motion.force, time), motion.units.force, 3)}` : `in flight, gap ${Explore.quantity(gapNow, motion.units.length, 3)}` };
       };
       const show = () => {
@@ -173,7 +179,7 @@
         const part = motion ? clock.time / motion.end : 0;
         motion = { time, end, units, gap: gaps, position: Explore.column(found, "position_"), force: Explore.column(found, "contact_force_"),
           angle0: Explore.radians(Explore.angles(found, "cam_angle_")[0] || 0), rate: (rpm * Math.PI) / 30, largest: Math.max(1e-300, ...gaps.filter((each) => each !== null)), glow: end / 25,
-          tip: tipOf(cam.outline), impacts: [...kinds.keys()].filter((index) => kinds[index] === "impact").map((index) => ({ when: when[index], strength: hard[index] / hardest })) };
+          tip: tipOf(cam.outline), impacts: [...kinds.keys()].filter((index) => kinds[index] === "impact").map((index) => ({ when: when[index], height: Explore.column(events, "position_")[index], strength: hard[index] / hardest })) };
         clock.time = part * end;
         return motion;
       };

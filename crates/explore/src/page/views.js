@@ -90,7 +90,7 @@
     const error = make("p", { class: "sentence", role: "alert", hidden: true });
     const buttons = make("div", { class: "save" });
     const element = make("section", { class: `panel${view.wide ? " wide-panel" : ""}`, id, "aria-labelledby": `${id}-heading`, tabindex: "-1" },
-      make("div", { class: "panel-head" }, heading, make("p", { class: "panel-state" }, known, " ", status)), options, error, body, note, buttons);
+      make("div", { class: "panel-head" }, heading, make("p", { class: "panel-state" }, status, " ", known)), options, error, body, note, buttons);
     return {
       element, body, options, buttons, view,
       heading: (text) => { if (heading.textContent !== text) heading.textContent = text; },
