@@ -10,7 +10,7 @@
   const AGE = 150;
   const COARSE_AGE = 400;
 
-  /** Lanes over workers `{ slow: may take slow questions, run(text) -> Promise<answer>, stop() }`. */
+  /** Lanes over workers `{ slow: false, true or "last": the slowest questions that it takes, run(text) -> Promise<answer>, stop() }`. */
   Explore.pool = (workers) => {
     const waiting = new Map();
     const running = new Set();
@@ -35,9 +35,10 @@
     };
     // Quick questions first, in the order in which they came. A lane whose coarse question runs waits for it, so that answers
     // come in order; a superseded full question is waited for by nobody.
-    const free = (job) => workers.find((worker) => !worker.busy && (!job.slow || worker.slow));
+    const rank = (slow) => (slow === "last" ? 2 : Number(Boolean(slow)));
+    const free = (job) => workers.find((worker) => !worker.busy && rank(job.slow) <= rank(worker.slow));
     const next = () => {
-      [...waiting.values()].sort((a, b) => Number(a.slow) - Number(b.slow)).forEach((job) => {
+      [...waiting.values()].sort((a, b) => rank(a.slow) - rank(b.slow)).forEach((job) => {
         if ([...running].some((each) => each.lane === job.lane && each.coarse)) return;
         const worker = free(job);
         if (!worker) return;
@@ -109,7 +110,7 @@
       }
     };
     alive();
-    return { ...Explore.pool([caller(false), caller(false), caller(true), caller(true)]), kind: "server" };
+    return { ...Explore.pool([caller(false), caller(false), caller(true), caller("last")]), kind: "server" };
   };
 
   // The module -----------------------------------------------------------------------------------------------------------
@@ -145,7 +146,7 @@
     return WebAssembly.compile(plain);
   };
 
-  // One worker is kept for quick questions, two take slow ones, so that a slow view does not wait for another.
+  // One worker is kept for quick questions, one for slow ones at most, and one takes those of many seconds.
   /** The program as a WebAssembly module inside the page: base64 of its gzip. */
   Explore.module = (base64) => {
     const compiled = unpack(base64.replace(/\s+/g, ""));
@@ -187,6 +188,6 @@
         },
       };
     };
-    return { ...Explore.pool([worker(false), worker(true), worker(true)]), kind: "module", ready: compiled };
+    return { ...Explore.pool([worker(false), worker(true), worker("last")]), kind: "module", ready: compiled };
   };
 })();

@@ -80,7 +80,7 @@
       host.replaceChildren(...[...groups].map(([name, numbers], index) => {
         const own = numbers.map((number) => Explore.numberRow(number, (value, how) => app.assign(number.path, value, how), (now) => app.unassign(now.path)));
         rows.push(...own);
-        return make("details", { class: "group", open: roomy ? name !== "study" : index === 0 && false }, make("summary", {}, GROUPS[name] || name), ...own.map(({ element }) => element));
+        return make("details", { class: "group", open: roomy ? name !== "study" : index === 0 && false }, make("summary", {}, GROUPS[name] || name), make("div", { class: "rows" }, ...own.map(({ element }) => element)));
       }));
     };
     return (model) => {

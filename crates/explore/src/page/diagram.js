@@ -106,7 +106,7 @@
           cam_angle_rad: Explore.radians(angles[index]), position: Explore.column(found, "position_")[index], velocity: Explore.column(found, "velocity_after_")[index], label: "impact" });
         const units = context.model().units;
         return {
-          kind: "points", x: values, y: ys, size: crowded ? 1.4 : 3, shape: groups && !crowded ? undefined : "dot", colour: "blue", alpha: crowded ? 0.75 : 0.9,
+          kind: "points", x: values, y: ys, size: crowded ? 1.2 : 3, shape: groups && !crowded ? undefined : "dot", colour: "blue", alpha: crowded ? 0.75 : 0.9,
           colours: groups && groups.map((each) => Explore.colours[((each ?? 1) - 1 + 600) % 6]), shapes: groups && groups.map((each) => (crowded ? "dot" : Explore.shapes[((each ?? 1) - 1 + 600) % 6])),
           hover: (index) => ({ title: groups ? `Attractor ${groups[index]}` : "Impact", rows: [[axis.label, Explore.quantity(values[index], axis.unit, 8)], ["impact angle", `${Explore.fixed(angles[index], 3)}\u00b0`],
             ["velocity before", Explore.quantity(velocity[index], units.velocity, 5)]], known: "computed; click to follow this motion" }),
@@ -177,7 +177,9 @@
           fields.forEach(({ input }, index) => { if (document.activeElement !== input) input.value = Explore.number(x[index], 7).replace("\u2212", "-"); });
           const tall = state.zoom && state.zoom.y && which === "angle" ? Math.min(6, Math.max(1, 360 / (state.zoom.y[1] - state.zoom.y[0]))) : 1;
           const question = { ...(axis.name === "rpm" ? {} : { rpm: state.rpm }), over: { name: axis.name, low: x[0], high: x[1], log: axis.log } };
-          const found = await context.ask({ view: "diagram", ...question, over: { ...question.over, count: 400 }, transient: 300, record: Math.round(100 * tall), attractors: context.option("all", false) },
+          // About a value for each pixel across, so that a cloud has no empty columns.
+          const count = Math.min(600, Math.max(240, 10 * Math.round((plot.place ? plot.place.box.right - plot.place.box.left : panel.body.clientWidth - 80) / 10)));
+          const found = await context.ask({ view: "diagram", ...question, over: { ...question.over, count }, transient: 300, record: Math.round(80 * tall), attractors: context.option("all", false) },
             { coarse, rough: { over: { ...question.over, count: 90 }, transient: 120, record: 30, attractors: false } });
           if (found) {
             seen.turn = (seen.turn || 0) + (seen.found === found ? 0 : 1);
@@ -185,7 +187,7 @@
             draw(state);
           }
           if (coarse || !context.option("events", true)) return;
-          const sheet = await context.ask({ view: "speeds", ...question, over: { ...question.over, count: 16 }, count: 16, starts: 4 }, { lane: "diagram-events", slow: true, silent: true });
+          const sheet = await context.ask({ view: "speeds", ...question, over: { ...question.over, count: 16 }, count: 16, starts: 4 }, { lane: "diagram-events", slow: "last", silent: true });
           if (sheet) { seen.sheet = sheet; seen.whose = asked(state); draw(context.state()); }
         },
         highlight(motion) {

@@ -113,7 +113,7 @@ const Explore = {};
   /** The frame's box and the two scales of a scene at a size; `across(x)`, `up(y)` and their `.back`. */
   Explore.layout = (scene, width, height) => {
     const bare = scene.x.bare;
-    const box = bare ? { left: 2, top: 2, right: width - 2, bottom: height - 2 } : { left: width < 420 ? 52 : 62, top: 12, right: width - 12, bottom: height - 42 };
+    const box = bare ? { left: 2, top: 2, right: width - 2, bottom: height - 2 } : { left: width < 420 ? 52 : 62, top: 12, right: width - 18, bottom: height - 42 };
     if (scene.equal) {
       const [spanX, spanY] = [scene.x, scene.y].map(({ range }) => range[1] - range[0] || 1);
       const per = Math.min((box.right - box.left) / spanX, (box.bottom - box.top) / spanY);
@@ -145,7 +145,7 @@ const Explore = {};
       to.globalAlpha = style.alpha ?? 1;
       to.beginPath();
       trace();
-      if (style.fill) { to.fillStyle = style.fill; to.fill("evenodd"); }
+      if (style.fill) { to.fillStyle = style.fill; to.fill(style.close ? "evenodd" : "nonzero"); }
       if (style.stroke) {
         to.strokeStyle = style.stroke; to.lineWidth = style.width ?? 1.5; to.setLineDash(style.dash || []);
         to.lineJoin = "round"; to.lineCap = style.cap || "butt"; to.stroke();
@@ -230,7 +230,7 @@ const Explore = {};
     const parts = [];
     const escape = (text) => String(text).replace(/[&<>"]/g, (sign) => `&#${sign.charCodeAt(0)};`);
     const at = (value) => Math.round(value * 100) / 100;
-    const look = (style) => [`fill="${style.fill || "none"}"`, style.fill ? 'fill-rule="evenodd"' : "", style.stroke ? `stroke="${style.stroke}" stroke-width="${style.width ?? 1.5}"` : "",
+    const look = (style) => [`fill="${style.fill || "none"}"`, style.fill && style.close ? 'fill-rule="evenodd"' : "", style.stroke ? `stroke="${style.stroke}" stroke-width="${style.width ?? 1.5}"` : "",
       style.dash && style.dash.length ? `stroke-dasharray="${style.dash.join(" ")}"` : "", (style.alpha ?? 1) < 1 ? `opacity="${style.alpha}"` : ""].filter(Boolean).join(" ");
     const trace = () => {
       const d = [];

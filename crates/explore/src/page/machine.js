@@ -62,6 +62,10 @@
       const size = 14 + 34 * frame.flash;
       pen.marks([across(frame.touch[0])], [up(frame.touch[1])], "disc", size, theme.gold, 0.25 + 0.5 * frame.flash);
     }
+    if (frame.ghost !== null && Number.isFinite(frame.ghost)) {
+      const height = frame.tip + frame.ghost - lift[0];
+      draw([[-box.radius * 0.3, box.radius * 0.3], [height, height]], { stroke: theme.purple, width: 2, dash: [5, 3] });
+    }
     if (follower.length) draw(turned(follower, 0, raise), { stroke: theme.blue, width: 2, fill: theme.paper, close: follower.length > 2 });
     const foot = follower.length ? Math.max(...follower.map(([, y]) => y)) : frame.tip + box.radius * 0.16;
     // A point is drawn as the end of a cone.
@@ -73,7 +77,7 @@
 
   // The two strips --------------------------------------------------------------------------------------------------------------
 
-  const strip = (found, units, name) => {
+  const strip = (found, units, name, ghost) => {
     const angle = Explore.angles(found, "cam_angle_");
     const begin = Explore.column(found, "time_")[0] || 0;
     const time = Explore.column(found, "time_").map((each) => (each - begin) * 1e3);
@@ -87,7 +91,7 @@
     const camVelocity = Explore.column(events, "cam_velocity_");
     const angles = Explore.angles(events, "cam_angle_");
     const value = name === "gap" ? Explore.column(found, "gap_") : Explore.column(found, "contact_force_");
-    const range = Explore.extent([value], 0.08);
+    const range = Explore.extent([value, ...(ghost ? [ghost[name]] : [])], 0.08);
     if (name === "gap") range[0] = Math.min(range[0], 0);
     const silent = name === "force" && !value.some((each) => each > 0);
     if (name === "force") [range[0], range[1]] = silent ? [0, 1] : [Math.min(0, range[0]), range[1]];
@@ -99,6 +103,7 @@
       layers: [
         name === "gap" ? { kind: "band", x: time, low: time.map(() => 0), high: value, colour: "blue", alpha: 0.18 } : null,
         { kind: "line", x: time, y: value, colour: name === "gap" ? "blue" : "green", width: 1.8, hover: (index) => ({ rows: row(index), known: "computed" }) },
+        ghost ? { kind: "line", x: ghost.part.map((each) => each * end), y: ghost[name], colour: "purple", width: 1.6, dash: [5, 3] } : null,
         { kind: "points", x: impacts.map((index) => when[index]), y: impacts.map(() => 0), colour: "vermilion", shape: "triangle", size: 9,
           hover: (index) => {
             const each = impacts[index];
@@ -121,7 +126,7 @@
       const clock = { time: 0, playing: !still(), last: null };
       const scrub = (ms) => { clock.playing = false; clock.time = Math.max(0, ms / 1e3); show(); label(); };
       const [gap, force] = ["Gap between follower and cam", "Contact force"].map((name) => context.plot(strips, { label: name, height: (width) => (width < 420 ? 132 : 140), scrub }));
-      let [cam, motion, box, theme] = [null, null, null, null];
+      let [cam, motion, box, theme, drawn, ghost] = [null, null, null, null, null, null];
 
       const play = Explore.button("Pause", () => { clock.playing = !clock.playing; clock.last = null; label(); run(); });
       const stepBy = (part) => { clock.playing = false; if (motion) clock.time = (clock.time + motion.end * (1 + part)) % motion.end; label(); show(); };
@@ -142,7 +147,8 @@
         const last = flashes[flashes.length - 1];
         const flash = last ? bright(last) : 0;
         const contact = gapNow !== null && gapNow <= motion.largest * 1e-9;
-        return { angle, position: at(motion.time, motion.position, time), flash, touch: [0, motion.tip + (last ? last.height - cam.lift[0] : 0)], tip: motion.tip,
+        const shadow = ghost ? at(ghost.part, ghost.position, time / motion.end) : null;
+        return { ghost: shadow, angle, position: at(motion.time, motion.position, time), flash, touch: [0, motion.tip + (last ? last.height - cam.lift[0] : 0)], tip: motion.tip,
           state: contact ? `on the cam, force ${Explore.quantity(at(motion.time, motion.force, time), motion.units.force, 3)}` : `in flight, gap ${Explore.quantity(gapNow, motion.units.length, 3)}` };
       };
       const show = () => {
@@ -183,7 +189,22 @@
         clock.time = part * end;
         return motion;
       };
+      const drawStrips = () => { gap.draw(strip(drawn, motion.units, "gap", ghost)); force.draw(strip(drawn, motion.units, "force", ghost)); };
+      // A motion pointed at in another view: its two revolutions over the same cam angles, whatever its speed.
+      const follow = async (to) => {
+        const question = to && drawn ? Explore.questionOf(to, context) : null;
+        if (!question) { if (ghost) { ghost = null; drawStrips(); show(); } return; }
+        const found = await context.ask({ view: "motion", ...question, transient: 0, revolutions: 2, samples: 180 }, { lane: "machine-pointed", silent: true, coarse: true });
+        if (!found || pointed !== to) return;
+        const turn = Explore.column(found, "turned_");
+        const whole = motion.angle0 + motion.rate * motion.end;
+        ghost = { part: turn.map((each) => ((each - (turn[0] || 0)) + question.start.cam_angle_rad - motion.angle0) / (whole - motion.angle0)), gap: Explore.column(found, "gap_"), force: Explore.column(found, "contact_force_"), position: Explore.column(found, "position_") };
+        drawStrips();
+        show();
+      };
+      let pointed = null;
       return {
+        highlight(to) { pointed = to; follow(to); },
         async update(state, { coarse }) {
           slow.set(String(state.slow));
           const [shape, found] = await Promise.all([
@@ -197,8 +218,9 @@
           const { impacts } = taken;
           panel.heading(impacts.length ? `${impacts.length} impact${impacts.length > 1 ? "s" : ""} in two revolutions` : taken.largest > 1e-290 && taken.gap.some((each) => each > 0) ? "The follower flies without an impact in two revolutions" : "The follower stays on the cam");
           canvas.setAttribute("aria-label", `The cam and its follower at ${Explore.number(state.rpm)} rpm: ${panel.view.title}`);
-          gap.draw(strip(found, taken.units, "gap"));
-          force.draw(strip(found, taken.units, "force"));
+          drawn = found;
+          ghost = null;
+          drawStrips();
           show();
           run();
         },

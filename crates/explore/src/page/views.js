@@ -15,7 +15,8 @@
 //     value(number), assign(number, value, { moving })  a number of the model by its path, or "rpm"
 //     ask(question, { lane, coarse, rough, slow, silent })   -> Promise of `found`, or null when superseded or refused (the panel
 //                                  says so). Fills in the model; the same question is not asked twice. `rough` are the fields that
-//                                  a coarse question has instead. `slow` for answers of over 0.2 s.
+//                                  a coarse question has instead. `slow` for answers of over 0.2 s, "last" for
+//                                  those of many seconds, which must not hold up the slow ones.
 //     answer(lane)                 the last whole answer of a lane: { found, command, known, how }
 //     plot(host, options)          an Explore.plot whose select and choose are linked
 //     select(motion)               shows a motion in every view; null for none.   onSelect(fn) is told of it
@@ -148,7 +149,7 @@
         const done = () => { if (last.key === key && !silent) panel.status(""); };
         last.promise = app.transport.ask(whole, lane, { slow, coarse }).then((answer) => {
           done();
-          if (answer.error) { last.answer = null; panel.error(answer.error); app.refused(answer.error); return null; }
+          if (answer.error) { last.answer = null; panel.error(answer.error); return null; }
           last.answer = { ...answer, coarse };
           panel.error(null);
           if (!silent) panel.known(answer.known, answer.how);
