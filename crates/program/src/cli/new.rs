@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::ValueEnum;
 
 use super::{CommandError, Exit, Session};
-use crate::show::command::shell_word;
+use corner_impact::command::shell_word;
 use corner_impact::file::{self, Output};
 
 /// Writes a commented model file to start from.

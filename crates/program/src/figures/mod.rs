@@ -24,7 +24,7 @@ mod trace;
 
 use serde::Serialize;
 
-use crate::show::command::command;
+use corner_impact::command::command;
 use corner_impact::model::Units;
 use corner_impact::orbit::Stability;
 use corner_impact::study::survey::{self, Spacing};
@@ -33,7 +33,7 @@ use corner_impact_plot::{self, Colour, Figure, FigureAxis, Series, Stroke};
 pub use basins::{basins_figure, shares_figure};
 pub use branches::branches_figure;
 pub use cam::{CornerMark, corner_marks};
-pub use cam_shape::{Outline, Piece, cam_figure, shape_figure};
+pub use cam_shape::{cam_figure, shape_figure};
 pub use chaos::chaos_figure;
 pub use chart::{Coloured, chart_figure};
 pub use composition::{Composition, Line, Neighbour};
