@@ -1,5 +1,6 @@
 //! The one function from question to answer.
 
+use corner_impact::cam::Cam;
 use corner_impact::command::command;
 use corner_impact::known::Evidence;
 use corner_impact::model::{Model, Units};
@@ -9,6 +10,7 @@ use corner_impact::progress::Unwatched;
 use corner_impact::study::attractors::{Resolution, Step};
 use corner_impact::study::basins::{BasinSection, SectionStarts};
 use corner_impact::study::design::{Asked, Design, design};
+use corner_impact::study::local::NextToCorner;
 use corner_impact::study::locate::{Located, locate};
 use corner_impact::study::orbit::{OrbitQuery, Orbits, orbits};
 use corner_impact::study::simulate::Simulation;
@@ -18,7 +20,6 @@ use corner_impact::study::verify::{External, Verification, verify};
 use serde::Serialize;
 
 use crate::diagram::{Diagram, GridBasins};
-use crate::local::NextToCorner;
 use crate::machine::CamShape;
 use crate::model::{ModelPage, Template};
 use crate::motion::{LongRunFound, MotionFound};
@@ -112,13 +113,11 @@ fn find(changed: &ChangedModel, given: &Model, model: &Model, view: &View) -> Re
         View::Motion(asked) => {
             let found = MotionFound::of(model, asked)?;
             let length = asked.transient.saturating_add(asked.revolutions);
-            let options = format!(
-                "--rpm {} --revolutions {length} --drawn {} --points-per-revolution {}{} --out motion.csv",
-                asked.rpm,
-                asked.revolutions,
-                asked.samples.max(1),
-                asked.start.options()
-            );
+            let shown = match asked.samples {
+                0 => "--events events.csv".to_owned(),
+                samples => format!("--drawn {} --points-per-revolution {samples} --out motion.csv", asked.revolutions),
+            };
+            let options = format!("--rpm {} --revolutions {length}{} {shown}", asked.rpm, asked.start.options());
             (Found::Motion(found), again("simulate", options), Evidence::Computed)
         }
         View::LongRun { rpm, start } => {
@@ -159,7 +158,7 @@ fn find(changed: &ChangedModel, given: &Model, model: &Model, view: &View) -> Re
         }
         View::Local => {
             let found = verify(model, External::LeftOut)?;
-            (Found::Local(NextToCorner::of(model, &found)?), None, Evidence::Computed)
+            (Found::Local(NextToCorner::new(model, &Cam::new(model)?, &found)?), None, Evidence::Computed)
         }
         View::Design { rpm, count, needs } => {
             let needs = needs.iter().map(|text| Ok((text.clone(), text.parse().map_err(need(text))?)));
@@ -202,7 +201,7 @@ fn basins(model: &Model, asked: &BasinsRequest) -> Result<GridBasins, Refusal> {
     let grid = section.grid(asked.grid, asked.position, asked.velocity)?;
     let found = SectionStarts::Grid(grid).basins(&section.map.machine, Budget::SURVEY, None, &Unwatched)?;
     let border = asked.boundary.then(|| section.border(&grid, &found));
-    Ok(GridBasins::of(found, border.as_ref()))
+    Ok(GridBasins::of(found, &grid, border.as_ref()))
 }
 
 fn basins_options(asked: &BasinsRequest) -> String {

@@ -6,7 +6,7 @@ use corner_impact::flight::State;
 use corner_impact::model::Model;
 use corner_impact::orbit::long_run::Budget;
 use corner_impact::simulate::EventKind;
-use corner_impact::study::basins::{BasinBoundary, Basins, Curve};
+use corner_impact::study::basins::{BasinBoundary, Basins, Curve, Grid};
 use corner_impact::study::diagram::on_attractors;
 use corner_impact::study::survey::{
     Beginning, RecordBlock, RecordRow, Sample, Section, Seen, Survey, Sweep, SweepError, SweepStart,
@@ -131,27 +131,43 @@ struct Boundary {
 
 impl GridBasins {
     /// Takes what was found on a grid.
-    pub(crate) fn of(basins: Basins, border: Option<&BasinBoundary>) -> Self {
+    pub(crate) fn of(basins: Basins, grid: &Grid, border: Option<&BasinBoundary>) -> Self {
         let place = |part: &Option<usize>| part.and_then(|part| i64::try_from(part).ok()).unwrap_or(-1);
         let cell_endings = basins.cells.iter().map(place).collect();
-        Self { basins, cell_endings, boundary: border.map(Boundary::of) }
+        Self { basins, cell_endings, boundary: border.map(|border| Boundary::of(border, grid)) }
     }
 }
 
 impl Boundary {
-    fn of(border: &BasinBoundary) -> Self {
-        /// Most points of a curve: more than a screen resolves.
-        const MOST: usize = 1000;
+    fn of(border: &BasinBoundary, grid: &Grid) -> Self {
         let pair = |state: &State| [state.position, state.velocity];
-        let curve = |curve: &Curve| {
-            let points: Vec<[f64; 2]> = curve.points().map(|state| pair(&state)).collect();
-            let step = points.len().div_ceil(MOST).max(1);
-            points.into_iter().step_by(step).collect()
-        };
         Self {
             stable: border.stable.iter().map(pair).collect(),
             saddles: border.saddles.iter().map(pair).collect(),
-            curves: border.curves.iter().map(curve).collect(),
+            curves: border.curves.iter().flat_map(|curve| drawn(curve, grid)).collect(),
         }
     }
+}
+
+/// Pieces of a curve inside the ranges of a grid, with the points that a screen can tell apart.
+fn drawn(curve: &Curve, grid: &Grid) -> Vec<Vec<[f64; 2]>> {
+    /// Smallest distance of neighbouring points, as a share of the ranges.
+    const STEP: f64 = 1.0 / 500.0;
+    let place = |value: f64, [low, high]: [f64; 2]| (value - low) / (high - low);
+    let mut pieces: Vec<Vec<[f64; 2]>> = vec![Vec::new()];
+    let mut last = [f64::INFINITY; 2];
+    for State { position, velocity } in curve.points() {
+        let at = [place(position, grid.positions), place(velocity, grid.velocities)];
+        if at.iter().any(|part| !(-STEP..=1.0 + STEP).contains(part)) {
+            last = [f64::INFINITY; 2];
+            pieces.push(Vec::new());
+        } else if at.iter().zip(last).any(|(one, other)| (one - other).abs() >= STEP) {
+            last = at;
+            if let Some(piece) = pieces.last_mut() {
+                piece.push([position, velocity]);
+            }
+        }
+    }
+    pieces.retain(|piece| piece.len() > 1);
+    pieces
 }

@@ -14,14 +14,15 @@
 
 mod answer;
 mod diagram;
-mod local;
 mod machine;
 mod model;
 mod motion;
+mod page;
 mod question;
 mod refusal;
 
 pub use answer::{Answer, answer};
+pub use page::{PageModel, PageWords, SCRIPTS, STYLE, Transport, mounting, page};
 pub use question::{ChangedModel, Question};
 pub use refusal::Refusal;
 

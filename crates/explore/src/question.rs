@@ -169,28 +169,32 @@ pub struct StartRequest {
     /// Velocity.
     #[serde(default)]
     pub velocity: Option<f64>,
+    /// Velocity relative to the cam at which the follower leaves it, in the place of both.
+    #[serde(default)]
+    pub relative_velocity: Option<f64>,
 }
 
 impl StartRequest {
     /// The start.
     pub(crate) fn start(self) -> Result<Start, Refusal> {
         let cam_angle = self.cam_angle_rad;
-        match (self.position, self.velocity) {
+        match (self.position, self.velocity, self.relative_velocity) {
             _ if !(0.0..std::f64::consts::TAU).contains(&cam_angle) => {
                 Err(Refusal::of_words(format!("start: cam angle = {cam_angle}: must be from 0 to below 2 pi")))
             }
-            (None, None) => Ok(Start { cam_angle, follower: Placed::OnCam(0.0) }),
-            (Some(position), Some(velocity)) => {
+            (None, None, leaving) => Ok(Start { cam_angle, follower: Placed::OnCam(leaving.unwrap_or(0.0)) }),
+            (Some(position), Some(velocity), None) => {
                 Ok(Start { cam_angle, follower: Placed::At(State { position, velocity }) })
             }
-            _ => Err(Refusal::of_words("start: position and velocity belong together")),
+            _ => Err(Refusal::of_words("start: takes a position and a velocity, or a relative velocity")),
         }
     }
 
     /// Options of a command for this start, each after a blank.
     pub(crate) fn options(self) -> String {
         let state = self.position.zip(self.velocity);
-        let state = state.map_or(String::new(), |(position, velocity)| format!(" --state={position},{velocity}"));
+        let leaving = self.relative_velocity.map_or(String::new(), |velocity| format!(" --relative-velocity {velocity}"));
+        let state = state.map_or(leaving, |(position, velocity)| format!(" --state={position},{velocity}"));
         if self.cam_angle_rad == 0.0 { state } else { format!(" --start-angle {}{state}", self.cam_angle_rad) }
     }
 }
