@@ -10,7 +10,7 @@
   const AGE = 150;
   const COARSE_AGE = 400;
 
-  /** Lanes over workers `{ slow: may take slow questions, run(text) -> Promise<text>, stop() }`. */
+  /** Lanes over workers `{ slow: may take slow questions, run(text) -> Promise<answer>, stop() }`. */
   Explore.pool = (workers) => {
     const waiting = new Map();
     const running = new Set();
@@ -59,11 +59,11 @@
         then(value);
         next();
       };
-      worker.run(job.text).then(finish((text) => {
+      worker.run(job.text).then(finish((answer) => {
         counts.answered += 1;
         counts.times.push([job.lane, job.coarse, performance.now() - job.began]);
         if (counts.times.length > 2000) counts.times.shift();
-        if (job.dropped) job.reject(Explore.superseded); else try { job.resolve(JSON.parse(text)); } catch (problem) { job.reject(problem); }
+        if (job.dropped) job.reject(Explore.superseded); else job.resolve(answer);
       }), finish((problem) => job.reject(problem)));
     };
     return {
@@ -96,7 +96,7 @@
             throw problem.name === "AbortError" ? Explore.superseded : new Error("The program has ended. Start it again with corner-impact explore, then load this page again.");
           }
           if (!response.ok) throw new Error((await response.text()) || `The program answered with status ${response.status}.`);
-          return response.text();
+          return response.json();
         },
         stop: () => controller && controller.abort(),
       };
@@ -131,7 +131,8 @@
       if (data.module) { ready = WebAssembly.instantiate(data.module, {}); ready.catch(() => {}); return; }
       try {
         instance = await ready;
-        self.postMessage({ text: reply(data.text) });
+        // Parsed here: four megabytes of text would hold up the page.
+        self.postMessage({ answer: JSON.parse(reply(data.text)) });
       } catch (problem) {
         self.postMessage({ failed: String(problem && problem.message ? problem.message : problem) });
       }
@@ -163,7 +164,7 @@
       const begin = async () => {
         const module = await compiled;
         const made = new Worker(address);
-        made.onmessage = ({ data }) => { if (data.failed !== undefined) failed(data.failed); else { const given = give(); if (given) given.resolve(data.text); } };
+        made.onmessage = ({ data }) => { if (data.failed !== undefined) failed(data.failed); else { const given = give(); if (given) given.resolve(data.answer); } };
         made.onerror = (event) => failed(event.message);
         made.postMessage({ module });
         return made;

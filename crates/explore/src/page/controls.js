@@ -73,7 +73,7 @@
     let shape = null;
     let rows = [];
     const build = (model) => {
-      const groups = new Map();
+      const groups = new Map(model.numbers.some(({ path }) => path.startsWith("follower.")) ? [["follower", []]] : []);
       model.numbers.forEach((number) => { const name = number.path.split(".")[0]; groups.set(name, [...(groups.get(name) || []), number]); });
       rows = [];
       const roomy = app.element.clientWidth >= 700;
@@ -135,7 +135,7 @@
       refuse: (error) => {
         sentence.hidden = !error;
         if (!error) return;
-        sentence.textContent = `${error.line ? `Line ${error.line}: ` : ""}${error.sentence}`;
+        sentence.textContent = error.sentence;
         details.open = true;
       },
     };

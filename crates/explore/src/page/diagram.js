@@ -120,6 +120,8 @@
       };
       const corners = (which) => (which === "angle" ? (context.model().corners || []).map(({ angle_deg: y }) => ({ kind: "rule", y, colour: "grey", width: 1, dash: [2, 3] })) : []);
 
+      // Flags of another model, speed or range are not shown.
+      const asked = (state) => JSON.stringify([context.app.question(), state.over.name === "rpm" ? null : state.rpm, state.over, state.zoom && state.zoom.x]);
       const draw = (state) => {
         const { found, axis, which } = seen;
         if (!found) return;
@@ -127,10 +129,12 @@
         const unit = { angle: "\u00b0", before: units.velocity, after: units.velocity, position: units.length }[which];
         const ys = column(found, which);
         const range = state.zoom && state.zoom.y ? state.zoom.y : which === "angle" ? [0, 360] : Explore.extent([ys], 0.04);
-        const list = context.option("events", true) && seen.sheet ? eventsOf(seen.sheet, axis.name) : [];
+        const list = context.option("events", true) && seen.sheet && seen.whose === asked(state) ? eventsOf(seen.sheet, axis.name) : [];
         const now = context.value(axis.name);
         const shownEvents = list.filter(({ at }) => at >= seen.x[0] && at <= seen.x[1]);
+        const base = JSON.stringify([seen.turn, which, seen.x, range, shownEvents.map(({ at }) => at)]);
         plot.draw({
+          base,
           x: { label: axis.symbol ? `${axis.label} ${axis.symbol}` : axis.label, unit: axis.unit, range: seen.x, log: axis.log },
           y: { label: SHOWN[which], unit, range, turn: which === "angle" },
           layers: [...corners(which), pointsLayer(found, axis, which, state), ...flags(list, axis),
@@ -138,6 +142,8 @@
           description: [`${SHOWN[which]} of ${ys.length} impacts over the ${axis.label}, ${Explore.number(seen.x[0], 6)} to ${Explore.number(seen.x[1], 6)} ${axis.unit || ""}`,
             ...shownEvents.slice(0, 12).map((event) => `${causeOf(event.cause)[0]} at ${Explore.number(event.at, 7)}`)].join("; "),
         });
+        if (base === seen.base) return;
+        seen.base = base;
         const causes = [...new Set(shownEvents.map(({ cause }) => cause))];
         key.replaceChildren(Explore.key([...causes.map((cause) => ({ colour: causeOf(cause)[2], shape: causeOf(cause)[1], label: causeOf(cause)[0] })),
           ...(which === "angle" && (context.model().corners || []).length ? [{ colour: "grey", dash: [2, 3], label: "corner of the cam" }] : [])]));
@@ -174,12 +180,13 @@
           const found = await context.ask({ view: "diagram", ...question, over: { ...question.over, count: 400 }, transient: 300, record: Math.round(100 * tall), attractors: context.option("all", false) },
             { coarse, rough: { over: { ...question.over, count: 90 }, transient: 120, record: 30, attractors: false } });
           if (found) {
+            seen.turn = (seen.turn || 0) + (seen.found === found ? 0 : 1);
             Object.assign(seen, { found, axis, which, x });
             draw(state);
           }
           if (coarse || !context.option("events", true)) return;
           const sheet = await context.ask({ view: "speeds", ...question, over: { ...question.over, count: 16 }, count: 16, starts: 4 }, { lane: "diagram-events", slow: true, silent: true });
-          if (sheet) { seen.sheet = sheet; draw(context.state()); }
+          if (sheet) { seen.sheet = sheet; seen.whose = asked(state); draw(context.state()); }
         },
         highlight(motion) {
           if (!motion || !seen.axis) { plot.mark([]); return; }

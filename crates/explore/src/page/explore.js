@@ -51,7 +51,11 @@
       if (motion.over && motion.over.name !== "rpm") patch.set = { ...now().set, [motion.over.name]: motion.over.value };
       app.store.change(patch);
     };
-    app.refused = (error) => app.controls && app.controls.refuse(error);
+    app.refused = (error) => {
+      if (app.controls) app.controls.refuse(error);
+      // A new model that cannot be read has no speed to run at: every view says why it is empty.
+      if (now().rpm === null) app.views.panels.forEach(({ panel }) => panel.error(error));
+    };
     app.reset = () => app.store.reset();
     app.show = (name) => {
       const found = document.getElementById(`view-${name}`);
@@ -140,13 +144,13 @@
     document.addEventListener("keydown", keys(app));
 
     let [timer, frame, asked] = [null, null, null];
-    const refresh = (coarse) => { if (app.model) { app.views.refresh(coarse); headline.update(coarse); } };
+    const refresh = (coarse) => { if (app.model && app.store.state.rpm !== null) { app.views.refresh(coarse); headline.update(coarse); } };
     const model = async () => {
       const key = JSON.stringify(app.question());
-      if (key === asked) return;
+      if (key === asked) { if (app.model && app.store.state.rpm === null) app.store.fill({ rpm: app.usual() }); return; }
       asked = key;
       const found = await app.ask({ view: "model" }, "model");
-      if (!found) { if (asked === key && !app.model) asked = null; return; }
+      if (!found) return;
       const before = app.model;
       app.model = found;
       app.controls.update();

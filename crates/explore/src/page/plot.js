@@ -30,10 +30,15 @@
     }
     return groups.values();
   };
-  const mapped = (values, map) => Float64Array.from(values, (value) => (value === null ? NaN : map(value)));
+  const mapped = (values, map) => {
+    const made = new Float64Array(values.length);
+    for (let index = 0; index < values.length; index += 1) made[index] = map(values[index]);
+    return made;
+  };
   const drawn = {
     points: (pen, layer, { across, up }, theme) => {
       const [xs, ys] = [mapped(layer.x, across), mapped(layer.y, up)];
+      if (!layer.colours && !layer.shapes) { pen.marks(xs, ys, layer.shape || "disc", layer.size ?? 6, theme[layer.colour || "blue"], layer.alpha); return; }
       for (const group of grouped(layer, xs, ys)) pen.marks(group.xs, group.ys, group.shape, layer.size ?? 6, theme[group.colour], layer.alpha);
     },
     line: (pen, layer, { across, up }, theme) => pen.path(mapped(layer.x, across), mapped(layer.y, up),
@@ -58,7 +63,7 @@
       if (layer.move) { if (upright) pen.marks([at], [box.bottom - 7], "disc", 13, style.stroke); else pen.marks([box.right - 7], [at], "disc", 13, style.stroke); }
       if (!layer.label) return;
       const right = upright && at > (box.left + box.right) / 2;
-      if (upright) pen.text(at + (right ? -5 : 5), box.top + 9, layer.label, { colour: style.stroke, anchor: right ? "end" : "start" });
+      if (upright) pen.text(at + (right ? -1 : 1) * (layer.move ? 11 : 5), layer.move ? box.bottom - 8 : box.top + 9, layer.label, { colour: style.stroke, anchor: right ? "end" : "start" });
       else pen.text(box.left + 5, at + (at < box.top + 18 ? 10 : -9), layer.label, { colour: style.stroke });
     },
     flags: (pen, layer, { across, up, box }, theme) => layer.x.forEach((x, index) => {
@@ -87,12 +92,13 @@
     pen.text((box.left + box.right) / 2, box.bottom + 31, titled(scene.x), { colour: theme.soft, anchor: "middle" });
     pen.text(Math.min(box.left - 46, box.left - 42), (box.top + box.bottom) / 2, titled(scene.y), { colour: theme.soft, anchor: "middle", turn: -90 });
   };
-  /** Draws a scene with a pen. */
-  Explore.render = (pen, scene, width, height, theme) => {
+  const moves = (layer) => layer && layer.kind === "rule" && layer.move;
+  /** Draws a scene with a pen; rules that can be moved only where `whole`. */
+  Explore.render = (pen, scene, width, height, theme, whole = true) => {
     const place = Explore.layout(scene, width, height);
     if (!scene.x.bare) axes(pen, scene, place, theme);
     pen.clip(place.box);
-    scene.layers.filter(Boolean).forEach((layer) => drawn[layer.kind](pen, layer, place, theme));
+    scene.layers.filter((layer) => layer && (whole || !moves(layer))).forEach((layer) => drawn[layer.kind](pen, layer, place, theme));
     pen.unclip();
     const { box } = place;
     if (!scene.x.bare) pen.rect(box.left, box.top, box.right - box.left, box.bottom - box.top, { stroke: theme.ink, width: 0.8 });
@@ -137,11 +143,13 @@
       fit();
       const to = canvas.getContext("2d");
       to.clearRect(0, 0, ...size);
-      plot.place = Explore.render(Explore.canvasPen(to), plot.scene, ...size, Explore.theme(element));
+      plot.place = Explore.render(Explore.canvasPen(to), plot.scene, ...size, Explore.theme(element), false);
       plot.overlay();
     };
     plot.draw = (scene) => {
+      const still = scene.base !== undefined && plot.scene && plot.scene.base === scene.base && plot.place && Math.round(element.clientWidth) === size[0];
       plot.scene = scene;
+      if (still) { plot.overlay(); return; }
       plot.at = null;
       tip.hidden = true;
       canvas.setAttribute("aria-label", [options.label, scene.description].filter(Boolean).join(". "));
@@ -154,6 +162,7 @@
       if (!plot.place) return;
       const [pen, theme, { across, up, box }] = [Explore.canvasPen(to), Explore.theme(element), plot.place];
       pen.clip(box);
+      plot.scene.layers.filter(moves).forEach((layer) => drawn.rule(pen, layer, plot.place, theme));
       if (plot.line !== null) { const at = across(plot.line); pen.path([at, at], [box.top, box.bottom], { stroke: theme.ink, width: 1.5 }); }
       if (plot.marked.length) {
         const [xs, ys] = [plot.marked.map(({ x }) => across(x)), plot.marked.map(({ y }) => up(y))];

@@ -3,19 +3,18 @@
 (() => {
   const REACH = { mouse: 18, pen: 22, touch: 30 };
 
-  /** Every datum that can be pointed at, in pixels. Rules and pictures are no data. */
-  const data = (plot) => {
-    const found = [];
-    if (!plot.place) return found;
+  /** Tells `visit(layer, index, px, py)` of every datum in sight that can be pointed at. Rules and pictures are no data. */
+  const eachDatum = (plot, visit) => {
+    if (!plot.place) return;
     const { across, up, box } = plot.place;
     plot.scene.layers.filter((layer) => layer && (layer.hover || layer.motion) && layer.x && layer.x.length !== undefined && layer.kind !== "cells").forEach((layer) => {
       for (let index = 0; index < layer.x.length; index += 1) {
         const px = across(layer.x[index]);
+        if (!(px >= box.left - 1 && px <= box.right + 1)) continue;
         const py = layer.y && layer.y[index] !== null && layer.y[index] !== undefined ? up(layer.y[index]) : box.top + 7;
-        if (px >= box.left - 1 && px <= box.right + 1 && py >= box.top - 1 && py <= box.bottom + 1) found.push({ layer, index, px, py });
+        if (py >= box.top - 1 && py <= box.bottom + 1) visit(layer, index, px, py);
       }
     });
-    return found;
   };
   const cell = (plot, px, py) => {
     const layer = plot.scene.layers.find((each) => each && each.kind === "cells" && (each.hover || each.motion));
@@ -27,10 +26,10 @@
   };
   const nearest = (plot, px, py, reach) => {
     let [best, least] = [null, reach * reach];
-    for (const each of plot.cached || (plot.cached = data(plot))) {
-      const far = (each.px - px) ** 2 + (each.py - py) ** 2;
-      if (far < least) [best, least] = [each, far];
-    }
+    eachDatum(plot, (layer, index, x, y) => {
+      const far = (x - px) ** 2 + (y - py) ** 2;
+      if (far < least) { best = { layer, index, px: x, py: y }; least = far; }
+    });
     return best || cell(plot, px, py);
   };
   const ruleAt = (plot, px, py, reach) => plot.scene.layers.find((layer) => layer && layer.kind === "rule" && layer.move
@@ -42,10 +41,6 @@
     const pointers = new Map();
     let drag = null;
     let pinch = null;
-    const draw = plot.draw;
-    plot.draw = (scene) => { plot.cached = null; draw(scene); };
-    const redraw = plot.redraw;
-    plot.redraw = () => { plot.cached = null; redraw(); };
 
     const place = (event) => { const box = canvas.getBoundingClientRect(); return [event.clientX - box.left, event.clientY - box.top]; };
     const held = (value, low, high) => Math.min(high, Math.max(low, value));
@@ -133,18 +128,16 @@
 
     // Keys --------------------------------------------------------------------------------------------------------------
     const walk = (key) => {
-      const all = plot.cached || (plot.cached = data(plot));
-      if (!all.length) return;
       const sideways = key === "ArrowLeft" || key === "ArrowRight";
       const forward = key === "ArrowRight" || key === "ArrowUp" ? 1 : -1;
       const now = plot.at || { px: forward > 0 ? -1 : size()[0] + 1, py: size()[1] / 2 };
       let [best, least] = [null, Infinity];
-      all.forEach((each) => {
-        const [dx, dy] = [(each.px - now.px) * (sideways ? forward : 1), (each.py - now.py) * (sideways ? 1 : -forward)];
+      eachDatum(plot, (layer, index, px, py) => {
+        const [dx, dy] = [(px - now.px) * (sideways ? forward : 1), (py - now.py) * (sideways ? 1 : -forward)];
         const [along, aside] = sideways ? [dx, Math.abs(dy)] : [dy, Math.abs(dx)];
         if (along <= 0.5) return;
         const far = along + 3 * aside;
-        if (far < least) [best, least] = [each, far];
+        if (far < least) { best = { layer, index, px, py }; least = far; }
       });
       if (best) plot.point(best, true);
     };

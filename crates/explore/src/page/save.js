@@ -28,7 +28,7 @@
       field.select();
     }
   };
-  const stem = (app) => (app.question().file || "model").replace(/^.*[\\/]/, "").replace(/\.toml$/, "");
+  const stem = (app) => (app.question().file || (app.model && app.model.name) || "model").replace(/^.*[\\/]/, "").replace(/\.toml$/, "");
 
   /** The buttons under a panel: Save SVG, Save CSV, Copy as command. */
   Explore.saveButtons = (entry, app) => {
@@ -53,6 +53,6 @@
   };
   /** Saves the model file with the changes in it. */
   Explore.saveModel = (app) => {
-    if (app.model) Explore.download(app.model.file || `${stem(app)}.toml`, app.model.text, "application/toml");
+    if (app.model) Explore.download(`${stem(app)}.toml`, app.model.text, "application/toml");
   };
 })();

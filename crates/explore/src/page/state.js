@@ -102,6 +102,8 @@
       },
       /** What the program fills in by itself, such as the usual speed of a new model: no step of the history. */
       fill: (patch) => {
+        // What is filled in at the start belongs to the start: the address of an untouched page stays empty.
+        if (Object.keys(patch).every((key) => initial[key] === null) && same({ ...store.state, rpm: null }, initial)) Object.assign(initial, patch);
         store.state = { ...store.state, ...patch };
         if (!store.before) { store.steps[store.index] = store.state; tell("replaceState"); }
         store.tell({ moving: false });

@@ -103,7 +103,7 @@
       status: (text) => { status.textContent = text; element.toggleAttribute("aria-busy", Boolean(text)); },
       error: (found) => {
         error.hidden = !found;
-        error.textContent = found ? [found.file && found.line ? `${found.file}, line ${found.line}: ` : "", found.sentence || String(found)].join("") : "";
+        error.textContent = found ? found.sentence || String(found) : "";
         body.classList.toggle("stale", Boolean(found));
       },
     };
@@ -137,11 +137,12 @@
         if (!lanes.has(lane)) lanes.set(lane, { key: null, answer: null, promise: null });
         const last = lanes.get(lane);
         const full = { model: app.question(), ...question };
+        const again = () => last.promise.then((found) => { if (found) panel.error(null); return found; });
         // The full answer, where it is at hand, is better than a coarse one.
-        if (last.promise && last.key === JSON.stringify(full)) return last.promise;
+        if (last.promise && last.key === JSON.stringify(full)) return again();
         const whole = coarse && rough ? { ...full, ...rough } : full;
         const key = JSON.stringify(whole);
-        if (last.key === key && last.promise) return last.promise;
+        if (last.key === key && last.promise) return again();
         last.key = key;
         if (!silent) panel.status(coarse ? "" : "computing\u2026");
         const done = () => { if (last.key === key && !silent) panel.status(""); };
