@@ -7,7 +7,7 @@ CARGO ?= cargo
 RELEASE := --release --locked
 
 .DEFAULT_GOAL := help
-.PHONY: help verify report quick test properties python slurm-test check audit derive derive-check theorems claims pictures review wasm mutants mutants-sample fuzz soak bench bench-each bench-growth bench-peers clean
+.PHONY: help verify report quick test properties python slurm-test check audit derive derive-check theorems claims pictures review wasm explore mutants mutants-sample fuzz soak bench bench-each bench-growth bench-peers clean
 
 # Python and its packages, once; again when the list of packages changes.
 PYTHON ?= python3
@@ -76,7 +76,11 @@ audit: ## licences, duplicates, sources and known faults of the packages in Carg
 	    else echo "advisories: NOT CHECKED, because the advisory database cannot be fetched here"; fi
 
 wasm: ## check that the library compiles for a browser's page (`rustup target add wasm32-unknown-unknown` has what that needs)
-	$(CARGO) check --locked --package corner-impact --lib --target wasm32-unknown-unknown
+	$(CARGO) check --locked --package corner-impact --package corner-impact-explore --lib --target wasm32-unknown-unknown
+
+# The program includes it when it is built next.
+explore: ## build what makes pages live without a server: the answers as WebAssembly (`explore --out`, `report`)
+	crates/explore-module/build.sh
 
 derive: $(VENV) ## redo the derivations by computer algebra and write golden/derived
 	.venv/bin/python derivations/derive.py

@@ -87,6 +87,11 @@ pub mod file;
 
 pub mod model;
 
+#[doc(hidden)]
+pub mod command;
+#[doc(hidden)]
+pub mod json;
+
 pub mod cam;
 
 pub mod flight;

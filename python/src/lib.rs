@@ -4,6 +4,7 @@ mod arrays;
 mod error;
 mod grid;
 mod model;
+mod page;
 mod values;
 mod work;
 
@@ -19,6 +20,8 @@ mod _native {
     use crate::grid::{Grid, blocks_done, chart_variables};
     #[pymodule_export]
     use crate::model::Model;
+    #[pymodule_export]
+    use crate::page::Page;
 
     #[pymodule_export]
     use crate::arrays::events;

@@ -36,6 +36,7 @@ use rayon::prelude::*;
 
 use crate::arrays::{Events, Rows, columns};
 use crate::error::OrRaise;
+use crate::page::Page;
 use crate::values::{
     self, Rpm, budget, count, document, in_units, item, numbers, pairs, refused, start, thread_count, within,
 };
@@ -718,6 +719,14 @@ impl Model {
         let (look, units) = (look.checked().or_raise()?, &self.model.units);
         let figure = cam_figure(&self.model, self.machine.cam(), &self.model.name).in_units(|unit| units.spelled(unit));
         svg::render(&look.framed(figure).or_raise()?, &look).or_raise()
+    }
+
+    /// The live page of the model, as of `corner-impact explore --out`: change a number and see the dynamics change. A notebook shows it;
+    /// `save` writes it to a file.
+    ///
+    /// Raises RuntimeError where the package was built without the page's module.
+    fn explore(&self, py: Python<'_>) -> PyResult<Page> {
+        py.detach(|| Page::of(self))
     }
 }
 

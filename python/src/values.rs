@@ -6,7 +6,7 @@ use corner_impact::model::{Model, Units};
 use corner_impact::orbit::Parameter;
 use corner_impact::orbit::long_run::Budget;
 use corner_impact::study::survey::{Axis, Placed, Spacing, Start, Values, limits};
-use corner_impact_cli::show::json;
+use corner_impact::json;
 use numpy::{AllowTypeChange, PyArrayLike1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;

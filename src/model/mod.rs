@@ -25,6 +25,7 @@ mod table_fields;
 mod table_file;
 mod table_profile;
 mod table_units;
+mod template;
 mod text;
 mod toml;
 mod turn;
@@ -53,6 +54,8 @@ pub use rows::TableLayout;
 pub(crate) use rows::TableRow;
 pub use table::Reading;
 pub use table::{MOST_PROVED_ROWS, Smoothing, SmoothingTolerance, Spline, TableProfile};
+#[doc(hidden)]
+pub use template::{ModelTemplate, TEMPLATE_NAME, TEMPLATES};
 pub use units::{Converted, Unit, Units};
 
 /// The model whose numbers the paper prints, built in so that the binary needs no other file.

@@ -194,6 +194,11 @@ impl ModelNumber {
         format!("takes a number without an error; numbers of [follower] take one: {}", names.join(", "))
     }
 
+    /// Number of the closed allowed range that is nearest to another.
+    pub fn nearest(&self, number: f64) -> f64 {
+        self.allowed.nearest(number)
+    }
+
     /// Allowed range in words, for a complaint.
     pub fn allowed(&self) -> String {
         self.allowed.to_string()

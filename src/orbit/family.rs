@@ -15,6 +15,7 @@ pub enum Parameter {
 
 /// Reason why there is no machine with these numbers.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[expect(missing_docs, reason = "the message says what each number is")]
 pub enum FamilyError {
     /// The model does not allow the numbers.
     #[error("{0}")]

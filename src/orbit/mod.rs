@@ -49,7 +49,9 @@ pub use complete::Undecided;
 pub use cycle::{Cycle, Impact, NotClosed};
 pub(crate) use departure::Departure;
 pub use family::Parameter;
-pub(crate) use family::{Family, FamilyError};
+pub(crate) use family::Family;
+#[doc(hidden)]
+pub use family::FamilyError;
 pub use multipliers::{Eigenvalue, eigenvalues};
 pub use search::{Search, Searched, search, search_all};
 pub use stability::{Judgement, Stability};

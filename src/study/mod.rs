@@ -21,6 +21,8 @@ pub mod curve;
 pub mod design;
 #[doc(hidden)]
 pub mod diagram;
+#[doc(hidden)]
+pub mod local;
 pub mod locate;
 pub mod orbit;
 #[doc(hidden)]

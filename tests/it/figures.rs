@@ -7,14 +7,14 @@ use std::path::{Path, PathBuf};
 
 use crate::common::ROOT;
 use approx::assert_relative_eq;
-use corner_impact::cam::Side;
+use corner_impact::cam::{Outline, Side};
 use corner_impact::flight::State;
 use corner_impact::model::{Model, OSORIO_2008};
 use corner_impact::orbit::Stability;
 use corner_impact::simulate::EventKind;
 use corner_impact_cli::cli::{Exit, run};
 use corner_impact_cli::figures::{
-    Effort, FigureContext, Neighbour, Outline, RenderedFigure, branches_figure, listed, plate, plates,
+    Effort, FigureContext, Neighbour, RenderedFigure, branches_figure, listed, plate, plates,
 };
 use corner_impact_plot::layout::Layout;
 use corner_impact_plot::{Data, Figure, Look, Series, svg};

@@ -58,7 +58,7 @@ fn the_page_on_model_files_has_every_number_as_the_table_has_it() {
 
 #[test]
 fn templates_have_every_number_of_their_law() {
-    let of_law = |law: &str| read(&format!("crates/program/src/cli/templates/{law}.toml"));
+    let of_law = |law: &str| read(&format!("src/model/templates/{law}.toml"));
     let everywhere = ["follower", "study", "arcs"].map(of_law).join("\n");
     for number in MODEL_NUMBERS.iter().filter(|number| number.path.contains('.')) {
         let has = |text: &str| {

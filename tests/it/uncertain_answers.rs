@@ -149,7 +149,7 @@ fn over(model: &Model, path: &str, rpm: f64, values: &[f64]) -> Design {
 
 /// A measured valve: 0.11 kg, 30 N/mm and 220 N of preload, with errors.
 fn valve(changes: &[(&str, f64)]) -> Model {
-    let file = "crates/program/src/cli/templates/table.toml";
+    let file = "src/model/templates/table.toml";
     common::read(std::path::Path::new(file))
         .changed(&changes.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect::<Vec<_>>())
         .unwrap()

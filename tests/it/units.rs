@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use corner_impact::model::{Model, OSORIO_2008};
-use corner_impact_cli::show::json;
+use corner_impact::json;
 use serde_json::Value;
 
 use crate::common::{self, corner_impact, program, text};

@@ -7,6 +7,8 @@
 //!    ▼
 //!  report                everything about one model in one value
 //!    ▼
+//!  live                  the page that computes as one looks at it, inside one file
+//!    ▼
 //!  explain               what a number on a page stands for
 //!    ▼
 //!  pages                 the page of each command, and that of the report
@@ -25,6 +27,9 @@ pub mod figures;
 
 #[doc(hidden)]
 pub mod report;
+
+#[doc(hidden)]
+pub mod live;
 
 #[doc(hidden)]
 pub mod explain;

@@ -10,9 +10,9 @@ many runs one that fails is NaN, or a class of its own.
 """
 
 from corner_impact._errors import ModelError
-from corner_impact._native import Chart, Model, __version__, blocks_done, chart_variables, events
+from corner_impact._native import Chart, Model, Page, __version__, blocks_done, chart_variables, events
 
 EVENTS: tuple[str, ...] = tuple(events())
 """The kinds of events, in the order of the codes in columns `event`."""
 
-__all__ = ["EVENTS", "Chart", "Model", "ModelError", "__version__", "blocks_done", "chart_variables"]
+__all__ = ["EVENTS", "Chart", "Model", "ModelError", "Page", "__version__", "blocks_done", "chart_variables"]

@@ -6,7 +6,7 @@ from typing import Any, Literal, TypeAlias, final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["Chart", "Model", "__version__", "blocks_done", "chart_variables", "events", "main"]
+__all__ = ["Chart", "Model", "Page", "__version__", "blocks_done", "chart_variables", "events", "main"]
 
 __version__: str
 
@@ -143,9 +143,17 @@ class Model:
         x_range: tuple[float, float] | None = None,
         y_range: tuple[float, float] | None = None,
     ) -> str: ...
+    def explore(self) -> Page: ...
     def __eq__(self, other: object, /) -> bool: ...
     def __hash__(self, /) -> int: ...
     def __reduce__(self) -> tuple[Any, tuple[str, str]]: ...
+
+@final
+class Page:
+    @property
+    def html(self) -> str: ...
+    def save(self, path: _Path) -> None: ...
+    def _repr_html_(self) -> str: ...
 
 @final
 class Chart:

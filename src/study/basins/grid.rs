@@ -8,7 +8,7 @@ use crate::orbit::long_run::{Budget, LongRun};
 use crate::orbit::runs::LongRuns;
 use crate::progress::Watch;
 use crate::simulate::{Machine, SimulateError};
-use crate::study::survey::{Ensemble, SweepError, Wandering, attractors_of};
+use crate::study::survey::{Ensemble, SweepError, Wandering, attractors_of, on_threads};
 
 /// Starts on the section at one cam angle: the middles of cells, evenly spaced in position and velocity.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -97,7 +97,6 @@ impl SectionStarts {
         threads: Option<usize>,
         watch: &dyn Watch,
     ) -> Result<Basins, GridError> {
-        let pool = crate::study::survey::threads(threads)?;
         let failed = |(index, error): (usize, SimulateError)| GridError::Simulate { state: self.state(index), error };
         let start = |index: usize| match machine.start(self.cam_angle(), self.state(index)) {
             Ok(motion) => Ok(Some(motion)),
@@ -109,7 +108,7 @@ impl SectionStarts {
             Self::Grid(_) => LongRuns::new(machine, budget).map_err(|error| failed((0, error)))?,
             Self::Given(_) => LongRuns::unaided(machine, budget),
         };
-        let found = pool.install(|| attractors_of(&runs, self.count(), start, watch)).map_err(failed)?;
+        let found = on_threads(threads, || attractors_of(&runs, self.count(), start, watch))?.map_err(failed)?;
         Ok(Basins::new(self, budget, found))
     }
 }

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 
 use super::axis::{Axis, Place};
 use super::over::{self, OverError};
-use super::threads::SweepError;
+use super::threads::{SweepError, on_threads};
 use crate::model::{Model, Units};
 use crate::orbit::{Family, FamilyError, Parameter};
 use crate::progress::{Clock, Watch};
@@ -146,10 +146,10 @@ impl Survey {
         one: impl Fn([usize; 2], &Machine) -> Result<T, String> + Sync,
     ) -> Result<(GridResults<T>, [f64; 2]), SweepError> {
         let clock = Clock::start();
-        let pool = super::threads::threads(threads)?;
+        let count = threads.unwrap_or_else(rayon::current_num_threads);
         // Rows, or the columns of the only row.
         let (lines, what) = if self.up.is_some() { (rows.clone(), "rows") } else { (columns.clone(), "") };
-        let height = (lines.len() / (8 * pool.current_num_threads())).clamp(1, STRIP);
+        let height = (lines.len() / (8 * count)).clamp(1, STRIP);
         let (done, last, total) = (AtomicU64::new(0), lines.end, lines.len() as u64);
         let strips = lines.step_by(height).collect::<Vec<_>>().into_par_iter().map(|first| {
             let clock = Processor::now();
@@ -160,7 +160,7 @@ impl Survey {
             watch.at(what, done.fetch_add(count, Ordering::Relaxed) + count, total);
             (found, clock.elapsed())
         });
-        let strips: Vec<_> = pool.install(|| strips.collect());
+        let strips: Vec<_> = on_threads(threads, || strips.collect())?;
         let processor: Duration = strips.iter().map(|(_, elapsed)| *elapsed).sum();
         let found = strips.into_iter().flat_map(|(found, _)| found).collect();
         Ok((found, [processor.as_secs_f64(), clock.elapsed().as_secs_f64()]))

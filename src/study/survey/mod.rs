@@ -51,5 +51,6 @@ pub use point::{Point, growth};
 pub use starts::Starts;
 #[doc(hidden)]
 pub use sweep::{Beginning, Find, Growth, RecordRow, Section, Seen, Sweep, SweepStart, recurrence, settled_impacts};
+pub(crate) use threads::on_threads;
 #[doc(hidden)]
 pub use threads::{SweepError, threads};

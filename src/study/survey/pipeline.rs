@@ -86,11 +86,12 @@ impl Sweep {
         mut take: impl FnMut(usize, B) -> Result<(), E>,
     ) -> Result<SweepTally, E> {
         let mut tally = SweepTally::default();
-        if self.following != SweepStart::Nothing {
-            // Each value needs the end of its neighbour, so the values run one after the other, here.
+        let follows = self.following != SweepStart::Nothing;
+        if follows || cfg!(target_family = "wasm") {
+            // Values that need the end of their neighbour run one after the other, here; so do all in a browser's page, which has one thread.
             let mut from = None;
             for step in 0..self.over.count() {
-                let index = if self.following == SweepStart::Up { step } else { self.over.count() - 1 - step };
+                let index = if self.following != SweepStart::Down { step } else { self.over.count() - 1 - step };
                 let mut failed = None;
                 let mut send = |block| match take(index, block) {
                     Ok(()) => ControlFlow::Continue(()),
@@ -104,7 +105,7 @@ impl Sweep {
                     return Err(error);
                 }
                 let (motion, here) = found?;
-                from = motion;
+                from = motion.filter(|_| follows);
                 tally.add(here);
                 take(index, B::default())?;
             }

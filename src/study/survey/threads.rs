@@ -14,6 +14,11 @@ pub enum SweepError {
     Threads(String),
 }
 
+/// Does work on `count` threads, or for `None` on one for each core. A browser's page has one thread, which does the work itself.
+pub(crate) fn on_threads<T: Send>(count: Option<usize>, work: impl FnOnce() -> T + Send) -> Result<T, SweepError> {
+    if cfg!(target_family = "wasm") { Ok(work()) } else { Ok(threads(count)?.install(work)) }
+}
+
 /// Builds a pool of `count` threads, or for `None` of one for each core.
 pub fn threads(count: Option<usize>) -> Result<rayon::ThreadPool, SweepError> {
     // For 0, the builder makes as many threads as there are cores.

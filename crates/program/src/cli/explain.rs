@@ -6,7 +6,7 @@ use super::{AnswerArguments, CommandError, Exit, ModelArgument, Session, progres
 use crate::explain::{Findings, Links};
 use crate::show::Page;
 use crate::show::block::{Block, words};
-use crate::show::command::shell_word;
+use corner_impact::command::shell_word;
 use corner_impact::study::verify::{External, verify_watched};
 
 /// Says what a name stands for, with its formula and evidence.

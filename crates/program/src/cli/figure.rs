@@ -11,7 +11,8 @@ use super::{CommandError, Exit, ModelArgument, Session, picture};
 use crate::figures::{Entry, FIGURES, FigureContext, Listed, RenderedFigure, listed};
 use crate::show::block::{Block, Column, Table, Words};
 use crate::show::page::WIDTH;
-use crate::show::{Page, json};
+use crate::show::Page;
+use corner_impact::json;
 use corner_impact::model::{Model, nearest};
 use corner_impact::untrusted;
 

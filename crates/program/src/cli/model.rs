@@ -6,7 +6,7 @@ use clap::{Arg, ArgMatches, CommandFactory, FromArgMatches};
 
 use super::picture::ends_in;
 use super::{CommandError, progress::watched, session::Session};
-use crate::show::command::{changed, named, shell_word};
+use corner_impact::command::{changed, named, shell_word};
 use crate::show::notes;
 use corner_impact::model::{CONTACTS, Model, ModelError, ModelNumber, Numeral, Units, finite, nearest, parted};
 use corner_impact::orbit::Parameter;

@@ -3,11 +3,12 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use clap::ValueEnum;
+use clap::builder::PossibleValuesParser;
 
 use super::{CommandError, Exit, Session};
-use crate::show::command::shell_word;
+use corner_impact::command::shell_word;
 use corner_impact::file::{self, Output};
+use corner_impact::model::{ModelTemplate, TEMPLATE_NAME, TEMPLATES};
 
 /// Writes a commented model file to start from.
 ///
@@ -24,67 +25,20 @@ pub(super) struct Arguments {
     #[arg(value_name = "FILE", default_value = "-")]
     file: PathBuf,
     /// How the cam's lift is written down.
-    #[arg(long, value_enum, default_value = "arcs")]
-    law: Law,
+    #[arg(long, default_value = "arcs", value_parser = PossibleValuesParser::new(TEMPLATES.iter().map(|template| template.law)))]
+    law: String,
     /// Write over a file that is there.
     #[arg(long)]
     force: bool,
 }
 
-/// The lift laws, each with a template.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Law {
-    Arcs,
-    Harmonic,
-    RectifiedSine,
-    Program,
-    Polynomial,
-    Table,
-    Contour,
-}
-
-const FOLLOWER: &str = include_str!("templates/follower.toml");
-const STUDY: &str = include_str!("templates/study.toml");
-/// Name of the machine in the templates.
-const NAME: &str = "my-machine";
-
-impl Law {
-    fn cam(self) -> &'static str {
-        match self {
-            Self::Arcs => include_str!("templates/arcs.toml"),
-            Self::Harmonic => include_str!("templates/harmonic.toml"),
-            Self::RectifiedSine => include_str!("templates/rectified-sine.toml"),
-            Self::Program => include_str!("templates/program.toml"),
-            Self::Polynomial => include_str!("templates/polynomial.toml"),
-            Self::Table => include_str!("templates/table.toml"),
-            Self::Contour => include_str!("templates/contour.toml"),
-        }
-    }
-
-    /// The name and the text of the table that the template names.
-    fn table(self) -> Option<(&'static str, &'static str)> {
-        match self {
-            Self::Table => Some(("lifts.csv", include_str!("templates/lifts.csv"))),
-            Self::Contour => Some(("contour.csv", include_str!("templates/contour.csv"))),
-            _ => None,
-        }
-    }
-
-    /// The model file; `verify` has something to look for where the cam has corners of order 2.
-    fn template(self) -> String {
-        // A measured cam comes with a follower of its size.
-        let follower = if self.table().is_some() { "" } else { FOLLOWER };
-        let study = if matches!(self, Self::Arcs | Self::Program | Self::Polynomial) { STUDY } else { "" };
-        let text = [follower, self.cam(), study].concat();
-        text.trim_end().to_owned() + "\n"
-    }
-}
-
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
-    let (path, law) = (&arguments.file, arguments.law);
+    // clap lets no other name through.
+    let Some(law) = ModelTemplate::of(&arguments.law) else { return Ok(Exit::BadInput) };
+    let path = &arguments.file;
     if path.as_os_str() == "-" {
-        session.print(&law.template())?;
-        if let Some((table, _)) = law.table() {
+        session.print(&law.text())?;
+        if let Some((table, _)) = law.table {
             session.note(&format!("{table} is not written: give a FILE to have it beside the model"));
         }
         return Ok(Exit::Agrees);
@@ -92,9 +46,9 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     // A name that TOML takes between quotes as it is names the machine and its table.
     let is_plain = |stem: &&str| stem.chars().all(|letter| letter.is_alphanumeric() || "-_. ".contains(letter));
     let stem = path.file_stem().and_then(|stem| stem.to_str()).filter(is_plain);
-    let mut text = law.template().replace(NAME, stem.unwrap_or(NAME));
+    let mut text = law.text().replace(TEMPLATE_NAME, stem.unwrap_or(TEMPLATE_NAME));
     let mut beside = None;
-    if let Some((name, rows)) = law.table() {
+    if let Some((name, rows)) = law.table {
         let table = stem.map_or(name.to_owned(), |stem| format!("{stem}.csv"));
         text = text.replace(name, &table);
         beside = Some((path.with_file_name(table), rows));

@@ -10,7 +10,7 @@ use super::progress::watched;
 use super::{CommandError, Exit, ModelArgument, Session};
 use crate::pages::report::html;
 use crate::report::Report;
-use crate::show::json;
+use corner_impact::json;
 use corner_impact::file::Output;
 use corner_impact::model::{Model, ModelError};
 

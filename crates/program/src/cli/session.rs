@@ -13,7 +13,8 @@ use super::picture::ends_in;
 use super::{CommandError, Exit, complaint, next};
 use crate::show::block::in_units;
 use crate::show::page::options;
-use crate::show::{Page, Paged, json};
+use crate::show::{Page, Paged};
+use corner_impact::json;
 use corner_impact::model::{ModelError, Units, nearest};
 use corner_impact::untrusted;
 

@@ -3,14 +3,12 @@
 //! The outline is the contour that the follower touches; for the paper's follower, a point above the axis, it is the lift as a
 //! radius. At cam angle `theta` the ray `(sin theta, cos theta)` is on top; the cam turns to the left.
 
-use std::f64::consts::TAU;
-
 use crate::figures::cam::{corner_marks, corners_in_words, lift_figure, of_circles};
 use crate::figures::{Entry, drawn};
-use corner_impact::cam::{Cam, Lift, Segment};
+use corner_impact::cam::{Cam, Outline, OutlinePiece};
 use corner_impact::elementary;
 use corner_impact::model::{FollowerContact, Model};
-use corner_impact_plot::{BREAK, Beside, Colour, Figure, FigureAxis, Label, Marker, Panel, Series, Stroke, extent};
+use corner_impact_plot::{BREAK, Beside, Colour, Figure, FigureAxis, Label, Marker, Panel, Series, Stroke};
 
 /// The report's figure of the cam's shape.
 pub(crate) const CAM_SHAPE: Entry = Entry {
@@ -45,8 +43,6 @@ pub(crate) const CAM_SHAPE: Entry = Entry {
     },
 };
 
-/// Samples of a whole turn.
-const SAMPLES: f64 = 1440.0;
 /// The circles and the top of a cam of three circles, from angle 0 to half a turn, with their colour and stroke.
 const CIRCLES: [(&str, Colour, Stroke); 4] = [
     ("base circle", Colour::Ink, Stroke::Solid),
@@ -62,41 +58,6 @@ const NEAR: f64 = 0.12;
 /// Most segments that are drawn separately; with more, the outline is one line.
 const MOST: usize = 24;
 
-/// The cam as a shape; lengths in m from the axis, with the follower's direction up.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Outline {
-    /// Radius added to the lift, m; used where the lift is not a distance from the axis.
-    pub added: f64,
-    /// The outline, segment by segment.
-    pub pieces: Vec<Piece>,
-    /// Cam angle, rad, and place of each corner.
-    pub corners: Vec<(f64, [f64; 2])>,
-    /// The end of the follower at cam angle 0, as a line.
-    pub follower: Vec<[f64; 2]>,
-    /// Path of the centre of a roller; empty for other followers.
-    pub pitch: Vec<[f64; 2]>,
-}
-
-/// A segment of the outline.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Piece {
-    /// Points `[x, y]` in order.
-    pub points: Vec<[f64; 2]>,
-    /// Centre of the segment's circle; `None` unless it is on a circle that is not about the axis.
-    pub centre: Option<[f64; 2]>,
-}
-
-/// The point at a radius and a cam angle, rad.
-fn place(angle: f64, radius: f64) -> [f64; 2] {
-    [radius * elementary::sin(angle), radius * elementary::cos(angle)]
-}
-
-/// The point at a distance along the ray of a cam angle, rad, and at one across it.
-fn beside(angle: f64, [along, across]: [f64; 2]) -> [f64; 2] {
-    let [[x, y], [right, down]] = [place(angle, along), place(angle, across)];
-    [x + down, y - right]
-}
-
 /// Draws the shape of a model's cam, and the end of the follower on it.
 pub fn shape_figure(model: &Model, cam: &Cam, title: &str) -> Figure {
     figure(title, cam, &Outline::of(model, cam))
@@ -111,63 +72,6 @@ pub fn cam_figure(model: &Model, cam: &Cam, title: &str) -> Figure {
             Figure { panels: figure.panels.into_iter().chain([shape.across(x)]).collect(), ..figure }
         }
         None => figure,
-    }
-}
-
-impl Outline {
-    /// Computes the outline of a model's cam, at the cam's end of a lever.
-    fn of(model: &Model, cam: &Cam) -> Self {
-        Self::new(&cam.levered(model.cam.lever_ratio().recip()), model.cam.contact())
-    }
-
-    /// Computes the outline of a cam and the follower that touches it; with a lift alone, that of a point.
-    pub fn new(cam: &Cam, contact: Option<FollowerContact>) -> Self {
-        let [low, high] = extent(cam.segments().iter().flat_map(|segment| segment.bounds.lift));
-        let stroke = high - low;
-        let (has_contour, contact) = (contact.is_some(), contact.unwrap_or_default());
-        // If a lift alone would turn the outline inside out, or make it a needle, add a radius.
-        let added = if low >= stroke || has_contour { 0.0 } else { 2.0 * stroke - low };
-        let at = |angle: f64, lift: &Lift| match contact {
-            FollowerContact::Point => place(angle, added + lift.value),
-            _ => beside(angle, contact.touches(angle, lift).place),
-        };
-        let angles = |segment: &Segment| {
-            let (start, span) = (segment.start, segment.end - segment.start);
-            let steps = (span / TAU * SAMPLES).ceil().max(2.0);
-            (0..=steps as usize).map(move |step| start + span * step as f64 / steps)
-        };
-        let piece = |segment: &Segment| {
-            let centre = segment.law.circle_centre().filter(|_| added == 0.0);
-            let centre = centre.map(|[distance, direction]| place(direction, distance));
-            Piece { points: angles(segment).map(|angle| at(angle, &segment.law.lift(angle))).collect(), centre }
-        };
-        let first = cam.lift(0.0).value;
-        let (follower, pitch) = match contact {
-            FollowerContact::Point => (Vec::new(), Vec::new()),
-            FollowerContact::Flat => {
-                let [left, right] = extent(cam.segments().iter().flat_map(|segment| segment.bounds.slope));
-                (vec![[left, first], [right, first]], Vec::new())
-            }
-            FollowerContact::Roller { roller_radius, offset } => {
-                let circle = (0..=72).map(|part| place(TAU * f64::from(part) / 72.0, roller_radius));
-                let centre = |(angle, lift): (f64, Lift)| beside(angle, [lift.value, offset]);
-                let lifts = cam.segments().iter().flat_map(|it| angles(it).map(|angle| (angle, it.law.lift(angle))));
-                (circle.map(|[x, y]| [x + offset, y + first]).collect(), lifts.map(centre).collect())
-            }
-        };
-        Self {
-            added,
-            pieces: cam.segments().iter().map(piece).collect(),
-            corners: cam.corners().iter().map(|corner| (corner.angle, at(corner.angle, &corner.plus))).collect(),
-            follower,
-            pitch,
-        }
-    }
-
-    /// Largest distance of the outline from the axis.
-    fn farthest(&self) -> f64 {
-        let outline = self.pieces.iter().flat_map(|piece| &piece.points);
-        outline.chain(&self.follower).chain(&self.pitch).fold(0.0_f64, |far, [x, y]| far.max(elementary::hypot(*x, *y)))
     }
 }
 
@@ -223,7 +127,7 @@ fn shape_panel(cam: &Cam, outline: &Outline) -> (FigureAxis, Panel) {
 }
 
 /// Draws a cam of three circles as the paper does.
-fn circles(pieces: &[Piece]) -> Vec<Series> {
+fn circles(pieces: &[OutlinePiece]) -> Vec<Series> {
     let mut series = construction(pieces);
     for (index, (label, colour, stroke)) in CIRCLES.into_iter().enumerate() {
         // Base circle, flank, nose, top, nose, flank, base circle.
@@ -234,13 +138,13 @@ fn circles(pieces: &[Piece]) -> Vec<Series> {
     series
 }
 
-fn segments(pieces: &[Piece]) -> Vec<Series> {
+fn segments(pieces: &[OutlinePiece]) -> Vec<Series> {
     if pieces.len() > MOST {
         let points = pieces.iter().flat_map(|piece| piece.points.iter().copied());
         return vec![Series::line("", Colour::Blue, Stroke::Solid, points)];
     }
     let ways = OTHERS.into_iter().cycle();
-    let line = |(piece, (colour, stroke)): (&Piece, _)| Series::line("", colour, stroke, piece.points.iter().copied());
+    let line = |(piece, (colour, stroke)): (&OutlinePiece, _)| Series::line("", colour, stroke, piece.points.iter().copied());
     pieces.iter().zip(ways).map(line).collect()
 }
 
@@ -267,7 +171,7 @@ fn letters(cam: &Cam, outline: &Outline, farthest: f64) -> Vec<Label> {
 }
 
 /// Centres and radii of flank and nose on the rising side, as the paper constructs them.
-fn construction(pieces: &[Piece]) -> Vec<Series> {
+fn construction(pieces: &[OutlinePiece]) -> Vec<Series> {
     let (mut lines, mut centres, mut words) = (Vec::new(), Vec::new(), Vec::new());
     for (piece, (text, beside)) in pieces.iter().skip(1).zip([("O_1", Beside::BelowLeft), ("O_2", Beside::Left)]) {
         let (Some(centre), Some(first), Some(last)) = (piece.centre, piece.points.first(), piece.points.last()) else {

@@ -3,17 +3,10 @@
 //! The local map looks the same at every scale, so each of its orbits is a ray from the corner impact. The machine's
 //! orbits deviate from these rays where second-order terms matter.
 
-use std::f64::consts::TAU;
-
-use crate::figures::section::Crossings;
 use crate::figures::{Entry, FigureContext, by_stability, drawn};
 use crate::show::words;
-use corner_impact::border_collision::long_run::LocalLongRun;
-use corner_impact::border_collision::outcome::LocalOutcome;
-use corner_impact::border_collision::validity::ComparedMotion;
-use corner_impact::cam::apart;
-use corner_impact::orbit::branch::{Branch, Following};
-use corner_impact::orbit::{Parameter, PeriodicOrbit, Search, Stability, search};
+use corner_impact::orbit::Stability;
+use corner_impact::study::local::NextToCorner;
 use corner_impact_plot::{BREAK, Beside, Colour, Figure, FigureAxis, Label, Mark, Panel, Series, Stroke};
 
 /// The report's figure of the local map.
@@ -33,108 +26,13 @@ pub(crate) const LOCAL_MAP: Entry = Entry {
     },
 };
 
-/// Range of the changes of period, as a multiple of the smallest range over which a fixed point is a tenth off.
-const BEYOND: f64 = 3.0;
-/// Step of a branch, as a share of that range.
-const STEP: f64 = 0.01;
-/// Longest period of an orbit of the map that is shown; longer orbits are too many.
-const LONGEST: usize = 2;
 /// Smallest share of a panel's height for the lower of two rays whose slopes differ in size.
 const SEEN: f64 = 0.15;
-
-/// A periodic orbit of the local map.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Ray {
-    /// Sides that the orbit visits: L before the corner, R after it.
-    pub word: String,
-    /// Sign of the changes of period for which the orbit exists: -1 at faster speeds.
-    pub sign: f64,
-    /// Whether small deviations from the orbit die out.
-    pub stability: Stability,
-    /// Positions of the points, m, for a change of the period by `sign`, s; they are proportional to that change.
-    pub positions: Vec<f64>,
-    /// Velocities, m/s, for the same change of the period.
-    pub velocities: Vec<f64>,
-}
-
-/// The local map and the machine near the corner impact.
-#[derive(Clone, Debug, PartialEq)]
-pub struct NextToCorner {
-    /// Largest change of the period, s.
-    pub reach: f64,
-    /// T*, s.
-    pub period: f64,
-    /// Position of x* on the section, m.
-    pub position: f64,
-    /// Orbits of the local map.
-    pub rays: Vec<Ray>,
-    /// Signs of the changes of period for which every motion of the local map leaves.
-    pub left: Vec<f64>,
-    /// Orbits of the machine: change of the period, s, and position relative to x*, m.
-    pub machine: Vec<Crossings>,
-}
 
 impl FigureContext {
     /// Computes the local map's diagram, or says why there is none.
     pub fn next_to_corner(&self) -> Result<NextToCorner, String> {
-        let found = self.found()?;
-        let at = &found.at;
-        if found.outcomes.is_empty() {
-            let why = found.classification.as_ref().err().map(ToString::to_string);
-            return Err(why.unwrap_or_else(|| "the local map is not classified".into()));
-        }
-        let rays = found.outcomes.iter().flat_map(|outcome| {
-            let short = outcome.orbits.iter().filter(|orbit| orbit.points.len() <= LONGEST);
-            short.map(|orbit| Ray {
-                word: orbit.word.to_string(),
-                sign: outcome.mu,
-                stability: orbit.stability(),
-                positions: orbit.points.iter().map(|point| point[0]).collect(),
-                velocities: orbit.points.iter().map(|point| point[1]).collect(),
-            })
-        });
-        let rays: Vec<Ray> = rays.filter(|ray| ray.sign != 0.0).collect();
-        let leaves = |outcome: &&LocalOutcome| {
-            outcome.mu != 0.0 && outcome.fates.iter().all(|fate| matches!(fate.end, LocalLongRun::Escapes(_)))
-        };
-        let left = found.outcomes.iter().filter(leaves).map(|outcome| outcome.mu).collect();
-        let fixed =
-            found.ranges.iter().filter(|range| range.order == 1 && range.compared != ComparedMotion::OneRevolution);
-        let held = fixed.map(|range| range.period_change.abs()).filter(|change| *change > 0.0);
-        let least = held.fold(f64::INFINITY, f64::min);
-        let reach = if least.is_finite() { BEYOND * least } else { 1e-3 * at.period };
-        let reach = reach.min(0.2 * at.period);
-        let rpm = |change: f64| 60.0 / (at.period + change);
-        let branches = self.close_by([rpm(reach), rpm(-reach)])?;
-        let mut machine = self.crossings(&branches)?;
-        for point in machine.iter_mut().flat_map(|line| &mut line.points) {
-            *point = [60.0 / point[0] - at.period, point[1] - at.state.position];
-        }
-        Ok(NextToCorner { reach, period: at.period, position: at.state.position, rays, left, machine })
-    }
-
-    /// Branches through the orbits of one impact in one revolution, or of two in two, at either end of a range, rpm.
-    fn close_by(&self, range: [f64; 2]) -> Result<Vec<Branch>, String> {
-        let following =
-            Following { parameter: Parameter::Speed, range, longest_step: STEP, most_points: (4.0 / STEP) as usize };
-        let mut branches: Vec<Branch> = Vec::new();
-        for (rpm, revolutions) in range.into_iter().flat_map(|rpm| [(rpm, 1), (rpm, 2)]) {
-            let wanted = Search { revolutions, impacts: Some(revolutions as usize) };
-            let orbits = search(&self.machine(rpm), &wanted).map_err(|error| error.to_string())?;
-            for orbit in orbits.iter().filter(|orbit| self.is_near(orbit)) {
-                if !branches.iter().any(|branch| branch.holds(rpm, orbit)) {
-                    let branch = Branch::through(&self.model, rpm, orbit, &following);
-                    branches.push(branch.map_err(|error| error.to_string())?);
-                }
-            }
-        }
-        Ok(branches)
-    }
-
-    /// Whether every impact of an orbit is nearer to the corner than to the opposite cam angle.
-    fn is_near(&self, orbit: &PeriodicOrbit) -> bool {
-        let Ok(found) = self.found() else { return false };
-        orbit.impacts().all(|impact| apart(impact.cam_angle, found.at.corner.angle) < 0.25 * TAU)
+        NextToCorner::new(&self.model, &self.cam, self.found()?)
     }
 }
 

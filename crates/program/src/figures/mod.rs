@@ -24,7 +24,7 @@ mod trace;
 
 use serde::Serialize;
 
-use crate::show::command::command;
+use corner_impact::command::command;
 use corner_impact::model::Units;
 use corner_impact::orbit::Stability;
 use corner_impact::study::survey::{self, Spacing};
@@ -33,16 +33,14 @@ use corner_impact_plot::{self, Colour, Figure, FigureAxis, Series, Stroke};
 pub use basins::{basins_figure, shares_figure};
 pub use branches::branches_figure;
 pub use cam::{CornerMark, corner_marks};
-pub use cam_shape::{Outline, Piece, cam_figure, shape_figure};
+pub use cam_shape::{cam_figure, shape_figure};
 pub use chaos::chaos_figure;
 pub use chart::{Coloured, chart_figure};
 pub use composition::{Composition, Line, Neighbour};
 pub use curve::curve_figure;
 pub use design::{design_figure, loads_diagram};
 pub use impacts::{Shown, impact_diagram, strobe_diagram};
-pub use local_map::{NextToCorner, Ray};
 pub use phase_plane::phase_plane;
-pub use section::Crossings;
 pub use speeds::{impacts_by_speed, speeds_figure};
 pub(crate) use subject::NO_STUDY;
 pub use subject::{Effort, Fast, FigureContext, ShownSpeeds, Slow};

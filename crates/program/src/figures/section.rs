@@ -5,9 +5,9 @@ use crate::figures::trace::TRANSIENT;
 use crate::figures::{Entry, Fast, FigureContext, SPEED, by_stability, drawn, position};
 use crate::show::words;
 use corner_impact::flight::State;
-use corner_impact::orbit::branch::{Branch, BranchPoint};
-use corner_impact::orbit::{Course, Cycle, Stability};
-use corner_impact::simulate::{Machine, SimulateError, angular_velocity};
+use corner_impact::orbit::branch::Branch;
+use corner_impact::simulate::SimulateError;
+use corner_impact::study::local::Crossings;
 use corner_impact_plot::layout::widened;
 use corner_impact_plot::{BREAK, Cloud, Colour, Data, Density, Figure, FigureAxis, Marker, Panel, Series, extent};
 
@@ -62,15 +62,6 @@ pub(crate) const BEYOND_ATTRACTOR: Entry = Entry {
 /// Number of states of the attractor.
 const STATES: usize = 20_000;
 
-/// A piece of a branch at the section: one crossing of its orbits.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Crossings {
-    /// Stability of the orbits.
-    pub stability: Stability,
-    /// Speed, rpm, and position at the section, m.
-    pub points: Vec<[f64; 2]>,
-}
-
 /// Positions at the section against speed, with the corner impact at its speed, rpm, and position, m.
 fn section_diagram(title: &str, runs: Density, branches: &[Crossings], corner: [f64; 2]) -> Figure {
     let [rpm, all] = runs.ranges();
@@ -122,38 +113,6 @@ impl FigureContext {
 
     /// Crossings of the orbits of branches with the section of the corner impact's map.
     pub(crate) fn crossings(&self, branches: &[Branch]) -> Result<Vec<Crossings>, String> {
-        let at = &self.found()?.at;
-        let (angle, machine) = (at.section_angle(), self.machine(at.speed_rpm()));
-        let mut all = Vec::new();
-        for branch in branches {
-            let most = branch.points.iter().map(|point| point.orbit.revolutions).max().unwrap_or(1);
-            for turn in 0..most {
-                let mut open: Option<Crossings> = None;
-                for pair in branch.points.windows(2) {
-                    let [one, other] = pair else { continue };
-                    let ends = crossing(&machine, one, angle, turn).zip(crossing(&machine, other, angle, turn));
-                    // A piece has the stability of the end that is not a special point.
-                    let stability = if one.special.is_some() { other } else { one }.orbit.judgement.stability;
-                    let Some((from, to)) = ends else {
-                        all.extend(open.take());
-                        continue;
-                    };
-                    match &mut open {
-                        Some(line) if line.stability == stability => line.points.push(to),
-                        _ => all.extend(open.replace(Crossings { stability, points: vec![from, to] })),
-                    }
-                }
-                all.extend(open);
-            }
-        }
-        Ok(all)
+        Ok(Crossings::of(branches, &self.model, &self.cam, &self.found()?.at))
     }
-}
-
-/// Speed, rpm, and position, m, at the section in one revolution of an orbit that never sticks.
-fn crossing(machine: &Machine, point: &BranchPoint, cam_angle: f64, turn: u64) -> Option<[f64; 2]> {
-    let Course::Impacts(cycle) = &point.orbit.course else { return None };
-    let later: Cycle = if turn == 0 { cycle.clone() } else { cycle.begun_later(turn) };
-    let machine = machine.at_speed(angular_velocity(point.rpm));
-    (turn < cycle.revolutions).then(|| [point.rpm, later.at_section(&machine, cam_angle).0.position])
 }

@@ -11,7 +11,7 @@ use crate::figures::{
 };
 use crate::report::quantities::{ReportQuantity, quantities};
 use crate::report::through::ThroughCorner;
-use crate::show::command::command;
+use corner_impact::command::command;
 use crate::show::words;
 use corner_impact::agreement::by_quantity;
 use corner_impact::cam::{Cam, Jet, Side};

@@ -4,8 +4,8 @@
 use serde::Serialize;
 
 use crate::figures::through_corner::{ImpactSide, Moment, ShownOrbit, profile};
-use crate::figures::{CornerMark, Outline, corner_marks};
-use corner_impact::cam::{Cam, Lift};
+use crate::figures::{CornerMark, corner_marks};
+use corner_impact::cam::{Cam, Lift, Outline};
 use corner_impact::elementary;
 use corner_impact::model::Units;
 use corner_impact_plot::ticks::{ticks, unit};

@@ -3,11 +3,9 @@
 //! An enum becomes words in `words` and a number digits in `digits`, and nowhere else.
 
 pub(crate) mod block;
-pub(crate) mod command;
 pub(crate) mod csv;
 pub mod digits;
 pub(crate) mod html;
-pub mod json;
 pub mod markdown;
 pub(crate) mod matplotlib;
 pub mod notes;

@@ -1,28 +1,37 @@
-//! JSON output.
+//! JSON documents in the units of a model.
 
 use std::io::{self, Write};
 
-use corner_impact::model::{Converted, Units};
-use corner_impact::untrusted;
 use serde::Serialize;
-use serde_json::ser::{CharEscape, Formatter, PrettyFormatter, Serializer};
+use serde_json::ser::{CharEscape, CompactFormatter, Formatter, PrettyFormatter, Serializer};
 
-/// Writes one JSON document, indented, with a line end, in the units of a model.
+use crate::model::{Converted, Units};
+use crate::untrusted;
+
+/// Writes one document, indented, with a line end.
 pub fn render(document: &impl Serialize, units: &Units) -> Result<String, serde_json::Error> {
-    let text = if units.are_given {
-        let mut bytes = Vec::new();
-        document.serialize(&mut Serializer::with_formatter(&mut bytes, InUnits::new(units)))?;
-        // serde_json writes nothing but UTF-8.
-        String::from_utf8_lossy(&bytes).into_owned()
+    Ok(untrusted::json(written(document, units, PrettyFormatter::new())? + "\n"))
+}
+
+/// Writes one document in one line, without a line end.
+pub fn compact(document: &impl Serialize, units: &Units) -> Result<String, serde_json::Error> {
+    Ok(untrusted::json(written(document, units, CompactFormatter)?))
+}
+
+fn written(document: &impl Serialize, units: &Units, layout: impl Formatter) -> Result<String, serde_json::Error> {
+    let mut bytes = Vec::new();
+    if units.are_given {
+        document.serialize(&mut Serializer::with_formatter(&mut bytes, InUnits::new(units, layout)))?;
     } else {
-        serde_json::to_string_pretty(document)?
-    };
-    Ok(untrusted::json(text + "\n"))
+        document.serialize(&mut Serializer::with_formatter(&mut bytes, layout))?;
+    }
+    // serde_json writes nothing but UTF-8.
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 
 /// Writes a document with names and numbers in the units of a model.
-struct InUnits<'a> {
-    pretty: PrettyFormatter<'a>,
+struct InUnits<'a, F> {
+    layout: F,
     units: &'a Units,
     /// The name whose value comes next, as it is escaped.
     name: Option<Vec<u8>>,
@@ -32,9 +41,9 @@ struct InUnits<'a> {
     open: Vec<Option<Converted>>,
 }
 
-impl<'a> InUnits<'a> {
-    fn new(units: &'a Units) -> Self {
-        Self { pretty: PrettyFormatter::new(), units, name: None, is_named: false, open: Vec::new() }
+impl<'a, F: Formatter> InUnits<'a, F> {
+    fn new(units: &'a Units, layout: F) -> Self {
+        Self { layout, units, name: None, is_named: false, open: Vec::new() }
     }
 
     /// Writes the name before a value, and returns the conversion of the numbers in it.
@@ -57,29 +66,29 @@ macro_rules! values {
         fn $write<W: ?Sized + Write>(&mut self, writer: &mut W, value: $kind) -> io::Result<()> {
             // A name may be a number.
             if let (true, Some(name)) = (self.is_named, &mut self.name) {
-                return self.pretty.$write(name, value);
+                return self.layout.$write(name, value);
             }
             let convert = self.enter(writer, false)?;
             values!(@$whole self, writer, convert, value);
-            self.pretty.$write(writer, value)
+            self.layout.$write(writer, value)
         }
     )+};
     (@words $self:ident, $writer:ident, $convert:ident, $value:ident) => { _ = $convert };
     (@whole $self:ident, $writer:ident, $convert:ident, $value:ident) => {
         if let Some(convert) = $convert {
-            return $self.pretty.write_f64($writer, convert($self.units, $value as f64));
+            return $self.layout.write_f64($writer, convert($self.units, $value as f64));
         }
     };
 }
 
-impl Formatter for InUnits<'_> {
+impl<F: Formatter> Formatter for InUnits<'_, F> {
     values!(words: write_bool(bool), write_number_str(&str), write_raw_fragment(&str));
     values!(whole: write_i8(i8), write_i16(i16), write_i32(i32), write_i64(i64), write_i128(i128));
     values!(whole: write_u8(u8), write_u16(u16), write_u32(u32), write_u64(u64), write_u128(u128));
 
     fn write_f64<W: ?Sized + Write>(&mut self, writer: &mut W, value: f64) -> io::Result<()> {
         let convert = self.enter(writer, false)?;
-        self.pretty.write_f64(writer, convert.map_or(value, |convert| convert(self.units, value)))
+        self.layout.write_f64(writer, convert.map_or(value, |convert| convert(self.units, value)))
     }
 
     fn write_f32<W: ?Sized + Write>(&mut self, writer: &mut W, value: f32) -> io::Result<()> {
@@ -88,7 +97,7 @@ impl Formatter for InUnits<'_> {
 
     fn write_null<W: ?Sized + Write>(&mut self, writer: &mut W) -> io::Result<()> {
         self.enter(writer, false)?;
-        self.pretty.write_null(writer)
+        self.layout.write_null(writer)
     }
 
     fn begin_string<W: ?Sized + Write>(&mut self, writer: &mut W) -> io::Result<()> {
@@ -96,60 +105,60 @@ impl Formatter for InUnits<'_> {
             return Ok(());
         }
         self.enter(writer, false)?;
-        self.pretty.begin_string(writer)
+        self.layout.begin_string(writer)
     }
 
     fn end_string<W: ?Sized + Write>(&mut self, writer: &mut W) -> io::Result<()> {
-        if self.is_named { Ok(()) } else { self.pretty.end_string(writer) }
+        if self.is_named { Ok(()) } else { self.layout.end_string(writer) }
     }
 
     fn write_string_fragment<W: ?Sized + Write>(&mut self, writer: &mut W, fragment: &str) -> io::Result<()> {
         match (self.is_named, &mut self.name) {
-            (true, Some(name)) => self.pretty.write_string_fragment(name, fragment),
-            _ => self.pretty.write_string_fragment(writer, fragment),
+            (true, Some(name)) => self.layout.write_string_fragment(name, fragment),
+            _ => self.layout.write_string_fragment(writer, fragment),
         }
     }
 
     fn write_char_escape<W: ?Sized + Write>(&mut self, writer: &mut W, escape: CharEscape) -> io::Result<()> {
         match (self.is_named, &mut self.name) {
-            (true, Some(name)) => self.pretty.write_char_escape(name, escape),
-            _ => self.pretty.write_char_escape(writer, escape),
+            (true, Some(name)) => self.layout.write_char_escape(name, escape),
+            _ => self.layout.write_char_escape(writer, escape),
         }
     }
 
     fn begin_array<W: ?Sized + Write>(&mut self, writer: &mut W) -> io::Result<()> {
         let convert = self.enter(writer, false)?;
         self.open.push(convert);
-        self.pretty.begin_array(writer)
+        self.layout.begin_array(writer)
     }
 
     fn end_array<W: ?Sized + Write>(&mut self, writer: &mut W) -> io::Result<()> {
         self.open.pop();
-        self.pretty.end_array(writer)
+        self.layout.end_array(writer)
     }
 
     fn begin_array_value<W: ?Sized + Write>(&mut self, writer: &mut W, first: bool) -> io::Result<()> {
-        self.pretty.begin_array_value(writer, first)
+        self.layout.begin_array_value(writer, first)
     }
 
     fn end_array_value<W: ?Sized + Write>(&mut self, writer: &mut W) -> io::Result<()> {
-        self.pretty.end_array_value(writer)
+        self.layout.end_array_value(writer)
     }
 
     fn begin_object<W: ?Sized + Write>(&mut self, writer: &mut W) -> io::Result<()> {
         self.enter(writer, true)?;
         self.open.push(None);
-        self.pretty.begin_object(writer)
+        self.layout.begin_object(writer)
     }
 
     fn end_object<W: ?Sized + Write>(&mut self, writer: &mut W) -> io::Result<()> {
         self.open.pop();
-        self.pretty.end_object(writer)
+        self.layout.end_object(writer)
     }
 
     fn begin_object_key<W: ?Sized + Write>(&mut self, writer: &mut W, first: bool) -> io::Result<()> {
         (self.name, self.is_named) = (Some(Vec::new()), true);
-        self.pretty.begin_object_key(writer, first)
+        self.layout.begin_object_key(writer, first)
     }
 
     fn end_object_key<W: ?Sized + Write>(&mut self, _: &mut W) -> io::Result<()> {
@@ -162,6 +171,6 @@ impl Formatter for InUnits<'_> {
     }
 
     fn end_object_value<W: ?Sized + Write>(&mut self, writer: &mut W) -> io::Result<()> {
-        self.pretty.end_object_value(writer)
+        self.layout.end_object_value(writer)
     }
 }

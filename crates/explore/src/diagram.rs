@@ -1,0 +1,173 @@
+//! Impacts over a number, and basins of a grid, as columns.
+
+use std::sync::Arc;
+
+use corner_impact::flight::State;
+use corner_impact::model::Model;
+use corner_impact::orbit::long_run::Budget;
+use corner_impact::simulate::EventKind;
+use corner_impact::study::basins::{BasinBoundary, Basins, Curve, Grid};
+use corner_impact::study::diagram::on_attractors;
+use corner_impact::study::survey::{
+    Beginning, RecordBlock, RecordRow, Sample, Section, Seen, Survey, Sweep, SweepError, SweepStart,
+};
+use serde::Serialize;
+
+use crate::Refusal;
+use crate::question::DiagramRequest;
+
+/// Impacts at each value, as columns: those of `diagram --out` for impacts.
+#[derive(Default, Serialize)]
+pub struct Diagram {
+    /// Path of the number that varies, or `rpm`.
+    over: String,
+    /// The values that were run.
+    values: Vec<f64>,
+    /// Value of each impact.
+    value: Vec<f64>,
+    cam_angle_rad: Vec<f64>,
+    position_m: Vec<f64>,
+    velocity_before_m_s: Vec<f64>,
+    velocity_after_m_s: Vec<f64>,
+    /// Attractor of each impact, from 0 at each value; empty for runs from one start.
+    attractor: Vec<usize>,
+    /// Values whose runs cannot go on.
+    failed: Vec<f64>,
+}
+
+/// Most starts of a value's attractors.
+const SAMPLED: usize = 64;
+/// Most revolutions of a diagram on the page, recorded or not, of all values together.
+const MOST_REVOLUTIONS: u64 = 100_000_000;
+
+impl Diagram {
+    /// Runs each value.
+    pub(crate) fn of(model: &Model, asked: &DiagramRequest) -> Result<Self, Refusal> {
+        let axis = asked.over.axis(model)?;
+        let (over, values) = (axis.parameter.name().to_owned(), axis.values.to_vec());
+        let each = asked.transient.saturating_add(asked.record);
+        if each.saturating_mul(values.len() as u64) > MOST_REVOLUTIONS {
+            let words = format!("diagram: at most {MOST_REVOLUTIONS} revolutions of all values together");
+            return Err(Refusal::of_words(words));
+        }
+        let sweep = Sweep {
+            over: Survey::new(model, asked.rpm, axis, None)?,
+            starts: match asked.attractors {
+                true => Beginning::Found(Arc::new(|machine| {
+                    on_attractors(machine, &Sample::Spread(SAMPLED), Budget::SURVEY)
+                })),
+                false => Beginning::One(asked.start.start()?),
+            },
+            following: SweepStart::Nothing,
+            transient: asked.transient,
+            record: asked.record,
+            section: Section::Impacts,
+            growth: None,
+        };
+        let mut found = Self { over, values, ..Self::default() };
+        sweep.run(None, |_, block: Impacts| -> Result<(), SweepError> {
+            found.take(block);
+            Ok(())
+        })?;
+        Ok(found)
+    }
+
+    fn take(&mut self, block: Impacts) {
+        for RecordRow { value, motion, seen, .. } in block.rows {
+            let Seen::Event(event) = seen else { continue };
+            self.value.push(value);
+            self.cam_angle_rad.push(event.cam_angle);
+            self.position_m.push(event.position);
+            self.velocity_before_m_s.push(event.velocity_before);
+            self.velocity_after_m_s.push(event.velocity_after);
+            self.attractor.extend(motion);
+        }
+        self.failed.extend(block.failed);
+    }
+}
+
+/// Impacts of a value.
+#[derive(Default)]
+struct Impacts {
+    rows: Vec<RecordRow>,
+    failed: Option<f64>,
+}
+
+impl RecordBlock for Impacts {
+    fn push(&mut self, row: &RecordRow) {
+        if matches!(row.seen, Seen::Event(event) if event.kind == EventKind::Impact) {
+            self.rows.push(*row);
+        }
+    }
+
+    fn is_full(&self) -> bool {
+        self.rows.len() >= 4096
+    }
+
+    fn fail(&mut self, value: f64) -> bool {
+        self.failed = Some(value);
+        true
+    }
+}
+
+/// Basins with the motion of each cell, and what separates them.
+#[derive(Serialize)]
+pub struct GridBasins {
+    #[serde(flatten)]
+    basins: Basins,
+    /// Place in `endings` of the motion that each cell ends on, row by row from the lowest velocity; -1 below the cam.
+    cell_endings: Vec<i64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    boundary: Option<Boundary>,
+}
+
+/// Position and velocity on the section, in turns.
+#[derive(Serialize)]
+struct Boundary {
+    stable: Vec<[f64; 2]>,
+    saddles: Vec<[f64; 2]>,
+    curves: Vec<Vec<[f64; 2]>>,
+}
+
+impl GridBasins {
+    /// Takes what was found on a grid.
+    pub(crate) fn of(basins: Basins, grid: &Grid, border: Option<&BasinBoundary>) -> Self {
+        let place = |part: &Option<usize>| part.and_then(|part| i64::try_from(part).ok()).unwrap_or(-1);
+        let cell_endings = basins.cells.iter().map(place).collect();
+        Self { basins, cell_endings, boundary: border.map(|border| Boundary::of(border, grid)) }
+    }
+}
+
+impl Boundary {
+    fn of(border: &BasinBoundary, grid: &Grid) -> Self {
+        let pair = |state: &State| [state.position, state.velocity];
+        Self {
+            stable: border.stable.iter().map(pair).collect(),
+            saddles: border.saddles.iter().map(pair).collect(),
+            curves: border.curves.iter().flat_map(|curve| drawn(curve, grid)).collect(),
+        }
+    }
+}
+
+/// Pieces of a curve inside the ranges of a grid, with the points that a screen can tell apart.
+fn drawn(curve: &Curve, grid: &Grid) -> Vec<Vec<[f64; 2]>> {
+    /// Smallest distance of neighbouring points, as a share of the ranges.
+    const STEP: f64 = 1.0 / 500.0;
+    let place = |value: f64, [low, high]: [f64; 2]| (value - low) / (high - low);
+    let mut pieces: Vec<Vec<[f64; 2]>> = vec![Vec::new()];
+    let mut last = [f64::INFINITY; 2];
+    for State { position, velocity } in curve.points() {
+        let at = [place(position, grid.positions), place(velocity, grid.velocities)];
+        if at.iter().any(|part| !(-STEP..=1.0 + STEP).contains(part)) {
+            last = [f64::INFINITY; 2];
+            pieces.push(Vec::new());
+        } else if at.iter().zip(last).any(|(one, other)| (one - other).abs() >= STEP) {
+            last = at;
+            if let Some(piece) = pieces.last_mut() {
+                piece.push([position, velocity]);
+            }
+        }
+    }
+    pieces.retain(|piece| piece.len() > 1);
+    pieces
+}

@@ -1,0 +1,40 @@
+//! The live page of corner-impact: one pure function from question to answer, and the page that asks.
+//!
+//! A question names a model with changed numbers, and a view of it; the answer has what the library finds, in the model's units. The
+//! function reads no file and no clock, so it gives the same answer behind a server and in a browser. [`respond`] takes and returns JSON.
+//!
+//! ```text
+//!  page (HTML, CSS, JavaScript)
+//!    │  question, JSON
+//!    ▼
+//!  server of the program   or   WebAssembly inside the page
+//!    ▼
+//!  respond → answer        the model, then the study of the library that the view names
+//! ```
+
+mod answer;
+mod diagram;
+mod machine;
+mod model;
+mod motion;
+mod page;
+mod question;
+mod refusal;
+
+pub use answer::{Answer, answer};
+pub use page::{PageModel, PageWords, SCRIPTS, STYLE, Transport, mounting, page};
+pub use question::{ChangedModel, Question};
+pub use refusal::Refusal;
+
+use corner_impact::json;
+use corner_impact::model::Units;
+
+/// Answers a question, both as JSON. A question that cannot be read has an answer with the reason.
+pub fn respond(question: &str) -> String {
+    let (answer, units) = match serde_json::from_str::<Question>(question) {
+        Ok(question) => answer(&question),
+        Err(error) => (Answer::refused("", Refusal::of_words(format!("question: {error}"))), Units::default()),
+    };
+    // Answers hold nothing that JSON cannot write.
+    json::compact(&answer, &units).unwrap_or_default()
+}

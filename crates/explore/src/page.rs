@@ -1,0 +1,100 @@
+//! The page: its script and style, as one HTML file or as a part of another page.
+
+use serde::Serialize;
+
+/// Way of the page's questions to the answers.
+#[derive(Clone, Copy, Debug)]
+pub enum Transport<'a> {
+    /// To the server that the page came from.
+    Server,
+    /// To a WebAssembly module inside the page: the module, compressed by gzip, in base64.
+    Module(&'a str),
+}
+
+/// The model that the page begins with; the paper's without a text.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct PageModel {
+    /// Name of the file in commands.
+    pub file: Option<String>,
+    /// Text of a model file that needs no other.
+    pub text: Option<String>,
+}
+
+/// Texts of the whole page around the live part.
+#[derive(Clone, Copy, Debug)]
+pub struct PageWords<'a> {
+    /// Name of the model.
+    pub title: &'a str,
+    /// Version of the program.
+    pub version: &'a str,
+    /// HTML that stands there without JavaScript.
+    pub still: &'a str,
+    /// HTML below the page.
+    pub footer: &'a str,
+}
+
+const PAGE: &str = include_str!("page/index.html");
+
+/// Style of the live part; all of it applies below the class `explore`.
+pub const STYLE: &str = concat!(include_str!("page/page.css"), include_str!("page/views-more.css"));
+
+/// Scripts in the order in which they use each other.
+pub const SCRIPTS: &str = concat!(
+    include_str!("page/draw.js"),
+    include_str!("page/plot.js"),
+    include_str!("page/pointing.js"),
+    include_str!("page/state.js"),
+    include_str!("page/ask.js"),
+    include_str!("page/views.js"),
+    include_str!("page/controls.js"),
+    include_str!("page/save.js"),
+    include_str!("page/machine.js"),
+    include_str!("page/diagram.js"),
+    include_str!("page/plane.js"),
+    include_str!("page/basins.js"),
+    include_str!("page/local.js"),
+    include_str!("page/verdict.js"),
+    include_str!("page/loads.js"),
+    include_str!("page/stories.js"),
+    include_str!("page/explore.js"),
+);
+
+/// Script that puts the live part into the element with the identifier `explore`.
+pub fn mounting(transport: Transport<'_>, model: &PageModel) -> String {
+    let transport = match transport {
+        Transport::Server => "Explore.server(\"\")".to_owned(),
+        Transport::Module(module) => format!("Explore.module(\"{module}\")"),
+    };
+    // In a script, the text of a model must not end the script.
+    let model = serde_json::to_string(model).unwrap_or_default().replace('<', "\\u003c");
+    format!(
+        "\"use strict\";\nExplore.mount(document.getElementById(\"explore\"), {{ transport: {transport}, model: {model} }});"
+    )
+}
+
+/// The whole page.
+pub fn page(transport: Transport<'_>, model: &PageModel, words: PageWords<'_>) -> String {
+    let title = words.title.replace('&', "&amp;").replace('<', "&lt;");
+    let parts = [
+        ("title", title.as_str()),
+        ("version", words.version),
+        ("still", words.still),
+        ("footer", words.footer),
+        ("style", STYLE),
+        ("scripts", SCRIPTS),
+        ("mount", &mounting(transport, model)),
+    ];
+    filled(PAGE, &parts)
+}
+
+/// A text with each `{{name}}` replaced, once: what is put in is not looked through again.
+fn filled(text: &str, parts: &[(&str, &str)]) -> String {
+    let mut pieces = text.split("{{");
+    let mut page = pieces.next().unwrap_or_default().to_owned();
+    for piece in pieces {
+        let (name, rest) = piece.split_once("}}").unwrap_or((piece, ""));
+        page.push_str(parts.iter().find(|(part, _)| *part == name).map_or("", |(_, text)| text));
+        page.push_str(rest);
+    }
+    page
+}

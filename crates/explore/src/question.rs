@@ -1,0 +1,335 @@
+//! Questions of the page: a model with changed numbers, and a view of it.
+
+use std::collections::BTreeMap;
+
+use corner_impact::flight::State;
+use corner_impact::model::{Model, OSORIO_2008};
+use corner_impact::orbit::Parameter;
+use corner_impact::study::survey::{Axis, Placed, Spacing, Start, Values, limits};
+use serde::Deserialize;
+
+use crate::Refusal;
+
+/// A question of the page.
+#[derive(Clone, Debug, Deserialize)]
+pub struct Question {
+    /// The model.
+    #[serde(default)]
+    pub model: ChangedModel,
+    /// What is asked about it.
+    #[serde(flatten)]
+    pub view: View,
+}
+
+/// The text of a model file with changed numbers; the paper's model without a text.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ChangedModel {
+    /// Name of the file in commands and in complaints.
+    #[serde(default)]
+    pub file: Option<String>,
+    /// Text of the file.
+    #[serde(default)]
+    pub text: Option<String>,
+    /// Changed numbers by name, as for `--set NAME=VALUE`.
+    #[serde(default)]
+    pub set: BTreeMap<String, f64>,
+}
+
+impl ChangedModel {
+    /// The model as its file has it, and with its changes.
+    pub(crate) fn read(&self) -> Result<[Model; 2], Refusal> {
+        let given = match (&self.file, &self.text) {
+            (Some(file), Some(text)) => Model::parse(file, text)?,
+            (None, Some(text)) => Model::parse("model.toml", text)?,
+            (Some(file), None) => Model::parse(file, OSORIO_2008)?,
+            (None, None) => Model::built_in()?,
+        };
+        let set: Vec<(String, f64)> = self.set.iter().map(|(name, value)| (name.clone(), *value)).collect();
+        let changed = if set.is_empty() { given.clone() } else { given.changed(&set)? };
+        Ok([given, changed])
+    }
+}
+
+/// What is asked about a model.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(tag = "view", rename_all = "snake_case")]
+pub enum View {
+    /// Its numbers, notes and corners.
+    Model,
+    /// Text of a model file to begin with.
+    Template {
+        /// Law of the cam.
+        law: String,
+    },
+    /// Lift and shape of the cam.
+    Cam,
+    /// A run at one speed, moment by moment.
+    Motion(MotionRequest),
+    /// What a run comes to.
+    LongRun {
+        /// Speed, rpm.
+        rpm: f64,
+        /// Start of the run.
+        #[serde(default)]
+        start: StartRequest,
+    },
+    /// Impacts over the speed or another number.
+    Diagram(DiagramRequest),
+    /// Attractors over the speed or another number, and where each begins and ends.
+    Speeds {
+        /// Speed, rpm, where another number varies.
+        #[serde(default)]
+        rpm: Option<f64>,
+        /// The number that varies.
+        over: AxisRequest,
+        /// Starts at each value.
+        #[serde(default = "few_starts")]
+        starts: usize,
+    },
+    /// Periodic orbits at one speed.
+    Orbit {
+        /// Speed, rpm.
+        rpm: f64,
+        /// Revolutions of a period.
+        #[serde(default = "one")]
+        revolutions: u64,
+        /// Impacts of a period; any number without it.
+        #[serde(default)]
+        impacts: Option<usize>,
+    },
+    /// The motion that each start of a grid ends on.
+    Basins(BasinsRequest),
+    /// The corner impact, its map and what happens there.
+    Verify,
+    /// Orbits of the local map beside those of the machine.
+    Local,
+    /// Contact forces, separation and needs.
+    Design {
+        /// Lowest and highest speed, rpm; around the separation without them.
+        #[serde(default)]
+        rpm: Option<[f64; 2]>,
+        /// Number of speeds.
+        #[serde(default = "some_speeds")]
+        count: u32,
+        /// Needs, as for `--need`.
+        #[serde(default)]
+        needs: Vec<String>,
+    },
+    /// Corner impacts over a range of speeds, rpm.
+    Locate {
+        /// Lowest and highest speed.
+        rpm: [f64; 2],
+    },
+}
+
+impl View {
+    /// Name in questions and answers.
+    pub(crate) fn name(&self) -> &'static str {
+        match self {
+            Self::Model => "model",
+            Self::Template { .. } => "template",
+            Self::Cam => "cam",
+            Self::Motion(_) => "motion",
+            Self::LongRun { .. } => "long_run",
+            Self::Diagram(_) => "diagram",
+            Self::Speeds { .. } => "speeds",
+            Self::Orbit { .. } => "orbit",
+            Self::Basins(_) => "basins",
+            Self::Verify => "verify",
+            Self::Local => "local",
+            Self::Design { .. } => "design",
+            Self::Locate { .. } => "locate",
+        }
+    }
+}
+
+fn one() -> u64 {
+    1
+}
+
+fn few_starts() -> usize {
+    8
+}
+
+fn some_speeds() -> u32 {
+    41
+}
+
+/// Start of a run: on the cam at rest without any field.
+#[derive(Clone, Copy, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StartRequest {
+    /// Cam angle, rad.
+    #[serde(default)]
+    pub cam_angle_rad: f64,
+    /// Position, in the model's unit of length.
+    #[serde(default)]
+    pub position: Option<f64>,
+    /// Velocity.
+    #[serde(default)]
+    pub velocity: Option<f64>,
+    /// Velocity relative to the cam at which the follower leaves it, in the place of both.
+    #[serde(default)]
+    pub relative_velocity: Option<f64>,
+}
+
+impl StartRequest {
+    /// The start.
+    pub(crate) fn start(self) -> Result<Start, Refusal> {
+        let cam_angle = self.cam_angle_rad;
+        match (self.position, self.velocity, self.relative_velocity) {
+            _ if !(0.0..std::f64::consts::TAU).contains(&cam_angle) => {
+                Err(Refusal::of_words(format!("start: cam angle = {cam_angle}: must be from 0 to below 2 pi")))
+            }
+            (None, None, leaving) => Ok(Start { cam_angle, follower: Placed::OnCam(leaving.unwrap_or(0.0)) }),
+            (Some(position), Some(velocity), None) => {
+                Ok(Start { cam_angle, follower: Placed::At(State { position, velocity }) })
+            }
+            _ => Err(Refusal::of_words("start: takes a position and a velocity, or a relative velocity")),
+        }
+    }
+
+    /// Options of a command for this start, each after a blank.
+    pub(crate) fn options(self) -> String {
+        let state = self.position.zip(self.velocity);
+        let leaving = self.relative_velocity.map_or(String::new(), |velocity| format!(" --relative-velocity {velocity}"));
+        let state = state.map_or(leaving, |(position, velocity)| format!(" --state={position},{velocity}"));
+        if self.cam_angle_rad == 0.0 { state } else { format!(" --start-angle {}{state}", self.cam_angle_rad) }
+    }
+}
+
+/// A run at one speed.
+#[derive(Clone, Copy, Debug, Deserialize)]
+pub struct MotionRequest {
+    /// Speed, rpm.
+    pub rpm: f64,
+    /// Start of the run.
+    #[serde(default)]
+    pub start: StartRequest,
+    /// Revolutions before those that are shown.
+    #[serde(default = "usual_transient")]
+    pub transient: u64,
+    /// Revolutions that are shown.
+    #[serde(default = "two")]
+    pub revolutions: u64,
+    /// Moments of each revolution; 0 for the events alone.
+    #[serde(default = "each_degree")]
+    pub samples: u32,
+}
+
+fn usual_transient() -> u64 {
+    300
+}
+
+fn two() -> u64 {
+    2
+}
+
+fn each_degree() -> u32 {
+    360
+}
+
+/// A diagram over one number.
+#[derive(Clone, Debug, Deserialize)]
+pub struct DiagramRequest {
+    /// Speed, rpm, where another number varies.
+    #[serde(default)]
+    pub rpm: Option<f64>,
+    /// The number that varies.
+    pub over: AxisRequest,
+    /// Start of the run at each value.
+    #[serde(default)]
+    pub start: StartRequest,
+    /// Revolutions before those that are recorded.
+    #[serde(default = "usual_transient")]
+    pub transient: u64,
+    /// Revolutions that are recorded.
+    #[serde(default = "hundred")]
+    pub record: u64,
+    /// Whether every attractor that 64 starts find is recorded.
+    #[serde(default)]
+    pub attractors: bool,
+}
+
+fn hundred() -> u64 {
+    100
+}
+
+/// Values of a number.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct AxisRequest {
+    /// Name of the number: `rpm`, or as for `--over`.
+    pub name: String,
+    /// Lowest value.
+    pub low: f64,
+    /// Highest value.
+    pub high: f64,
+    /// Number of values.
+    #[serde(default = "many")]
+    pub count: usize,
+    /// Whether values are spaced by their logarithm.
+    #[serde(default)]
+    pub log: bool,
+}
+
+fn many() -> usize {
+    200
+}
+
+impl AxisRequest {
+    /// Most values of a diagram on the page.
+    const MOST: usize = 20_000;
+
+    /// The parameter and its values.
+    pub(crate) fn axis(&self, model: &Model) -> Result<Axis, Refusal> {
+        Ok(Axis::new(Parameter::named(model, &self.name)?, &self.values()?))
+    }
+
+    /// The values.
+    pub(crate) fn values(&self) -> Result<Values, Refusal> {
+        let spacing = if self.log { Spacing::Logarithmic } else { Spacing::Linear };
+        let values = Values { low: self.low, high: self.high, count: self.count, spacing };
+        if self.count > Self::MOST {
+            return Err(Refusal::of_words(format!("over: count = {}: must be at most {}", self.count, Self::MOST)));
+        }
+        let what = if self.name == "rpm" { "speed" } else { "value" };
+        let values = values.checked(what).map_err(|words| Refusal::of_words(format!("over: {words}")))?;
+        if self.name == "rpm" {
+            limits::speed(values.low).map_err(|words| Refusal::of_words(format!("rpm = {}: {words}", values.low)))?;
+        }
+        Ok(values)
+    }
+
+    /// Options of a command for this axis; `rpm` is the speed where another number varies.
+    pub(crate) fn options(&self, rpm: Option<f64>) -> String {
+        let Self { name, low, high, count, log } = self;
+        let log = if *log { ":log" } else { "" };
+        match rpm {
+            None if name == "rpm" => format!("--rpm {low}:{high}:{count}{log}"),
+            _ => format!("--rpm {} --over {name}={low}:{high}:{count}{log}", rpm.unwrap_or(f64::NAN)),
+        }
+    }
+}
+
+/// A grid of starts on a section.
+#[derive(Clone, Copy, Debug, Deserialize)]
+pub struct BasinsRequest {
+    /// Speed, rpm.
+    pub rpm: f64,
+    /// The section, rad.
+    #[serde(default)]
+    pub cam_angle_rad: f64,
+    /// Cells along the positions and along the velocities.
+    pub grid: [usize; 2],
+    /// Lowest and highest position; around the orbits without them.
+    #[serde(default)]
+    pub position: Option<[f64; 2]>,
+    /// Lowest and highest velocity.
+    #[serde(default)]
+    pub velocity: Option<[f64; 2]>,
+    /// Whether the saddles and the curves that separate the basins are sought, too, which may take seconds.
+    #[serde(default)]
+    pub boundary: bool,
+}
