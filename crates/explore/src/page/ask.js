@@ -81,9 +81,9 @@
 
   // The server ---------------------------------------------------------------------------------------------------------
 
-  /** The program on this machine, below `base` (its address with the token). */
+  /** The program on this machine, below `base` (its address with the token; "" where the page came from there). */
   Explore.server = (base) => {
-    const root = base.replace(/\/$/, "");
+    const root = base === "" || base.endsWith("/") ? base : `${base}/`;
     const caller = (slow) => {
       let controller = null;
       return {
@@ -92,7 +92,7 @@
           controller = new AbortController();
           let response;
           try {
-            response = await fetch(`${root}/answer`, { method: "POST", headers: { "Content-Type": "application/json" }, body: text, signal: controller.signal });
+            response = await fetch(`${root}answer`, { method: "POST", headers: { "Content-Type": "application/json" }, body: text, signal: controller.signal });
           } catch (problem) {
             throw problem.name === "AbortError" ? Explore.superseded : new Error("The program has ended. Start it again with corner-impact explore, then load this page again.");
           }
@@ -105,7 +105,7 @@
     // The server ends when nobody has asked for a while: a question that it answers late shows that the page is open.
     const alive = async () => {
       for (;;) {
-        try { await (await fetch(`${root}/alive`)).text(); } catch { await new Promise((resolve) => setTimeout(resolve, 3000)); }
+        try { await (await fetch(`${root}alive`)).text(); } catch { await new Promise((resolve) => setTimeout(resolve, 3000)); }
         await new Promise((resolve) => setTimeout(resolve, 200));
       }
     };
