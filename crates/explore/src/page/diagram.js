@@ -100,15 +100,15 @@
       const pointsLayer = (found, axis, which, state) => {
         const [values, ys] = [found.value, column(found, which)];
         const groups = found.attractor && found.attractor.length ? found.attractor : null;
-        const crowded = ys.length > 6000;
+        const crowded = ys.length > 8000;
         const [angles, velocity] = [Explore.angles(found, "cam_angle_"), Explore.column(found, "velocity_before_")];
         const motion = (index) => ({ rpm: axis.name === "rpm" ? values[index] : state.rpm, over: { name: axis.name, value: values[index] },
           cam_angle_rad: Explore.radians(angles[index]), position: Explore.column(found, "position_")[index], velocity: Explore.column(found, "velocity_after_")[index], label: "impact" });
         const units = context.model().units;
         return {
-          kind: "points", x: values, y: ys, size: crowded ? 1.2 : 3, shape: groups && !crowded ? undefined : "dot", colour: "blue", alpha: crowded ? 0.75 : 0.9,
-          colours: groups && groups.map((each) => Explore.colours[((each ?? 1) - 1 + 600) % 6]), shapes: groups && groups.map((each) => (crowded ? "dot" : Explore.shapes[((each ?? 1) - 1 + 600) % 6])),
-          hover: (index) => ({ title: groups ? `Attractor ${groups[index]}` : "Impact", rows: [[axis.label, Explore.quantity(values[index], axis.unit, 8)], ["impact angle", `${Explore.fixed(angles[index], 3)}\u00b0`],
+          kind: "points", x: values, y: ys, size: crowded ? 1.2 : groups ? 4.5 : 3, shape: groups && !crowded ? undefined : "dot", colour: "blue", alpha: crowded ? 0.75 : 0.9,
+          colours: groups && groups.map((each) => Explore.colours[(each ?? 0) % 6]), shapes: groups && groups.map((each) => (crowded ? "dot" : Explore.shapes[(each ?? 0) % 6])),
+          hover: (index) => ({ title: groups ? `Attractor ${groups[index] + 1}` : "Impact", rows: [[axis.label, Explore.quantity(values[index], axis.unit, 8)], ["impact angle", `${Explore.fixed(angles[index], 3)}\u00b0`],
             ["velocity before", Explore.quantity(velocity[index], units.velocity, 5)]], known: "computed; click to follow this motion" }),
           motion,
         };
@@ -160,6 +160,15 @@
         panel.note(failed ? `${failed} of ${found.values.length} values could not be run. ${found.failed[0].sentence}` : "Drag a rectangle to compute it anew. Drag the line to change the number in every view.");
       };
 
+      // All attractors cost a hundred times as much as one run each: the plain diagram stands there until they are found.
+      const attractors = async (state, axis, question, which, x) => {
+        panel.status("looking for all attractors\u2026");
+        const found = await context.ask({ view: "diagram", ...question, over: { ...question.over, count: 100 }, transient: 300, record: 60, attractors: true }, { lane: "diagram-attractors", slow: "last", silent: true });
+        panel.status("");
+        if (!found || !context.option("all", false)) return;
+        Object.assign(seen, { found, axis, which, x, turn: (seen.turn || 0) + 1, allOf: asked(state) });
+        draw(context.state());
+      };
       return {
         async update(state, { coarse }) {
           follow(state);
@@ -179,14 +188,19 @@
           const question = { ...(axis.name === "rpm" ? {} : { rpm: state.rpm }), over: { name: axis.name, low: x[0], high: x[1], log: axis.log } };
           // About a value for each pixel across, so that a cloud has no empty columns.
           const count = Math.min(600, Math.max(240, 10 * Math.round((plot.place ? plot.place.box.right - plot.place.box.left : panel.body.clientWidth - 80) / 10)));
-          const found = await context.ask({ view: "diagram", ...question, over: { ...question.over, count }, transient: 300, record: Math.round(80 * tall), attractors: context.option("all", false) },
-            { coarse, rough: { over: { ...question.over, count: 90 }, transient: 120, record: 30, attractors: false } });
-          if (found) {
+          const found = await context.ask({ view: "diagram", ...question, over: { ...question.over, count }, transient: 300, record: Math.round(80 * tall) },
+            { coarse, rough: { over: { ...question.over, count: 90 }, transient: 120, record: 30 } });
+          if (found && context.option("all", false) && seen.allOf === asked(state) && seen.found.attractor.length) {
+            Object.assign(seen, { which });
+            draw(state);
+          } else if (found) {
             seen.turn = (seen.turn || 0) + (seen.found === found ? 0 : 1);
             Object.assign(seen, { found, axis, which, x });
             draw(state);
           }
-          if (coarse || !context.option("events", true)) return;
+          if (coarse) return;
+          if (context.option("all", false)) attractors(state, axis, question, which, x);
+          if (!context.option("events", true)) return;
           const sheet = await context.ask({ view: "speeds", ...question, over: { ...question.over, count: 16 }, count: 16, starts: 4 }, { lane: "diagram-events", slow: "last", silent: true });
           if (sheet) { seen.sheet = sheet; seen.whose = asked(state); draw(context.state()); }
         },

@@ -203,12 +203,14 @@
         show();
       };
       let pointed = null;
+      // The outline depends on the cam's numbers alone: it is not asked for again while one of the follower is dragged.
+      const camModel = () => { const model = context.app.question(); return { ...model, set: Object.fromEntries(Object.entries(model.set).filter(([path]) => !path.startsWith("follower."))) }; };
       return {
         highlight(to) { pointed = to; follow(to); },
         async update(state, { coarse }) {
           slow.set(String(state.slow));
           const [shape, found] = await Promise.all([
-            context.ask({ view: "cam" }, { lane: "machine-cam", coarse, silent: true }),
+            context.ask({ view: "cam", model: camModel() }, { lane: "machine-cam", coarse, silent: true }),
             context.ask({ view: "motion", rpm: state.rpm, transient: 300, revolutions: 2, samples: 360, ...context.start() }, { coarse, rough: { transient: 100, samples: 180 } }),
           ]);
           if (!shape || !found) return;

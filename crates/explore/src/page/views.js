@@ -50,7 +50,8 @@
   Explore.menu = (label, choices, value, changed) => {
     const select = make("select", { onchange: () => changed(select.value) });
     const element = make("label", { class: "menu" }, make("span", {}, label), select);
-    element.fill = (list, now) => { select.replaceChildren(...list.map(([key, text]) => make("option", { value: key }, text))); select.value = now; };
+    let filled = null;
+    element.fill = (list, now) => { const key = JSON.stringify(list); if (key !== filled) { filled = key; select.replaceChildren(...list.map(([key, text]) => make("option", { value: key }, text))); } select.value = now; };
     element.set = (now) => { select.value = now; };
     element.fill(choices, value);
     return element;
@@ -200,7 +201,7 @@
       const entry = panels.find(({ panel }) => panel.element === target);
       entry.seen = isIntersecting;
       if (isIntersecting && entry.due) run(entry, false);
-    }), { rootMargin: "100px" });
+    }), { rootMargin: "0px" });
     panels.forEach(({ panel }) => watcher.observe(panel.element));
     return {
       panels,
