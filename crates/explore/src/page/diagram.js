@@ -4,7 +4,7 @@
 (() => {
   const SHOWN = { angle: "impact angle", before: "velocity before impact", after: "velocity after impact", position: "position at impact" };
   const CAUSE = { "corner-impact": ["corner impact", "diamond", "vermilion"], fold: ["fold", "triangle", "purple"], flip: ["flip", "square", "green"], graze: ["graze", "ring", "gold"],
-    symmetry: ["symmetry breaks", "cross", "teal"], runs: ["end by runs", "cross", "grey"], separation: ["separation", "triangle", "teal"] };
+    symmetry: ["symmetry breaks", "cross", "teal"], runs: ["beginning or end seen in runs", "cross", "grey"], separation: ["separation", "triangle", "teal"] };
   const causeOf = (cause) => CAUSE[cause] || [String(cause).replace(/-/g, " "), "triangle", "gold"];
 
   // Events of the document of `speeds --json`: what attractors begin, end and pass with, and separation -----------------------
@@ -40,6 +40,33 @@
         ...(event.whose.length ? [["attractors", event.whose.join(", ")]] : [])],
       known: event.located ? "located by its equation" : "bracketed by runs",
     };
+  };
+
+  /** The attractors of neighbouring values joined to families, so that each keeps its colour: by where their impacts lie and how far they spread. */
+  const familiesOf = (found) => {
+    const angles = Explore.angles(found, "cam_angle_");
+    const groups = [];
+    found.value.forEach((value, row) => {
+      const last = groups[groups.length - 1];
+      const group = groups.slice(-8).find((each) => each.value === value && each.index === found.attractor[row]);
+      if (group) group.rows.push(row); else groups.push({ value, index: found.attractor[row], rows: [row], turn: last && last.value === value ? last.turn : (last ? last.turn : 0) + 1 });
+    });
+    groups.forEach((group) => {
+      const own = group.rows.map((row) => angles[row]);
+      group.mean = own.reduce((sum, each) => sum + each, 0) / own.length;
+      group.spread = Math.sqrt(own.reduce((sum, each) => sum + (each - group.mean) ** 2, 0) / own.length);
+    });
+    const families = new Array(found.value.length).fill(0);
+    let [count, before] = [0, []];
+    for (let turn = 1; turn <= (groups.length ? groups[groups.length - 1].turn : 0); turn += 1) {
+      const own = groups.filter((group) => group.turn === turn);
+      const pairs = own.flatMap((group) => before.map((old) => ({ group, old, far: Math.abs(group.mean - old.mean) + 2 * Math.abs(group.spread - old.spread) }))).sort((a, b) => a.far - b.far);
+      const taken = new Set();
+      pairs.forEach(({ group, old, far }) => { if (group.family === undefined && !taken.has(old) && far < 60) { group.family = old.family; taken.add(old); } });
+      own.forEach((group) => { if (group.family === undefined) { group.family = count; count += 1; } group.rows.forEach((row) => { families[row] = group.family; }); });
+      before = own;
+    }
+    return families;
   };
 
   // The view ---------------------------------------------------------------------------------------------------------------
@@ -99,7 +126,7 @@
       const column = (found, which) => (which === "angle" ? Explore.angles(found, "cam_angle_") : Explore.column(found, { before: "velocity_before_", after: "velocity_after_", position: "position_" }[which]));
       const pointsLayer = (found, axis, which, state) => {
         const [values, ys] = [found.value, column(found, which)];
-        const groups = found.attractor && found.attractor.length ? found.attractor : null;
+        const groups = found.attractor && found.attractor.length ? found.families || (found.families = familiesOf(found)) : null;
         const crowded = ys.length > 8000;
         const [angles, velocity] = [Explore.angles(found, "cam_angle_"), Explore.column(found, "velocity_before_")];
         const motion = (index) => ({ rpm: axis.name === "rpm" ? values[index] : state.rpm, over: { name: axis.name, value: values[index] },

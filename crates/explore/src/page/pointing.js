@@ -80,7 +80,8 @@
         if (drag.moved && options.zoom) {
           const { box } = plot.place;
           const [x, y] = [ordered([held(drag.px, box.left, box.right), held(px, box.left, box.right)]), ordered([held(drag.py, box.top, box.bottom), held(py, box.top, box.bottom)])];
-          plot.box = [...x, ...y];
+          // A level stroke means the range across: a finger cannot draw a rectangle, as the page scrolls under it.
+          plot.box = y[1] - y[0] < 0.2 * (x[1] - x[0]) ? [...x, box.top, box.bottom] : [...x, ...y];
           plot.overlay();
           return;
         }
