@@ -53,7 +53,8 @@
       number = now;
       if (!held) slider.value = place(now, value);
       slider.setAttribute("aria-valuetext", Explore.quantity(value, now.unit));
-      if (document.activeElement !== field || !field.hasAttribute("aria-invalid")) field.value = value === null || value === undefined ? "" : String(value);
+      if (document.activeElement !== field || !field.hasAttribute("aria-invalid")) field.value = value === null || value === undefined ? "" : String(Number(Number(value).toPrecision(9)));
+      field.title = Number(value) === Number(field.value) ? "" : String(value);
       unit.textContent = now.unit || "";
       back.classList.toggle("idle", now.given === undefined || now.given === null || value === now.given);
       back.title = `Back to ${Explore.quantity(now.given, now.unit)}`;

@@ -52,6 +52,7 @@
       app.store.change(patch);
     };
     app.refused = (error) => {
+      app.reason = error;
       if (app.controls) app.controls.refuse(error);
       // A new model that cannot be read has no speed to run at: every view says why it is empty.
       if (now().rpm === null) app.views.panels.forEach(({ panel }) => panel.error(error));
@@ -112,7 +113,7 @@
     const known = make("p", { class: "headline-known" });
     const update = async (coarse) => {
       const { rpm, start } = app.store.state;
-      if (!(rpm > 0)) return;
+      if (!(rpm > 0)) { text.textContent = `${Explore.number(rpm)} rpm: no motion`; known.textContent = "The speed must be above 0 rpm."; return; }
       const question = { model: app.question(), view: "long_run", rpm, ...(start ? { start } : {}), ...(coarse ? { budget: "quick" } : {}) };
       try {
         const answer = await app.transport.ask(question, "headline", { coarse });
@@ -127,7 +128,8 @@
         if (problem !== Explore.superseded) known.textContent = problem.message;
       }
     };
-    return { element: make("div", { class: "headline-box" }, text, known), update };
+    const refuse = (error) => { text.textContent = "The model cannot be run"; known.textContent = error.sentence; };
+    return { element: make("div", { class: "headline-box" }, text, known), update, refuse };
   };
 
   /** Mounts the page into an element. */
@@ -150,7 +152,7 @@
       if (key === asked) { if (app.model && app.store.state.rpm === null) app.store.fill({ rpm: app.usual() }); return; }
       asked = key;
       const found = await app.ask({ view: "model" }, "model");
-      if (!found) return;
+      if (!found) { if (!app.model && app.reason) headline.refuse(app.reason); return; }
       const before = app.model;
       app.model = found;
       app.controls.update();
@@ -161,13 +163,14 @@
       if (!before || before.name !== found.name || JSON.stringify(before.units) !== JSON.stringify(found.units)) refresh(false);
     };
     const changed = (_, { moving }) => {
-      model();
+      // A drag stays in its allowed range: the model is asked about when it rests.
+      if (!moving) model();
       bar.update();
       if (app.model) app.controls.update();
       // Coarse at once, at most one a frame; full when the state has rested.
       if (!frame) frame = requestAnimationFrame(() => { frame = null; refresh(true); });
       clearTimeout(timer);
-      timer = setTimeout(() => refresh(false), moving ? REST : REST / 2);
+      timer = setTimeout(() => { model(); refresh(false); }, moving ? REST : REST / 2);
     };
     app.store.subscribe(changed);
     bar.update();

@@ -218,7 +218,7 @@
           box = reach(cam.outline, cam.lift, Explore.column(found, "position_"));
           const taken = take(found, state.rpm);
           const { impacts } = taken;
-          panel.heading(impacts.length ? `${impacts.length} impact${impacts.length > 1 ? "s" : ""} in two revolutions` : taken.largest > 1e-290 && taken.gap.some((each) => each > 0) ? "The follower flies without an impact in two revolutions" : "The follower stays on the cam");
+          panel.heading(impacts.length ? `${["", "One", "Two", "Three", "Four", "Five", "Six"][impacts.length] || impacts.length} impact${impacts.length > 1 ? "s" : ""} in two revolutions` : taken.largest > 1e-290 && taken.gap.some((each) => each > 0) ? "The follower flies without an impact in two revolutions" : "The follower stays on the cam");
           canvas.setAttribute("aria-label", `The cam and its follower at ${Explore.number(state.rpm)} rpm: ${panel.view.title}`);
           drawn = found;
           ghost = null;

@@ -107,6 +107,7 @@
         error.hidden = !found;
         error.textContent = found ? found.sentence || String(found) : "";
         body.classList.toggle("stale", Boolean(found));
+        if (found) body.querySelectorAll(".tip").forEach((tip) => { tip.hidden = true; });
       },
     };
   };
