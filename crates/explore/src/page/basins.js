@@ -35,6 +35,9 @@
   };
   const rangesOf = (grid) => ({ x: column(grid, "position_"), y: column(grid, "velocity_") });
 
+  /** A range without digits that nobody chose: to a thousandth of its width. */
+  const neat = ([low, high]) => { const unit = 10 ** Math.floor(Math.log10((high - low) / 500)); return [low, high].map((each) => Number((Math.round(each / unit) * unit).toPrecision(12))); };
+  Explore.parts.neat = neat;
   /** The start in the middle of each cell. */
   const starts = (found, columns, rows) => {
     const { x, y } = rangesOf(found);
@@ -56,10 +59,15 @@
   /** A curve cut where neighbours are far apart: a chord across the picture is no border. */
   const broken = (points, x, y) => {
     const line = { x: [], y: [] };
-    const far = ([q0, v0], [q1, v1]) => Math.hypot((q1 - q0) / (x[1] - x[0]), (v1 - v0) / (y[1] - y[0])) > 0.06;
+    const far = ([q0, v0], [q1, v1]) => Math.hypot((q1 - q0) / (x[1] - x[0]), (v1 - v0) / (y[1] - y[0]));
+    let last = null;
     points.forEach((point, index) => {
-      if (index && far(points[index - 1], point)) { line.x.push(NaN); line.y.push(NaN); }
+      // Points nearer to each other than a pixel are one.
+      const step = last ? far(last, point) : 1;
+      if (step < 0.001 && index < points.length - 1) return;
+      if (last && step > 0.06) { line.x.push(NaN); line.y.push(NaN); }
       line.x.push(point[0]); line.y.push(point[1]);
+      last = point;
     });
     return line;
   };
@@ -122,7 +130,7 @@
       const legend = Explore.element("div", { class: "legend" });
       const plot = context.plot(panel.body, {
         label: "Basins of attraction", aspect: 0.55, least: 280,
-        zoom: ({ x, y }) => context.setOption("range", { x, y }),
+        zoom: ({ x, y }) => context.setOption("range", { x: neat(x), y: neat(y) }),
         back: () => { if (!context.option("range", null)) return false; context.setOption("range", null); return true; },
       });
       panel.body.append(legend);
@@ -149,8 +157,8 @@
         const [looks, shares, unit] = [lookOf(shown.endings, kept), sharesOf(shown), Explore.parts.units(context)];
         const { x, y } = rangesOf(shown);
         const told = shown.endings.map((ending, index) => ({ ...looks[index], ...shares[index], name: nameOf(ending) })).sort((a, b) => b.share - a.share);
-        const text = told.map(({ name, share, error }) => `${fixed(share * 100, 1)} ± ${fixed(Math.max(error * 100, 0.1), 1)} % ${name}`);
-        panel.heading(told.length === 1 ? `Every start ends on one motion: ${told[0].name}` : `${told.length} motions share the starts: ${told.slice(0, 3).map(({ name, share }) => `${fixed(share * 100, share < 0.1 ? 1 : 0)} % ${name}`).join(", ")}`);
+        const text = told.map(({ name, share, error }) => `${fixed(share * 100, 1)} ± ${fixed(Math.max(error * 100, 0.1), 1)} %: ${name}`);
+        panel.heading(told.length === 1 ? `Every start ends on one motion: ${told[0].name}` : `${told.length} motions share the starts: ${told.slice(0, 3).map(({ name, share }) => `${name} (${fixed(share * 100, share < 0.1 || share > 0.99 ? 1 : 0)} %)`).join(", ")}`);
         legend.replaceChildren(Explore.key(told.map(({ colour, shape }, index) => ({ colour, shape, label: text[index] }))));
         plot.draw({
           x: { label: `position at cam angle ${number(degrees(shown.angle), 6)}°`, unit: unit.length, range: x },
@@ -196,7 +204,10 @@
           if (coarse) return;
           if (key === wanted) { panel.status(""); draw(state); return; }
           wanted = key;
-          [kept, border] = [new Map(), null];
+          border = null;
+          // A motion keeps its colour at all speeds of a machine, as long as there are colours for all.
+          const machine = JSON.stringify([state.file, state.text]);
+          if (machine !== kept.machine || kept.size > 12) kept = Object.assign(new Map(), { machine });
           await compute(state, GRIDS);
         },
         highlight(to) {
@@ -206,8 +217,12 @@
         csv: () => {
           if (!shown) return null;
           const from = starts(shown, ...shown.size);
-          const all = [...shown.ends.keys()].map((index) => ({ ...from(index), ending: shown.endings[shown.ends[index]] }));
-          return Explore.csv({ position: all.map((each) => each.position), velocity: all.map((each) => each.velocity), ending: all.map((each) => (each.ending ? nameOf(each.ending) : "")) });
+          const [all, unit] = [[...shown.ends.keys()].map((index) => ({ ...from(index), ending: shown.endings[shown.ends[index]] || {} })), Explore.parts.units(context)];
+          const name = (start, of) => `${start}_${(of || "").replace("/", "_")}`;
+          return Explore.csv({
+            [name("position", unit.length)]: all.map((each) => each.position), [name("velocity", unit.velocity)]: all.map((each) => each.velocity), ending: all.map((each) => each.ending.ending || each.ending.kind || ""),
+            revolutions: all.map((each) => each.ending.revolutions ?? ""), impacts: all.map((each) => each.ending.impacts ?? ""),
+          });
         },
       };
     },

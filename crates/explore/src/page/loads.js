@@ -11,11 +11,12 @@
     largest_force: { name: "largest force", need: null }, off_cam: { name: "share of the time off the cam", need: null },
   };
 
-  /** A number with its error, rounded to two digits of the error: 2915 ± 13. */
+  /** A number with its error: the error rounded up to two digits, and the number to the same place, as in the program: 2915 ± 13. */
   const withError = (value, error, digits = 6) => {
     if (!Number.isFinite(error) || error <= Math.abs(value) * 1e-10) return number(value, digits);
     const places = Math.max(0, 1 - Math.floor(Math.log10(error)));
-    return places > 12 ? number(value, digits) : `${fixed(value, places)} ± ${fixed(error, places)}`;
+    const unit = 10 ** -(1 - Math.floor(Math.log10(error)));
+    return places > 12 ? number(value, digits) : `${fixed(Math.round(value / unit) * unit, places)} ± ${fixed(Math.ceil(error / unit - 1e-9) * unit, places)}`;
   };
   Explore.withError = withError;
   /** A column of a list of rows: the value and its error, found by the beginning of the name. */
@@ -50,6 +51,7 @@
     return `${row.is_upper_bound ? "at most" : "at least"} ${value}`;
   };
   const meets = (row) => row.value !== null && (row.is_upper_bound ? row.now <= row.value - (row.error || 0) : row.now >= row.value + (row.error || 0)) && !(row.other < row.now);
+  const misses = (row) => (row.is_upper_bound ? row.now > row.value + (row.error || 0) : row.now < row.value - (row.error || 0)) || row.other < row.now;
   /** The number to set so that the need is met at the far end of ±: rounded to the safe side. */
   const safe = (row) => {
     const edge = row.is_upper_bound ? row.value - (row.error || 0) : row.value + (row.error || 0);
@@ -157,8 +159,10 @@
           return;
         }
         list.classList.remove("waiting");
-        const met = required.rows.length > 0 && required.rows.every((row) => row.value !== null && meets(row));
-        words.textContent = met ? `Need: ${text}. The machine as it is meets it.` : `Need: ${text}. The machine as it is does not meet it for sure. Each of these alone does, with the other numbers kept:`;
+        const found = required.rows.filter((row) => row.value !== null);
+        const met = found.length > 0 && found.some(meets) && !found.some(misses);
+        words.textContent = met ? `Need: ${text}. The machine as it is meets it.` : found.length === 0 ? `Need: ${text}. No number alone meets it.`
+          : `Need: ${text}. The machine as it is ${found.some(misses) ? "does not meet it" : "may miss it, as it lies within ±"}. Each of these alone does, with the other numbers kept:`;
         list.replaceChildren(needList(required.rows, context));
       };
       const show = (state) => {

@@ -225,7 +225,10 @@
         if (!local) return;
         const unit = Explore.parts.units(context);
         all.draw(raysScene(local, unit, false));
-        near.draw(raysScene(local, unit, true));
+        // The flattest rays are drawn once more where the steepest leave no room for them.
+        const sizes = local.rays.filter((ray) => ray.positions.length <= 2).flatMap((ray) => ray.positions.map(Math.abs)).filter((size) => size > 0);
+        near.element.parentNode.hidden = !(Math.min(...sizes) < 0.2 * Math.max(...sizes));
+        if (!near.element.parentNode.hidden) near.draw(raysScene(local, unit, true));
       };
       return {
         async update(state, { coarse }) {

@@ -111,7 +111,7 @@
       const ASPECT = 0.75;
       const plot = context.plot(panel.body, {
         label: "Phase plane of the motion", aspect: ASPECT, least: 260,
-        zoom: (range) => context.setOption("range", range),
+        zoom: ({ x, y }) => context.setOption("range", { x: Explore.parts.neat(x), y: Explore.parts.neat(y) }),
         back: () => { if (!context.option("range", null)) return false; context.setOption("range", null); return true; },
       });
       const axes = Explore.menu("Axes", [["follower", "position and velocity"], ["gap", "gap and relative velocity"]], "follower", (value) => {
@@ -220,6 +220,19 @@
   const FEW = 40;
   const enough = (hits, revolutions) => Math.max(20, Math.min(2000, Math.round((3000 * revolutions) / Math.max(1, hits))));
 
+  /** Impacts that differ by more than rounding: a periodic motion has as many as it has impacts in a period. */
+  const distinct = ({ x, y }) => new Set(x.map((each, index) => `${each.toPrecision(7)} ${y[index].toPrecision(7)}`)).size;
+  /** Periodic orbits as points of the map's plane. Restitution gives the relative velocity after an impact from both velocities. */
+  const orbitLayers = (orbits, restitution, rpm) => orbits.map(({ stable, impacts, known }) => {
+    const speed = impacts.map((each) => (restitution / (1 + restitution)) * (column(each, "velocity_after_") - column(each, "velocity_before_")));
+    const angle = impacts.map((each) => each.cam_angle_rad ?? Explore.radians(each.cam_angle_deg));
+    const look = stable ? { shape: "ring", size: 16, colour: "green" } : { shape: "triangle", size: 12, colour: "vermilion" };
+    return {
+      kind: "points", x: angle.map(turned), y: speed, ...look,
+      hover: (index) => ({ title: `Periodic orbit, ${stable ? "stable" : "unstable"}`, rows: [["strikes at", `${number(turned(angle[index]), 7)}°`], ["leaves the cam at", number(speed[index], 6)]], known }),
+      motion: (index) => ({ rpm, cam_angle_rad: angle[index], relative_velocity: speed[index] }),
+    };
+  });
   const impactHeading = (long, { angle }) => {
     if (!angle.length) return "No impacts: the follower stays on the cam";
     if (long.kind === "chaotic") return "The impacts never repeat: chaos";
@@ -233,13 +246,14 @@
     mount(panel, context) {
       const plot = context.plot(panel.body, {
         label: "Impact map", aspect: 0.75, least: 260,
-        zoom: (range) => context.setOption("range", range),
+        zoom: ({ x, y }) => context.setOption("range", { x: Explore.parts.neat(x), y: Explore.parts.neat(y) }),
         back: () => { if (!context.option("range", null)) return false; context.setOption("range", null); return true; },
       });
       const show = Explore.menu("Show", [["map", "velocity over angle"], ["return", "each angle over the last"]], "map", (value) => {
         context.change({ views: { ...context.state().views, impacts: { ...(context.state().views.impacts || {}), show: value, range: null } } });
       });
-      panel.options.append(show);
+      const orbits = Explore.check("periodic orbits of one revolution", false, (on) => context.setOption("orbits", on));
+      panel.options.append(show, orbits);
       let shown = null;
       let pointed = null;
       // The image of the impact that is pointed at, and the image of that: three arrows.
@@ -264,8 +278,10 @@
         const [{ impacts, rpm }, unit] = [shown, units(context)];
         const drawn = planeOf(impacts, returns);
         const other = pointed && planeOf(pointed, returns);
-        const range = context.option("range", null) || { x: inTurn(extent([drawn.x])), y: returns ? inTurn(extent([drawn.y])) : extent([drawn.y]) };
-        const few = drawn.x.length <= 400;
+        const different = drawn.x.length > 20000 ? Infinity : distinct(drawn);
+        const few = different <= 100;
+        // A few points are shown in the whole turn, where the corners are.
+        const range = context.option("range", null) || { x: different <= 12 ? [0, 360] : inTurn(extent([drawn.x])), y: returns ? (different <= 12 ? [0, 360] : inTurn(extent([drawn.y]))) : different <= 12 ? extent([drawn.y, [0]], 0.15) : extent([drawn.y]) };
         const corners = ((context.model() || {}).corners || []).map((each) => each.angle_deg).filter((at) => at >= range.x[0] && at <= range.x[1]);
         plot.draw({
           x: { label: returns ? "cam angle at an impact" : "cam angle at the impact", unit: "°", range: range.x, turn: true },
@@ -273,9 +289,10 @@
           layers: [
             ...corners.map((x, index) => ({ kind: "rule", x, colour: "grey", width: 1, dash: [2, 3], label: index === 0 ? "corner" : "" })),
             returns && { kind: "line", x: [0, 360], y: [0, 360], colour: "grey", width: 1 },
-            { kind: "points", ...drawn, shape: few ? "disc" : "dot", size: few ? 6 : 2, colour: "blue", images: true, hover: hover(impacts),
+            { kind: "points", ...drawn, shape: few ? "disc" : "dot", size: few ? 8 : 2, colour: "blue", images: true, hover: hover(impacts),
               motion: (index) => ({ rpm, cam_angle_rad: impacts.angle[index], position: impacts.position[index], velocity: impacts.velocity[index], relative_velocity: impacts.speed[index] }) },
             other && { kind: "points", ...other, shape: "ring", size: 9, colour: "purple" },
+            ...(returns || !context.option("orbits", false) || !shown.orbits ? [] : orbitLayers(shown.orbits, context.value("follower.restitution"), rpm)),
           ],
           message: drawn.x.length ? "" : impacts.angle.length ? "one impact alone" : "no impacts: the follower stays on the cam",
           description: `${panel.element.querySelector("h3").textContent}. ${many(impacts.angle.length, "impact")} at ${number(rpm, 8)} rpm`,
@@ -291,6 +308,7 @@
       return {
         async update(state, { coarse }) {
           show.set(context.option("show", "map"));
+          orbits.set(context.option("orbits", false));
           const asked = eventsOf({ rpm: state.rpm, transient: 300, ...context.start() });
           const first = await context.ask({ ...asked, revolutions: FEW }, { lane: "impacts-first", coarse, silent: !coarse });
           if (!first) return;
@@ -306,13 +324,26 @@
           if (!long || state !== context.state()) return;
           panel.heading(impactHeading(long, shown.impacts));
           draw();
+          if (!context.option("orbits", false)) return;
+          const sheet = await context.ask({ view: "orbit", rpm: state.rpm, revolutions: 1 }, { lane: "impacts-orbits", slow: true, silent: true });
+          if (!sheet || state !== context.state()) return;
+          shown.orbits = sheet.orbits.filter((each) => each.impacts.length > 0);
+          draw();
+          panel.note(`Rings: stable periodic orbits of one revolution, triangles: unstable ones (${shown.orbits.every((each) => each.known === "proved") ? "their existence is proved" : "computed"}).`);
         },
         highlight(to) {
           const impact = to && Number.isFinite(to.relative_velocity) && context.option("show", "map") === "map";
           plot.mark(impact ? [{ x: turned(to.cam_angle_rad), y: to.relative_velocity }] : []);
           point(to);
         },
-        csv: () => (shown ? Explore.csv({ cam_angle_deg: shown.impacts.angle.map(degrees), [`relative_velocity_after_${(units(context).velocity || "").replace("/", "_")}`]: shown.impacts.speed }) : null),
+        csv: () => {
+          if (!shown) return null;
+          const [{ impacts }, unit] = [shown, units(context)];
+          const name = (start, of) => `${start}_${(of || "").replace("/", "_")}`;
+          return Explore.csv({ cam_angle_deg: impacts.angle.map(degrees), [name("position", unit.length)]: impacts.position, [name("velocity_after", unit.velocity)]: impacts.velocity, [name("relative_velocity_after", unit.velocity)]: impacts.speed });
+        },
+        // The answer's command writes moments of the run; its events are what is seen here.
+        command: () => { const answer = context.answer(); return answer && answer.command ? answer.command.replace(/ --drawn \S+ --points-per-revolution \S+/, "").replace("--out motion.csv", "--events impacts.csv") : null; },
       };
     },
   });
