@@ -3,8 +3,10 @@
 "use strict";
 (() => {
   const SHOWN = { angle: "impact angle", before: "velocity before impact", after: "velocity after impact", position: "position at impact" };
-  const CAUSE = { "corner-impact": ["corner impact", "diamond", "vermilion"], fold: ["fold", "triangle", "purple"], flip: ["flip", "square", "green"], graze: ["graze", "ring", "gold"],
-    symmetry: ["symmetry breaks", "cross", "teal"], runs: ["beginning or end seen in runs", "cross", "grey"], separation: ["separation", "triangle", "teal"] };
+  const CAUSE = {
+    "corner-impact": ["corner impact", "diamond", "vermilion"], fold: ["fold", "triangle", "purple"], flip: ["flip", "square", "green"], graze: ["graze", "ring", "gold"],
+    "symmetry-breaking": ["symmetry breaking", "cross", "teal"], detachment: ["separation", "triangle", "teal"], runs: ["beginning or end seen in runs", "cross", "grey"],
+  };
   const causeOf = (cause) => CAUSE[cause] || [String(cause).replace(/-/g, " "), "triangle", "gold"];
 
   // Events of the document of `speeds --json`: what attractors begin, end and pass with, and separation -----------------------
@@ -25,7 +27,7 @@
       add(attractor.death, "ends", attractor);
       (attractor.passes || []).forEach((event) => add({ cause: "corner-impact", ...event }, "passes", attractor));
     });
-    if (sheet.detachment_rpm && varied === "rpm") found.set("separation", { cause: "separation", at: sheet.detachment_rpm, located: true, whose: [], error_rpm: sheet.detachment_error_rpm });
+    if (sheet.detachment_rpm && varied === "rpm") found.set(`detachment ${sheet.detachment_rpm}`, { cause: "detachment", at: sheet.detachment_rpm, located: true, whose: [], error_rpm: sheet.detachment_error_rpm });
     return [...found.values()].sort((a, b) => a.at - b.at);
   };
   const told = (event, name, unit) => {

@@ -4,7 +4,7 @@
 // A scene is plain data:
 //   { x: AXIS, y: AXIS, layers: [LAYER...], equal: bool (one scale for both axes), message: text in the middle,
 //     base: any value; while it is the same object or text, only rules that can be moved are drawn anew }
-//   AXIS  = { label, unit, range: [low, high], log, turn: true (degrees: ticks at 30, 45, 90), ticks: [values], format, bare }
+//   AXIS  = { label, unit, range: [low, high], room (letters of the labels, so that pictures above each other line up), log, turn: true (degrees: ticks at 30, 45, 90), ticks: [values], format, bare }
 //   LAYER = { kind, colour, alpha, name (for the key), hover(i) -> {title, rows: [[name, value]], known}, motion(i), ... }
 //     points   { x: [], y: [], shape, size (px, across), colours: [per point], shapes: [per point] }
 //     line     { x: [], y: [], width, dash: [on, off], close, fill }   NaN or null breaks the line
@@ -113,14 +113,17 @@ const Explore = {};
   /** The frame's box and the two scales of a scene at a size; `across(x)`, `up(y)` and their `.back`. */
   Explore.layout = (scene, width, height) => {
     const bare = scene.x.bare;
-    const box = bare ? { left: 2, top: 2, right: width - 2, bottom: height - 2 } : { left: width < 420 ? 52 : 62, top: 12, right: width - 18, bottom: height - 42 };
+    // The left margin has room for the longest label and the title beside it.
+    const labels = bare ? [] : Explore.ticks(scene.y, (height - 54) / 45).map(([, label]) => label.length);
+    const wide = Math.max(scene.y.room || 3, ...labels) * 6.8 + 8;
+    const box = bare ? { left: 2, top: 2, right: width - 2, bottom: height - 2 } : { left: wide + 20, top: 12, right: width - 18, bottom: height - 42 };
     if (scene.equal) {
       const [spanX, spanY] = [scene.x, scene.y].map(({ range }) => range[1] - range[0] || 1);
       const per = Math.min((box.right - box.left) / spanX, (box.bottom - box.top) / spanY);
       const [spareX, spareY] = [box.right - box.left - spanX * per, box.bottom - box.top - spanY * per];
       box.left += spareX / 2; box.right -= spareX / 2; box.top += spareY / 2; box.bottom -= spareY / 2;
     }
-    return { box, across: scale(scene.x, box.left, box.right), up: scale(scene.y, box.bottom, box.top) };
+    return { box, title: box.left - wide - 8, across: scale(scene.x, box.left, box.right), up: scale(scene.y, box.bottom, box.top) };
   };
 
   // Shapes: each adds itself to a path by moveTo, lineTo, arc ------------------------------------------------------------

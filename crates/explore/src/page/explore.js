@@ -97,13 +97,14 @@
     if (key === "y" || event.shiftKey) app.store.redo(); else app.store.undo();
   };
 
-  const counted = (number, word) => `${number === 1 ? "one" : number} ${word}${number === 1 ? "" : "s"}`;
-  /** What a run settles on, in words: the answer of `long_run`, an ending of `basins`. */
-  Explore.motionInWords = ({ sentence, kind, revolutions, impacts }) => {
-    if (sentence) return sentence;
-    const often = revolutions ? `${counted(impacts, "impact")} in ${revolutions === 1 ? "each revolution" : `${revolutions} revolutions`}` : "";
-    return { stays: "the follower stays on the cam", periodic: often || "periodic", resting: revolutions ? `the follower chatters and rests${revolutions > 1 ? `, period ${revolutions} revolutions` : " in each revolution"}` : "the follower rests now and then",
-      chaotic: "chaotic", undecided: "undecided within this run" }[kind] || String(kind);
+  const counted = (number, word) => `${number} ${word}${number === 1 ? "" : "s"}`;
+  /** What a run settles on, in the program's words: the answer of `long_run`, an ending of `basins`. */
+  Explore.motionInWords = ({ words, kind, revolutions, impacts }) => {
+    if (words) return words;
+    const turns = revolutions === 1 ? "a revolution" : counted(revolutions, "revolution");
+    if (kind === "periodic" && revolutions) return impacts === 0 ? "never meets the cam" : `${counted(impacts, "impact")} in ${turns}`;
+    if (kind === "resting") return !revolutions ? "rests now and then" : revolutions === 1 ? "rests in each revolution" : `rests, period ${turns}`;
+    return kind === "stays" ? "stays on the cam" : String(kind);
   };
 
   // The headline: what the motion is, in words ----------------------------------------------------------------------------------
@@ -139,7 +140,9 @@
     const [bar, headline] = [barOf(app), headlineOf(app)];
     const side = make("div", { class: "side", role: "group", "aria-label": "Numbers of the model" });
     const [tours, stage] = [make("div", { class: "tours" }), make("div", { class: "stage" })];
-    element.replaceChildren(headline.element, bar.element, tours, make("div", { class: "columns" }, side, stage), make("p", { class: "live", "aria-live": "polite" }));
+    element.replaceChildren(headline.element, bar.element, tours, make("div", { class: "columns" }, side, stage), 
+      make("p", { class: "keys" }, "Keys: the arrows walk through the data of a picture, + and \u2212 zoom, Escape goes back, Shift with an arrow moves its line, Enter follows a motion. Ctrl+Z undoes, Ctrl+Shift+Z redoes."),
+      make("p", { class: "live", "aria-live": "polite" }));
     app.controls = Explore.mountControls(side, app);
     app.views = Explore.mountViews(stage, app);
     if (Explore.mountStories) Explore.mountStories(tours, app);

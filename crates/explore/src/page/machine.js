@@ -99,7 +99,7 @@
       [name === "gap" ? "gap" : "contact force", Explore.quantity(value[index], name === "gap" ? units.length : units.force, 4)]];
     return {
       message: silent ? "impacts only" : null,
-      x, y: { ticks: silent ? [0] : undefined, label: name === "gap" ? "gap" : "contact force", unit: name === "gap" ? units.length : units.force, range },
+      x, y: { room: 5, ticks: silent ? [0] : undefined, label: name === "gap" ? "gap" : "contact force", unit: name === "gap" ? units.length : units.force, range },
       layers: [
         name === "gap" ? { kind: "band", x: time, low: time.map(() => 0), high: value, colour: "blue", alpha: 0.18 } : null,
         { kind: "line", x: time, y: value, colour: name === "gap" ? "blue" : "green", width: 1.8, hover: (index) => ({ rows: row(index), known: "computed" }) },

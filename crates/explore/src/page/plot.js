@@ -78,7 +78,7 @@
     text: (pen, layer, { across, up }, theme) => pen.text(across(layer.x) + (layer.dx || 0), up(layer.y) + (layer.dy || 0), layer.text, { colour: theme[layer.colour || "soft"], anchor: layer.anchor, bold: layer.bold, size: layer.size }),
   };
   const titled = ({ label, unit }) => (unit ? `${label} (${unit})` : label || "");
-  const axes = (pen, scene, { box, across, up }, theme) => {
+  const axes = (pen, scene, { box, title, across, up }, theme) => {
     const [wide, high] = [box.right - box.left, box.bottom - box.top];
     const ticks = { x: Explore.ticks(scene.x, wide / 75), y: Explore.ticks(scene.y, high / 45) };
     ticks.x.forEach(([at, label]) => {
@@ -90,7 +90,7 @@
       pen.text(box.left - 6, up(at), label, { colour: theme.ink, anchor: "end" });
     });
     pen.text((box.left + box.right) / 2, box.bottom + 31, titled(scene.x), { colour: theme.soft, anchor: "middle" });
-    pen.text(Math.min(box.left - 46, box.left - 42), (box.top + box.bottom) / 2, titled(scene.y), { colour: theme.soft, anchor: "middle", turn: -90 });
+    pen.text(title, (box.top + box.bottom) / 2, titled(scene.y), { colour: theme.soft, anchor: "middle", turn: -90 });
   };
   const moves = (layer) => layer && layer.kind === "rule" && layer.move;
   /** Draws a scene with a pen; rules that can be moved only where `whole`. */

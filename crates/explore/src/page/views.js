@@ -88,7 +88,7 @@
     const heading = make("h3", { id: `${id}-heading` }, view.title);
     const [note, body, options] = [make("p", { class: "note" }), make("div", { class: "body" }), make("div", { class: "options" })];
     const known = make("span", { class: "known" });
-    const status = make("span", { class: "status", role: "status" });
+    const status = make("span", { class: "status" });
     const error = make("p", { class: "sentence", role: "alert", hidden: true });
     const buttons = make("div", { class: "save" });
     const element = make("section", { class: `panel${view.wide ? " wide-panel" : ""}`, id, "aria-labelledby": `${id}-heading`, tabindex: "-1" },
