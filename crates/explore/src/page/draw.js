@@ -4,7 +4,8 @@
 // A scene is plain data:
 //   { x: AXIS, y: AXIS, layers: [LAYER...], equal: bool (one scale for both axes), message: text in the middle,
 //     base: any value; while it is the same object or text, only rules that can be moved are drawn anew }
-//   AXIS  = { label, unit, range: [low, high], room (letters of the labels, so that pictures above each other line up), log, turn: true (degrees: ticks at 30, 45, 90), ticks: [values], format, bare }
+//   AXIS  = { label, unit, range: [low, high], log, turn: true (degrees: ticks at 30, 45, 90), ticks: [values], format, bare,
+//             room (letters of the labels, so that pictures above each other line up) }
 //   LAYER = { kind, colour, alpha, name (for the key), hover(i) -> {title, rows: [[name, value]], known}, motion(i), ... }
 //     points   { x: [], y: [], shape, size (px, across), colours: [per point], shapes: [per point] }
 //     line     { x: [], y: [], width, dash: [on, off], close, fill }   NaN or null breaks the line

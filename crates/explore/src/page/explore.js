@@ -55,8 +55,10 @@
       app.reason = error;
       if (app.controls) app.controls.refuse(error);
       // A new model that cannot be read has no speed to run at: every view says why it is empty.
-      if (now().rpm === null) app.views.panels.forEach(({ panel }) => panel.error(error));
+      if (now().rpm === null) app.views.panels.forEach(({ panel }) => panel.error(app.inPanel(error)));
     };
+    /** An error as a panel shows it: what is wrong with the model stands in the headline and at the number, once. */
+    app.inPanel = (error) => (app.reason && error.sentence === app.reason.sentence ? { sentence: "The model cannot be run: see the headline." } : error);
     app.reset = () => app.store.reset();
     app.show = (name) => {
       const found = document.getElementById(`view-${name}`);
@@ -155,15 +157,15 @@
       if (key === asked) { if (app.model && app.store.state.rpm === null) app.store.fill({ rpm: app.usual() }); return; }
       asked = key;
       const found = await app.ask({ view: "model" }, "model");
-      if (!found) { if (!app.model && app.reason) headline.refuse(app.reason); return; }
+      if (!found) { if (app.reason) headline.refuse(app.reason); return; }
       const before = app.model;
-      app.model = found;
+      [app.model, app.reason] = [found, null];
       app.controls.update();
       app.controls.refuse(null);
       if (app.store.state.rpm === null) app.store.fill({ rpm: app.usual() });
       bar.update();
       // Names and units of another machine: what is drawn is labelled anew.
-      if (!before || before.name !== found.name || JSON.stringify(before.units) !== JSON.stringify(found.units)) refresh(false);
+      if (!before || before.name !== found.name || JSON.stringify(before.units) !== JSON.stringify(found.units)) { refresh(true); setTimeout(() => refresh(false), REST / 2); }
     };
     const changed = (_, { moving }) => {
       // A drag stays in its allowed range: the model is asked about when it rests.

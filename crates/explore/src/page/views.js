@@ -151,7 +151,7 @@
         const done = () => { if (last.key === key && !silent) panel.status(""); };
         last.promise = app.transport.ask(whole, lane, { slow, coarse }).then((answer) => {
           done();
-          if (answer.error) { last.answer = null; panel.error(answer.error); return null; }
+          if (answer.error) { last.answer = null; panel.error(app.inPanel(answer.error)); return null; }
           last.answer = { ...answer, coarse };
           panel.error(null);
           if (!silent) panel.known(answer.known, answer.how);
@@ -201,7 +201,9 @@
     const watcher = new IntersectionObserver((seen) => seen.forEach(({ target, isIntersecting }) => {
       const entry = panels.find(({ panel }) => panel.element === target);
       entry.seen = isIntersecting;
-      if (isIntersecting && entry.due) run(entry, false);
+      if (!isIntersecting || !entry.due) return;
+      run(entry, true);
+      setTimeout(() => run(entry, false), 60);
     }), { rootMargin: "0px" });
     panels.forEach(({ panel }) => watcher.observe(panel.element));
     return {
