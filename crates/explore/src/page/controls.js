@@ -34,7 +34,7 @@
     const id = `number-${first.path.replace(/\W/g, "-")}`;
     const slider = make("input", { type: "range", min: 0, max: POSITIONS, step: 1, id: `${id}-slider`, "aria-label": `${Explore.spaced(first.name)}, slider` });
     const field = make("input", { type: "text", inputmode: "decimal", id, autocomplete: "off", spellcheck: "false", "aria-describedby": `${id}-allowed` });
-    const unit = make("span", { class: "unit" }, first.unit || "");
+    const unit = make("span", { class: "unit" }, Explore.unit(first.unit));
     const back = Explore.button("\u21ba", () => reset(number), { class: "back", "aria-label": `Reset ${Explore.spaced(first.name)}` });
     const allowed = make("p", { class: "allowed", id: `${id}-allowed` });
     const sentence = make("p", { class: "sentence", role: "alert", hidden: true });
@@ -55,7 +55,7 @@
       slider.setAttribute("aria-valuetext", Explore.quantity(value, now.unit));
       if (document.activeElement !== field || !field.hasAttribute("aria-invalid")) field.value = value === null || value === undefined ? "" : String(Number(Number(value).toPrecision(9)));
       field.title = Number(value) === Number(field.value) ? "" : String(value);
-      unit.textContent = now.unit || "";
+      unit.textContent = Explore.unit(now.unit);
       back.classList.toggle("idle", now.given === undefined || now.given === null || value === now.given);
       back.title = `Back to ${Explore.quantity(now.given, now.unit)}`;
       label.title = now.meaning || "";
@@ -95,14 +95,34 @@
     };
   };
 
+  /** The model file with another follower; a new roller is as large as half the cam's base circle. */
+  const withContact = ({ text, numbers }, contact) => {
+    const lines = text.split("\n");
+    const bounds = (name) => {
+      const from = lines.indexOf(`[${name}]`);
+      const end = lines.findIndex((line, index) => index > from && /^\[/.test(line));
+      return from < 0 ? null : [from, end < 0 ? lines.length : end];
+    };
+    const table = bounds("cam.contact");
+    if (table) lines.splice(table[0], table[1] - table[0]);
+    const [from, end] = bounds("cam");
+    for (let index = end - 1; index > from; index -= 1) if (/^contact\s*=/.test(lines[index])) lines.splice(index, 1);
+    const base = numbers.find(({ path }) => path === "cam.base_radius");
+    const first = /rows = \[\s*\[[^,]+,\s*([\d.]+)/.exec(text);
+    const radius = 0.5 * (base ? base.value : first ? Number(first[1]) : 1);
+    const written = { point: null, flat: 'contact = "flat"', roller: `contact = { roller_radius = ${Number(radius.toPrecision(3))} }` }[contact];
+    if (written) lines.splice(from + 1, 0, written);
+    return lines.join("\n");
+  };
+
   const lawMenus = (app) => {
-    const take = async (law, contact) => {
-      const found = await app.ask({ view: "template", law, ...(contact ? { contact } : {}) }, "template");
+    const take = async (law) => {
+      const found = await app.ask({ view: "template", law }, "template");
       if (found) app.take(`${law}.toml`, found.text);
     };
-    const laws = Explore.menu("Cam law", [], "", (law) => take(law, app.model && app.model.contact));
-    const contacts = Explore.menu("Follower", Object.entries(CONTACTS), "", (contact) => take(app.model.law, contact));
-    const note = make("p", { class: "allowed" }, "A new law or follower starts from an example machine. Undo brings yours back.");
+    const laws = Explore.menu("Cam law", [], "", take);
+    const contacts = Explore.menu("Follower", Object.entries(CONTACTS), "", (contact) => app.take(app.question().file, withContact(app.model, contact), "text"));
+    const note = make("p", { class: "allowed" }, "A new law starts from an example machine. Undo brings yours back.");
     return {
       element: make("div", { class: "laws" }, laws, contacts, note),
       update: (model) => {

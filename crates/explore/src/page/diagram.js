@@ -112,7 +112,7 @@
         const { name, range } = state.over;
         if (name === "rpm") return { name, label: "speed", unit: "rpm", whole: range || model.study || model.speeds, log: false };
         const number = model.numbers.find(({ path }) => path === name);
-        return number ? { name, label: Explore.spaced(number.name), symbol: number.symbol, unit: number.unit, whole: range || number.slider, log: number.scale === "log" && (range || number.slider)[0] > 0 }
+        return number ? { name, label: Explore.spaced(number.name), symbol: number.symbol, unit: Explore.unit(number.unit), whole: range || number.slider, log: number.scale === "log" && (range || number.slider)[0] > 0 }
           : { name: "rpm", label: "speed", unit: "rpm", whole: model.speeds, log: false };
       };
       const follow = (state) => {
@@ -202,7 +202,7 @@
         async update(state, { coarse }) {
           follow(state);
           const model = context.model();
-          over.fill([["rpm", "speed (rpm)"], ...model.numbers.filter(({ path }) => !path.startsWith("study.")).map(({ path, name, symbol, unit }) => [path, `${Explore.spaced(name)}${symbol ? ` ${symbol}` : ""}${unit ? ` (${unit})` : ""}`])], state.over.name);
+          over.fill([["rpm", "speed (rpm)"], ...model.numbers.filter(({ path }) => !path.startsWith("study.")).map(({ path, name, symbol, unit }) => [path, `${Explore.spaced(name)}${symbol ? ` ${symbol}` : ""}${unit ? ` (${Explore.unit(unit)})` : ""}`])], state.over.name);
           const which = context.option("shows", "angle");
           shown.set(which);
           all.set(context.option("all", false));

@@ -46,7 +46,9 @@ const Explore = {};
     return signed(power(size !== 0 && (size >= 1e6 || size < 1e-4) ? rounded.toExponential() : String(rounded)));
   };
   Explore.fixed = (value, places) => (value === null || value === undefined || Number.isNaN(value) ? "\u2013" : signed(Number(value).toFixed(places)));
-  Explore.quantity = (value, unit, digits) => `${Explore.number(value, digits)}${unit ? `${unit === "\u00b0" ? "" : "\u00a0"}${unit}` : ""}`;
+  /** A unit of the model file as it is printed. */
+  Explore.unit = (unit) => (unit || "").replace(/^deg$/, "\u00b0").replace(/\^2/g, "\u00b2").replace(/\^3/g, "\u00b3");
+  Explore.quantity = (value, unit, digits) => `${Explore.number(value, digits)}${unit ? `${unit === "\u00b0" || unit === "deg" ? "" : "\u00a0"}${Explore.unit(unit)}` : ""}`;
   /** A name of the model file as words: base_radius is "base radius", flank_start_deg "flank start". */
   Explore.spaced = (name) => name.replace(/_(deg|rpm)$/, "").replace(/_/g, " ");
   Explore.degrees = (radians) => (radians * 180) / Math.PI;

@@ -150,16 +150,19 @@
     if (Explore.mountStories) Explore.mountStories(tours, app);
     document.addEventListener("keydown", keys(app));
 
-    let [timer, frame, asked] = [null, null, null];
+    // The model that was asked about last, and the one that `app.model` is the answer to.
+    let [timer, frame, asked, known] = [null, null, null, null];
     const refresh = (coarse) => { if (app.model && app.store.state.rpm !== null) { app.views.refresh(coarse); headline.update(coarse); } };
     const model = async () => {
       const key = JSON.stringify(app.question());
-      if (key === asked) { if (app.model && app.store.state.rpm === null) app.store.fill({ rpm: app.usual() }); return; }
+      if (key === asked) { if (key === known && app.store.state.rpm === null) app.store.fill({ rpm: app.usual() }); return; }
       asked = key;
       const found = await app.ask({ view: "model" }, "model");
       if (!found) { if (app.reason) headline.refuse(app.reason); return; }
+      if (key !== asked) return;
       const before = app.model;
       [app.model, app.reason] = [found, null];
+      known = key;
       app.controls.update();
       app.controls.refuse(null);
       if (app.store.state.rpm === null) app.store.fill({ rpm: app.usual() });

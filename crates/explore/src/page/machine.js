@@ -202,6 +202,8 @@
         drawStrips();
         show();
       };
+      // A spline has a corner of high order at each of its points: only those that the model names are marked.
+      const marked = (corners) => (corners || []).filter(([angle]) => (context.model().corners || []).some(({ angle_deg: degrees }) => Math.abs(Explore.turned(angle) - degrees) < 0.05));
       let pointed = null;
       // The outline depends on the cam's numbers alone: it is not asked for again while one of the follower is dragged.
       const camModel = () => { const model = context.app.question(); return { ...model, set: Object.fromEntries(Object.entries(model.set).filter(([path]) => !path.startsWith("follower."))) }; };
@@ -214,7 +216,7 @@
             context.ask({ view: "motion", rpm: state.rpm, transient: 300, revolutions: 2, samples: 360, ...context.start() }, { coarse, rough: { transient: 100, samples: 180 } }),
           ]);
           if (!shape || !found) return;
-          cam = { outline: { ...shape.outline, whole: shape.outline.pieces.flatMap(({ points }) => points) }, lift: Explore.column(shape, "lift_") };
+          cam = { outline: { ...shape.outline, corners: marked(shape.outline.corners), whole: shape.outline.pieces.flatMap(({ points }) => points) }, lift: Explore.column(shape, "lift_") };
           box = reach(cam.outline, cam.lift, Explore.column(found, "position_"));
           const taken = take(found, state.rpm);
           const { impacts } = taken;

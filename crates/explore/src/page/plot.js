@@ -77,7 +77,7 @@
     }),
     text: (pen, layer, { across, up }, theme) => pen.text(across(layer.x) + (layer.dx || 0), up(layer.y) + (layer.dy || 0), layer.text, { colour: theme[layer.colour || "soft"], anchor: layer.anchor, bold: layer.bold, size: layer.size }),
   };
-  const titled = ({ label, unit }) => (unit ? `${label} (${unit})` : label || "");
+  const titled = ({ label, unit }) => (unit ? `${label} (${Explore.unit(unit)})` : label || "");
   const axes = (pen, scene, { box, title, across, up }, theme) => {
     const [wide, high] = [box.right - box.left, box.bottom - box.top];
     const ticks = { x: Explore.ticks(scene.x, wide / 75), y: Explore.ticks(scene.y, high / 45) };
