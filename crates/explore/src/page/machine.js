@@ -3,6 +3,8 @@
 (() => {
   const make = Explore.element;
   const SLOW = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000];
+  /** How many times slower than real the machine is shown. */
+  const slowness = ({ slow, rpm }) => slow ?? SLOW.reduce((best, each) => (Math.abs(Math.log((each * 15) / rpm)) < Math.abs(Math.log((best * 15) / rpm)) ? each : best));
   const still = () => matchMedia("(prefers-reduced-motion: reduce)").matches;
 
   /** Linear interpolation in a sorted column. */
@@ -162,7 +164,7 @@
       const tick = (now) => {
         going = false;
         if (!clock.playing || !motion || !canvas.isConnected) return;
-        if (clock.last !== null) clock.time = (clock.time + Math.min(0.1, (now - clock.last) / 1e3) / context.state().slow) % motion.end;
+        if (clock.last !== null) clock.time = (clock.time + Math.min(0.1, (now - clock.last) / 1e3) / slowness(context.state())) % motion.end;
         clock.last = now;
         show();
         run();
@@ -210,7 +212,7 @@
       return {
         highlight(to) { pointed = to; follow(to); },
         async update(state, { coarse }) {
-          slow.set(String(state.slow));
+          slow.set(String(slowness(state)));
           const [shape, found] = await Promise.all([
             context.ask({ view: "cam", model: camModel() }, { lane: "machine-cam", coarse, silent: true }),
             context.ask({ view: "motion", rpm: state.rpm, transient: 300, revolutions: 2, samples: 360, ...context.start() }, { coarse, rough: { transient: 100, samples: 180 } }),

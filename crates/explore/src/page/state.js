@@ -2,7 +2,7 @@
 //
 //   { file, text (null: the paper's model, built in), set: { path: number }, rpm (null: the model's usual speed),
 //     over: { name: "rpm" | path, range: null | [low, high] }, zoom: null | { x, y }, start: null | { cam_angle_rad, ... },
-//     slow (times slower than real), views: { name: { option: value } }, story: null | { name, step } }
+//     slow (times slower than real; null: a revolution takes about four seconds), views: { name: { option: value } }, story: null | { name, step } }
 //
 // `Explore.store(initial)` holds one such object and never changes it in place. A drag is one step: changes that are
 // `moving` wait for the one that is not. Each step is an entry of the browser's history, so Back and Forward undo and redo
@@ -10,7 +10,7 @@
 "use strict";
 (() => {
   const same = (a, b) => JSON.stringify(a) === JSON.stringify(b);
-  Explore.start = { file: null, text: null, set: {}, rpm: null, over: { name: "rpm", range: null }, zoom: null, start: null, slow: 50, views: {}, story: null };
+  Explore.start = { file: null, text: null, set: {}, rpm: null, over: { name: "rpm", range: null }, zoom: null, start: null, slow: null, views: {}, story: null };
 
   // The address: `#rpm=678&set.follower.restitution=0.7` ----------------------------------------------------------------------
 
@@ -53,7 +53,7 @@
     need("file", kept.file === null || typeof kept.file === "string");
     need("text", kept.text === null || typeof kept.text === "string");
     need("rpm", kept.rpm === null || Number.isFinite(kept.rpm));
-    need("slow", Number.isFinite(kept.slow) && kept.slow >= 1);
+    need("slow", kept.slow === null || (Number.isFinite(kept.slow) && kept.slow >= 1));
     need("over", isObject(kept.over) && typeof kept.over.name === "string" && (kept.over.range === null || isRange(kept.over.range)));
     need("zoom", kept.zoom === null || (isObject(kept.zoom) && isRange(kept.zoom.x) && (kept.zoom.y === null || isRange(kept.zoom.y))));
     need("start", kept.start === null || (isObject(kept.start) && Object.values(kept.start).every((each) => Number.isFinite(each))));
