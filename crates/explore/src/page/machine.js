@@ -50,7 +50,8 @@
   };
   const paint = (pen, width, height, box, { outline, lift }, frame, theme) => {
     const scene = { x: { range: box.x, bare: true }, y: { range: box.y }, equal: true, layers: [] };
-    const { across, up } = Explore.layout(scene, width, height);
+    // Two lines of text stand below the cam.
+    const { across, up } = Explore.layout(scene, width, height - 34);
     const draw = ([xs, ys], style) => pen.path(xs.map(across), ys.map(up), style);
     const angle = frame.angle;
     draw(turned(outline.whole, angle), { stroke: theme.ink, width: 1.6, fill: theme.wash, close: true });
