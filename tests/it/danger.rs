@@ -23,7 +23,7 @@ use nalgebra::{Matrix2, Vector2};
 /// A follower without spring or damping on a cam of three polynomials, whose corner impact at 60 rpm has the traces -0.3 and -1.7 and the
 /// determinant 0.9025 on both sides.
 fn machine() -> Model {
-    Model::parse("dangerous.toml", include_str!("corpus/dangerous.toml")).unwrap()
+    Model::parse("dangerous.toml", include_str!("../../crates/explore/src/page/dangerous.toml")).unwrap()
 }
 
 /// A period, s, of which a change by one second is a change by one rpm.

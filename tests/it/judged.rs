@@ -277,7 +277,7 @@ fn a_row_is_of_the_kind_of_most_of_its_speeds() {
 #[test]
 #[ignore = "slow"]
 fn a_danger_is_told_in_the_range_alone() {
-    let model = Model::parse("dangerous.toml", include_str!("corpus/dangerous.toml")).unwrap();
+    let model = Model::parse("dangerous.toml", include_str!("../../crates/explore/src/page/dangerous.toml")).unwrap();
     let budget = Budget { transient: 300, record: 50, longest: 4, patience: 0 };
     for (range, is_told) in [([59.99, 60.01], true), ([59.98, 59.995], false), ([60.005, 60.02], false)] {
         let resolution = Resolution { budget, ..Resolution::new(common::step(0.01), 1) };

@@ -52,6 +52,7 @@ mod dynamics;
 mod elementary;
 mod exact_numbers;
 mod explain;
+mod explore;
 mod falling;
 mod figures;
 mod first_touch;

@@ -23,7 +23,7 @@ use crate::diagram::{Diagram, GridBasins};
 use crate::machine::CamShape;
 use crate::model::{ModelPage, Template};
 use crate::motion::{LongRunFound, MotionFound};
-use crate::question::{AxisRequest, BasinsRequest, Question, View};
+use crate::question::{AxisRequest, BasinsRequest, BudgetName, Question, View};
 use crate::{ChangedModel, Refusal};
 
 /// An answer: what was found and how it is known, or the reason why there is nothing.
@@ -120,10 +120,18 @@ fn find(changed: &ChangedModel, given: &Model, model: &Model, view: &View) -> Re
             let options = format!("--rpm {} --revolutions {length}{} {shown}", asked.rpm, asked.start.options());
             (Found::Motion(found), again("simulate", options), Evidence::Computed)
         }
-        View::LongRun { rpm, start } => {
+        View::LongRun { rpm, start, budget } => {
             let simulation = Simulation::new(model, *rpm, start.start()?)?;
-            let judged = long_run(&simulation.machine, simulation.first, Budget::SURVEY)?;
-            let options = format!("--rpm {rpm}{} --lyapunov --json", start.options());
+            let budget = match budget {
+                BudgetName::Whole => Budget::SURVEY,
+                BudgetName::Quick => Budget::CHART,
+            };
+            let judged = long_run(&simulation.machine, simulation.first, budget)?;
+            let Budget { transient, record, patience, .. } = budget;
+            let options = format!(
+                "--rpm {rpm}{} --transient {transient} --record {record} --patience {patience} --lyapunov --json",
+                start.options()
+            );
             (Found::LongRun(LongRunFound::of(judged)), again("simulate", options), Evidence::Sampled)
         }
         View::Diagram(asked) => {
@@ -195,8 +203,14 @@ fn survey(model: &Model, rpm: Option<f64>, over: &AxisRequest, starts: usize) ->
     Ok(speeds(&Over::new(model, parameter, rpm)?, range, &resolution, &Unwatched)?)
 }
 
+/// Most cells of a grid on the page.
+const MOST_CELLS: usize = 100_000;
+
 /// Basins of a grid, as the command `basins` has them.
 fn basins(model: &Model, asked: &BasinsRequest) -> Result<GridBasins, Refusal> {
+    if asked.grid[0].saturating_mul(asked.grid[1]) > MOST_CELLS || asked.grid.contains(&0) {
+        return Err(Refusal::of_words(format!("basins: grid: at least one cell, and at most {MOST_CELLS}")));
+    }
     let section = BasinSection::new(model, asked.rpm, asked.cam_angle_rad)?;
     let grid = section.grid(asked.grid, asked.position, asked.velocity)?;
     let found = SectionStarts::Grid(grid).basins(&section.map.machine, Budget::SURVEY, None, &Unwatched)?;

@@ -153,15 +153,23 @@ impl Boundary {
 fn drawn(curve: &Curve, grid: &Grid) -> Vec<Vec<[f64; 2]>> {
     /// Smallest distance of neighbouring points, as a share of the ranges.
     const STEP: f64 = 1.0 / 500.0;
+    /// Distance beyond which two points have no line between them.
+    const LEAP: f64 = 0.1;
     let place = |value: f64, [low, high]: [f64; 2]| (value - low) / (high - low);
     let mut pieces: Vec<Vec<[f64; 2]>> = vec![Vec::new()];
     let mut last = [f64::INFINITY; 2];
     for State { position, velocity } in curve.points() {
         let at = [place(position, grid.positions), place(velocity, grid.velocities)];
+        let leap = at.iter().zip(last).map(|(one, other)| (one - other).abs()).fold(0.0, f64::max);
         if at.iter().any(|part| !(-STEP..=1.0 + STEP).contains(part)) {
             last = [f64::INFINITY; 2];
             pieces.push(Vec::new());
-        } else if at.iter().zip(last).any(|(one, other)| (one - other).abs() >= STEP) {
+            continue;
+        }
+        if leap > LEAP {
+            pieces.push(Vec::new());
+        }
+        if leap >= STEP {
             last = at;
             if let Some(piece) = pieces.last_mut() {
                 piece.push([position, velocity]);

@@ -1,5 +1,8 @@
 //! The page: its script and style, as one HTML file or as a part of another page.
 
+use std::collections::BTreeMap;
+
+use corner_impact::model::{ModelTemplate, TEMPLATE_NAME};
 use serde::Serialize;
 
 /// Way of the page's questions to the answers.
@@ -65,11 +68,25 @@ pub fn mounting(transport: Transport<'_>, model: &PageModel) -> String {
         Transport::Server => "Explore.server(\"\")".to_owned(),
         Transport::Module(module) => format!("Explore.module(\"{module}\")"),
     };
-    // In a script, the text of a model must not end the script.
-    let model = serde_json::to_string(model).unwrap_or_default().replace('<', "\\u003c");
     format!(
-        "\"use strict\";\nExplore.mount(document.getElementById(\"explore\"), {{ transport: {transport}, model: {model} }});"
+        "\"use strict\";\nExplore.models = {};\nExplore.app = Explore.mount(document.getElementById(\"explore\"), {{ transport: {transport}, model: {} }});",
+        in_script(&tour_models()),
+        in_script(model)
     )
+}
+
+/// A value as a script has it. The text of a model must not end the script.
+fn in_script(value: &impl Serialize) -> String {
+    serde_json::to_string(value).unwrap_or_default().replace('<', "\\u003c")
+}
+
+/// Texts of the models that the guided tours go through besides the paper's, by file name.
+fn tour_models() -> BTreeMap<&'static str, String> {
+    let valve = ModelTemplate::of("table").map(|template| template.whole().replace(TEMPLATE_NAME, "valve"));
+    BTreeMap::from([
+        ("valve.toml", valve.unwrap_or_default()),
+        ("dangerous.toml", include_str!("page/dangerous.toml").to_owned()),
+    ])
 }
 
 /// The whole page.

@@ -73,6 +73,9 @@ pub enum View {
         /// Start of the run.
         #[serde(default)]
         start: StartRequest,
+        /// How long the run is followed.
+        #[serde(default)]
+        budget: BudgetName,
     },
     /// Impacts over the speed or another number.
     Diagram(DiagramRequest),
@@ -154,6 +157,17 @@ fn few_starts() -> usize {
 
 fn some_speeds() -> u32 {
     41
+}
+
+/// Budget of a run by its name.
+#[derive(Clone, Copy, Debug, Default, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum BudgetName {
+    /// That of `simulate` and `speeds`.
+    #[default]
+    Whole,
+    /// That of `chart`, while a number is being dragged.
+    Quick,
 }
 
 /// Start of a run: on the cam at rest without any field.
