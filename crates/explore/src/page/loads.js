@@ -37,7 +37,7 @@
   ];
   const separationLayers = ({ separation }) => (separation ? [
     separation.error_rpm > 1e-6 * separation.speed_rpm && { kind: "rects", colour: "vermilion", alpha: 0.2, rects: [[separation.speed_rpm - separation.error_rpm, separation.speed_rpm + separation.error_rpm, -1e12, 1e12]] },
-    { kind: "rule", x: separation.speed_rpm, colour: "vermilion", dash: [6, 3], label: `separates at ${withError(separation.speed_rpm, separation.error_rpm, 7)} rpm` },
+    { kind: "rule", x: separation.speed_rpm, colour: "vermilion", dash: [6, 3], label: `${withError(separation.speed_rpm, separation.error_rpm, 7)} rpm` },
   ] : []);
 
   // The need ---------------------------------------------------------------------------------------------------------------
@@ -138,7 +138,7 @@
       const headline = () => {
         const { separation: found, separates } = shown;
         if (found) return `Separates at ${withError(found.speed_rpm, found.error_rpm, 7)} rpm, at ${withError(Explore.turned(found.cam_angle_rad), Explore.degrees(found.cam_angle_error_rad || 0), 5)}° of the cam`;
-        return separates && separates !== "at-a-speed" ? `Separation: ${String(separates).replace(/-/g, " ")}` : "Stays on the cam at these speeds";
+        return { "at-every-speed": "Separates at every speed, however slow", never: "Stays on the cam at every speed" }[separates] || `Separates ${String(separates).replace(/-/g, " ")}`;
       };
       const draw = () => {
         if (!shown) return;
@@ -174,15 +174,20 @@
         if (below.element.firstChild) below.element.firstChild.textContent = `below (${loadUnit()})`;
         return state;
       };
+      // A machine that separates at every speed or at none has no range of its own.
+      const speeds = () => {
+        const range = context.option("range", null) || (context.model().separation ? null : context.model().speeds);
+        return range ? { rpm: range } : {};
+      };
       /** The curves: of a measured cam first at a few speeds, as each takes a run of 16 cams. */
       const curves = async (coarse) => {
         const measured = Boolean(context.model().separation && context.model().separation.error_rpm);
-        const asked = { view: "design", ...(context.option("range", null) ? { rpm: context.option("range", null) } : {}) };
+        const asked = { view: "design", ...speeds() };
         if (coarse && measured) return null;
         const counts = coarse ? [14] : measured ? [11, 41] : [41];
         for (const count of counts) {
           const found = await context.ask({ ...asked, count }, { slow: true, coarse });
-          if (!found) return null;
+          if (!found) { if (Explore.parts.refused(panel)) shown = null; return null; }
           [shown, required] = [found, shownFor(found)];
           draw();
         }
@@ -198,7 +203,7 @@
           await curves(coarse);
           if (coarse || !shown || !need() || same()) return;
           const [text, model] = [needText(need(), loadUnit()), JSON.stringify(context.app.question())];
-          const found = await context.ask({ view: "design", ...(context.option("range", null) ? { rpm: context.option("range", null) } : {}), count: 2, needs: [text] }, { lane: "loads-need", slow: true });
+          const found = await context.ask({ view: "design", ...speeds(), count: 2, needs: [text] }, { lane: "loads-need", slow: true });
           if (!found || !need()) return;
           required = { text, model, rows: found.needs || [] };
           draw();

@@ -26,6 +26,13 @@
   const anglesOf = (found) => Explore.angles(found, "cam_angle_").map(Explore.radians);
   const capital = (text) => text.charAt(0).toUpperCase() + text.slice(1);
   const many = (count, one, more = `${one}s`) => `${number(count)} ${count === 1 ? one : more}`;
+  /** Where the program refuses, its sentence stands in the panel: a heading and evidence of an earlier answer go. */
+  const refused = (panel) => {
+    if (panel.element.querySelector(".sentence").hidden) return false;
+    panel.heading(panel.view.title);
+    panel.known(null);
+    return true;
+  };
   const units = (context) => (context.model() || {}).units || {};
 
   /** The name of a long-run motion in words; an ending of `basins` names its kind `ending`. */
@@ -180,7 +187,7 @@
           [axes, turns].forEach((each, index) => each.set(String(index ? revolutions : context.option("axes", "follower"))));
           approach.set(approaching);
           const found = await context.ask({ view: "motion", rpm: state.rpm, transient: approaching ? 0 : 300, revolutions, samples: coarse ? 120 : 360, ...context.start() }, { coarse });
-          if (!found) return;
+          if (!found) { refused(panel); return; }
           shown = { found, rpm: state.rpm };
           const hits = found.events && found.events.event ? found.events.event.filter((each) => each === "impact").length : 0;
           if (coarse) panel.heading(`${capital(many(hits, "impact"))} in ${many(revolutions, "revolution")}`);
@@ -189,7 +196,7 @@
           if (coarse) return;
           const long = await longRun(context, state);
           if (!long || state !== context.state()) return;
-          panel.heading(long.kind === "chaotic" ? "Chaotic: the curve never closes" : `The curve closes: ${Explore.ending(long)}`);
+          panel.heading(long.kind === "chaotic" ? "Chaotic: the curve never closes" : long.revolutions ? `The curve closes: ${Explore.ending(long)}` : capital(Explore.ending(long)));
           draw(state);
         },
         highlight(to) {
@@ -238,7 +245,7 @@
     if (long.kind === "chaotic") return "The impacts never repeat: chaos";
     const own = angle.slice(0, long.impacts || 0).map((at) => `${number(turned(at), 5)}°`);
     if (long.kind === "periodic" && own.length <= 3) return `The impacts repeat at ${own.join(", ")}`;
-    return `${capital(Explore.ending(long))}: the impacts repeat`;
+    return `${capital(Explore.ending(long))}${long.revolutions ? ": the impacts repeat" : ""}`;
   };
 
   Explore.view({
@@ -311,7 +318,7 @@
           orbits.set(context.option("orbits", false));
           const asked = eventsOf({ rpm: state.rpm, transient: 300, ...context.start() });
           const first = await context.ask({ ...asked, revolutions: FEW }, { lane: "impacts-first", coarse, silent: !coarse });
-          if (!first) return;
+          if (!first) { refused(panel); return; }
           const more = enough(impactsOf(first).angle.length, FEW);
           const found = coarse ? first : await context.ask({ ...asked, revolutions: more });
           if (!found) return;
@@ -347,5 +354,5 @@
       };
     },
   });
-  Explore.parts = { capital, many, units, onTop, arrow };
+  Explore.parts = { capital, many, units, refused };
 })();

@@ -44,6 +44,7 @@
   /** Where the starts of the local map end, at faster and at slower speeds. */
   const endings = (found) => (found.local_map || []).filter((each) => each.speeds === "faster" || each.speeds === "slower").map((each) => {
     const parts = each.ends.map((end) => `${end.starts} ${ENDS[end.end] || end.end}${end.word ? ` ${end.word}` : ""}`);
+    if (each.ends.length === 1) return `At ${each.speeds} speeds all ${parts[0].replace(/^\d+ /, `${each.starts} starts of the local map `)}.`;
     return `At ${each.speeds} speeds, of ${each.starts} starts of the local map ${parts.join(", ")}.`;
   });
   const KNOWN = { proved: "proved", computed: "computed", sampled: "sampled" };
