@@ -10,6 +10,8 @@
     const app = { element, transport, store: Explore.store(initial), model: null, selecting: [], views: null, controls: null };
     const now = () => app.store.state;
     app.question = () => ({ file: now().file, text: now().text, set: now().set });
+    /** The name that the model file has, or gets where the reader changes the built-in model's text. */
+    app.fileName = () => now().file || `${(app.model ? app.model.name : "model").replace(/ with .*$/, "").replace(/[^\w.-]+/g, "-")}.toml`;
     app.ask = (question, lane) => transport.ask({ model: app.question(), ...question }, lane).then(
       (answer) => { if (answer.error) { app.refused(answer.error); return null; } return answer.found; },
       (problem) => { if (problem !== Explore.superseded) app.refused({ sentence: problem.message }); return null; });

@@ -28,7 +28,7 @@
       field.select();
     }
   };
-  const stem = (app) => (app.question().file || (app.model && app.model.name) || "model").replace(/^.*[\\/]/, "").replace(/\.toml$/, "");
+  const stem = (app) => app.fileName().replace(/^.*[\\/]/, "").replace(/\.toml$/, "");
 
   /** The buttons under a panel: Save SVG, Save CSV, Copy as command. */
   Explore.saveButtons = (entry, app) => {
