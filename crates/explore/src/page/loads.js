@@ -52,11 +52,13 @@
   };
   const meets = (row) => row.value !== null && (row.is_upper_bound ? row.now <= row.value - (row.error || 0) : row.now >= row.value + (row.error || 0)) && !(row.other < row.now);
   const misses = (row) => (row.is_upper_bound ? row.now > row.value + (row.error || 0) : row.now < row.value - (row.error || 0)) || row.other < row.now;
-  /** The number to set so that the need is met at the far end of ±: rounded to the safe side. */
+  /** The number to set so that the need is met at the far end of ±: rounded to the safe side, in steps no smaller than ±. */
   const safe = (row) => {
     const edge = row.is_upper_bound ? row.value - (row.error || 0) : row.value + (row.error || 0);
-    const unit = 10 ** (Math.floor(Math.log10(Math.abs(edge))) - 2);
-    return Number(((row.is_upper_bound ? Math.floor(edge / unit) : Math.ceil(edge / unit)) * unit).toPrecision(3));
+    const least = Math.max(row.error || 0, Math.abs(edge) * 1e-3);
+    const unit = 10 ** Math.floor(Math.log10(least));
+    const step = unit * [1, 2, 5, 10].find((each) => each * unit >= least * 0.999);
+    return Number((((row.is_upper_bound ? Math.floor : Math.ceil)(edge / step)) * step).toPrecision(6));
   };
   /** What the need asks of each number, as a list with buttons that try it. */
   const needList = (rows, context) => {
