@@ -172,7 +172,7 @@
         // A list of one entry a cell: the ending of its start.
         shown = { ...found, ...(found.grid || {}), ends: found.cell_endings || found.cells, size: grid, angle: at, boundary: found.boundary || border };
         draw(context.state());
-        panel.note(`${number(grid[0] * grid[1])} starts${grid[0] < 160 ? "; a finer grid follows" : ""}. Click one to start there; drag a rectangle to look closer. Dots: stable motions. Crosses and dark lines: unstable ones, and the border that their stable manifolds draw.`);
+        panel.note(`${number(grid[0] * grid[1])} starts${grid[0] < 160 ? "; a finer grid follows" : ""}. Click one to start there; drag a rectangle to look closer. Large dots: stable periodic motions. Crosses: unstable ones; the lines through them are their stable manifolds, which are the border.`);
       };
       const compute = async (state, grids) => {
         run += 1;

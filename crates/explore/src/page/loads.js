@@ -118,7 +118,7 @@
         const unit = unitOf(rows.unit);
         const hover = (index) => ({ title: `${number(rows.x[index], 6)} rpm`, rows: [["least force", `${withError(rows.y[index], rows.error[index])} ${unit}`], ["at cam angle", Number.isFinite(shown.contact_force[index].cam_angle_rad) ? `${number(Explore.turned(shown.contact_force[index].cam_angle_rad), 5)}°` : "–"]], known: rows.y[index] < 0 ? "computed; below 0 they separate" : "computed" });
         return {
-          x: { label: "speed", unit: "rpm", range: range() }, y: { label: "least force of the cam on the follower", unit, range: extent([rows.y, [0]]) },
+          x: { label: "speed", unit: "rpm", range: range() }, y: { label: "least contact force", unit, range: extent([rows.y, [0]]) },
           layers: [{ kind: "rule", y: 0, colour: "ink", width: 1 }, ...separationLayers(shown), ...curve(rows, "blue", hover), { kind: "rule", x: context.state().rpm, colour: "grey", width: 1.5, dash: [2, 3], label: "" }, needRule()],
           description: `${headline()}. At ${number(rows.x[0], 5)} rpm the cam presses with ${withError(rows.y[0], rows.error[0])} ${unit} at least, at ${number(rows.x[rows.x.length - 1], 5)} rpm with ${withError(rows.y[rows.y.length - 1], rows.error[rows.error.length - 1])} ${unit}`,
         };

@@ -240,6 +240,12 @@
       motion: (index) => ({ rpm, cam_angle_rad: angle[index], relative_velocity: speed[index] }),
     };
   });
+  /** Where the map is looked at: a few points are shown in the whole turn, where the corners are. */
+  const rangeOf = (drawn, orbits, returns, few) => {
+    const [x, y] = [[drawn.x, ...orbits.map((each) => each.x)], [drawn.y, ...orbits.map((each) => each.y)]];
+    const turn = (lists) => (few ? [0, 360] : inTurn(extent(lists)));
+    return { x: turn(x), y: returns ? turn(y) : few ? extent([...y, [0]], 0.15) : extent(y) };
+  };
   const impactHeading = (long, { angle }) => {
     if (!angle.length) return "No impacts: the follower stays on the cam";
     if (long.kind === "chaotic") return "The impacts never repeat: chaos";
@@ -287,8 +293,8 @@
         const other = pointed && planeOf(pointed, returns);
         const different = drawn.x.length > 20000 ? Infinity : distinct(drawn);
         const few = different <= 100;
-        // A few points are shown in the whole turn, where the corners are.
-        const range = context.option("range", null) || { x: different <= 12 ? [0, 360] : inTurn(extent([drawn.x])), y: returns ? (different <= 12 ? [0, 360] : inTurn(extent([drawn.y]))) : different <= 12 ? extent([drawn.y, [0]], 0.15) : extent([drawn.y]) };
+        const own = returns || !context.option("orbits", false) || !shown.orbits ? [] : orbitLayers(shown.orbits, context.value("follower.restitution"), rpm);
+        const range = context.option("range", null) || rangeOf(drawn, own, returns, different <= 12);
         const corners = ((context.model() || {}).corners || []).map((each) => each.angle_deg).filter((at) => at >= range.x[0] && at <= range.x[1]);
         plot.draw({
           x: { label: returns ? "cam angle at an impact" : "cam angle at the impact", unit: "°", range: range.x, turn: true },
@@ -299,7 +305,7 @@
             { kind: "points", ...drawn, shape: few ? "disc" : "dot", size: few ? 8 : 2, colour: "blue", images: true, hover: hover(impacts),
               motion: (index) => ({ rpm, cam_angle_rad: impacts.angle[index], position: impacts.position[index], velocity: impacts.velocity[index], relative_velocity: impacts.speed[index] }) },
             other && { kind: "points", ...other, shape: "ring", size: 9, colour: "purple" },
-            ...(returns || !context.option("orbits", false) || !shown.orbits ? [] : orbitLayers(shown.orbits, context.value("follower.restitution"), rpm)),
+            ...own,
           ],
           message: drawn.x.length ? "" : impacts.angle.length ? "one impact alone" : "no impacts: the follower stays on the cam",
           description: `${panel.element.querySelector("h3").textContent}. ${many(impacts.angle.length, "impact")} at ${number(rpm, 8)} rpm`,

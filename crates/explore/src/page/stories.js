@@ -57,7 +57,7 @@
       { title: "Who goes where", view: "basins", state: { rpm: 678, views: basins(WIDE) },
         text: "Each point is a start at the cam angle 330.18°, painted by the motion that it ends on. Of the starts in this rectangle 61 % settle on the periodic motion and 39 % on chaos (sampled on the grid)." },
       { title: "The border", view: "basins", state: { rpm: 678, views: basins(null) },
-        text: "A third motion lies on the border: it strikes at 122.47°, is marked with a cross, and is unstable with the multiplier 1.1046 (computed). Its stable manifold, the dark line, is the border between the two basins." },
+        text: "A third motion lies on the border: it strikes at 122.47°, is marked with a cross, and is unstable with the multiplier 1.1046 (computed). Its stable manifold, the line through the cross, is the border between the two basins." },
       { title: "Chaos is lost", view: "basins", state: { rpm: 684, views: basins(WIDE) },
         text: "At 684 rpm all starts of the rectangle settle on the periodic motion (sampled). The chaotic motion has met the border at about 682.2 rpm, and what is left of it is a transient." },
     ],
