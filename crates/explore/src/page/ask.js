@@ -116,7 +116,7 @@
   // The module -----------------------------------------------------------------------------------------------------------
 
   // Runs in a worker: it has no access to the page, so it is a function turned to text.
-  const inside = () => {
+  const inside = (scope) => {
     let instance = null;
     const reply = (text) => {
       const { memory, allocate, answer, answer_length } = instance.exports;
@@ -128,16 +128,25 @@
       return new TextDecoder().decode(new Uint8Array(memory.buffer, found, answer_length()));
     };
     let ready = null;
-    self.onmessage = async ({ data }) => {
+    scope.onmessage = async ({ data }) => {
       if (data.module) { ready = WebAssembly.instantiate(data.module, {}); ready.catch(() => {}); return; }
       try {
         instance = await ready;
         // Parsed here: four megabytes of text would hold up the page.
-        self.postMessage({ answer: JSON.parse(reply(data.text)) });
+        scope.postMessage({ answer: JSON.parse(reply(data.text)) });
       } catch (problem) {
-        self.postMessage({ failed: String(problem && problem.message ? problem.message : problem) });
+        scope.postMessage({ failed: String(problem && problem.message ? problem.message : problem) });
       }
     };
+  };
+
+  /** The module beside the page's own script, for pages that may not start workers, as in some notebooks. */
+  const beside = () => {
+    const scope = {};
+    const made = { ended: false, terminate: () => { made.ended = true; }, postMessage: (data) => setTimeout(() => scope.onmessage({ data })) };
+    scope.postMessage = (data) => setTimeout(() => { if (!made.ended) made.onmessage({ data }); });
+    inside(scope);
+    return made;
   };
 
   const unpack = async (base64) => {
@@ -149,8 +158,10 @@
   // One worker is kept for quick questions, one for slow ones at most, and one takes those of many seconds.
   /** The program as a WebAssembly module inside the page: base64 of its gzip. */
   Explore.module = (base64) => {
-    const compiled = unpack(base64.replace(/\s+/g, ""));
-    const address = URL.createObjectURL(new Blob([`(${inside})()`], { type: "text/javascript" }));
+    const compiled = unpack(base64.replace(/\s+/g, "")).catch((problem) => { throw new Error(`The program in this page cannot be started in this browser: ${problem.message}`); });
+    const address = URL.createObjectURL(new Blob([`(${inside})(self)`], { type: "text/javascript" }));
+    let [allowed, proved] = [true, false];
+    const started = () => { if (allowed) { try { return new Worker(address); } catch { allowed = false; } } return beside(); };
     const worker = (slow) => {
       // `thread` is a promise of the Web Worker in force; `job` is what it runs.
       let [thread, job] = [null, null];
@@ -164,9 +175,15 @@
       };
       const begin = async () => {
         const module = await compiled;
-        const made = new Worker(address);
-        made.onmessage = ({ data }) => { if (data.failed !== undefined) failed(data.failed); else { const given = give(); if (given) given.resolve(data.answer); } };
-        made.onerror = (event) => failed(event.message);
+        const made = started();
+        made.onmessage = ({ data }) => { proved = true; if (data.failed !== undefined) failed(data.failed); else { const given = give(); if (given) given.resolve(data.answer); } };
+        made.onerror = (event) => {
+          if (proved) { failed(event.message || "its worker ended"); return; }
+          // No worker has ever answered: they are forbidden here.
+          allowed = false;
+          thread = null;
+          ready().then((each) => { if (job) each.postMessage({ text: job.text }); });
+        };
         made.postMessage({ module });
         return made;
       };
@@ -175,7 +192,7 @@
       return {
         slow,
         run: (text) => new Promise((resolve, reject) => {
-          const own = { resolve, reject };
+          const own = { resolve, reject, text };
           job = own;
           ready().then((each) => { if (job === own) each.postMessage({ text }); }, reject);
         }),

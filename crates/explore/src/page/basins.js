@@ -47,10 +47,11 @@
     });
   };
   /** The cells in which a shape is drawn: a sparse lattice, its rows shifted against each other. */
-  const strewn = (columns, rows) => {
+  const strewn = (columns, rows, width) => {
     const found = [];
-    for (let row = 0; row < MARKS[1]; row += 1) for (let across = 0; across < MARKS[0]; across += 1) {
-      const [u, v] = [(across + (row % 2 ? 0.75 : 0.25)) / MARKS[0], (row + 0.5) / MARKS[1]];
+    const [wide, high] = MARKS.map((most) => Math.max(6, Math.round(most * Math.min(1, width / 700))));
+    for (let row = 0; row < high; row += 1) for (let across = 0; across < wide; across += 1) {
+      const [u, v] = [(across + (row % 2 ? 0.75 : 0.25)) / wide, (row + 0.5) / high];
       found.push(Math.floor(v * rows) * columns + Math.min(columns - 1, Math.floor(u * columns)));
     }
     return found;
@@ -73,7 +74,7 @@
   };
 
   /** The layers of a picture: cells, shapes, the border and its saddles, the start. */
-  const layersOf = (found, looks, state, angle, unit) => {
+  const layersOf = (found, looks, state, angle, unit, width) => {
     const [columns, rows] = found.size;
     const start = starts(found, columns, rows);
     const hover = (index) => {
@@ -85,7 +86,7 @@
     const motion = (index) => (found.ends[index] < 0 ? null : { rpm: state.rpm, cam_angle_rad: angle, ...start(index) });
     const { x, y } = rangesOf(found);
     const marks = looks.map(({ shape }, ending) => {
-      const cells = strewn(columns, rows).filter((index) => found.ends[index] === ending);
+      const cells = strewn(columns, rows, width).filter((index) => found.ends[index] === ending);
       return { kind: "points", x: cells.map((index) => start(index).position), y: cells.map((index) => start(index).velocity), shape, size: 7, colour: "paper", alpha: 0.85,
         keys: { hover: (index) => hover(cells[index]), motion: (index) => motion(cells[index]) } };
     });
@@ -163,7 +164,7 @@
         plot.draw({
           x: { label: `position at cam angle ${number(degrees(shown.angle), 6)}°`, unit: unit.length, range: x },
           y: { label: "velocity there", unit: unit.velocity, range: y },
-          layers: layersOf(shown, looks, state, shown.angle, unit),
+          layers: layersOf(shown, looks, state, shown.angle, unit, plot.element.clientWidth || 700),
           description: `${shown.size[0]} by ${shown.size[1]} starts at ${number(state.rpm, 8)} rpm: ${text.join("; ")}`,
         });
       };
@@ -171,7 +172,7 @@
         // A list of one entry a cell: the ending of its start.
         shown = { ...found, ...(found.grid || {}), ends: found.cell_endings || found.cells, size: grid, angle: at, boundary: found.boundary || border };
         draw(context.state());
-        panel.note(`${number(grid[0] * grid[1])} starts${grid[0] < 160 ? "; a finer grid follows" : ""}. Click one to start there; drag a rectangle to look closer. Dots: stable motions. Crosses and dark lines: unstable ones, and the border that their stable manifolds draw.`);
+        panel.note(`${number(grid[0] * grid[1])} starts${grid[0] < 160 ? "; a finer grid follows" : ""}. Click one to start there; drag a rectangle to look closer. Large dots: stable periodic motions. Crosses: unstable ones; the lines through them are their stable manifolds, which are the border.`);
       };
       const compute = async (state, grids) => {
         run += 1;
@@ -182,7 +183,7 @@
         for (const grid of grids) {
           const found = await context.ask({ ...section, grid }, { slow: true });
           if (own !== run) return;
-          if (!found) { wanted = null; return; }
+          if (!found) { wanted = null; Explore.parts.refused(panel); return; }
           take(found, grid, at);
         }
         // The border takes a second or two: it comes last.

@@ -35,7 +35,7 @@
     const slider = make("input", { type: "range", min: 0, max: POSITIONS, step: 1, id: `${id}-slider`, "aria-label": `${Explore.spaced(first.name)}, slider` });
     const field = make("input", { type: "text", inputmode: "decimal", id, autocomplete: "off", spellcheck: "false", "aria-describedby": `${id}-allowed` });
     const unit = make("span", { class: "unit" }, Explore.unit(first.unit));
-    const back = Explore.button("\u21ba", () => reset(number), { class: "back", "aria-label": `Reset ${Explore.spaced(first.name)}` });
+    const back = Explore.button("\u21ba", () => { say(null); reset(number); }, { class: "back", "aria-label": `Reset ${Explore.spaced(first.name)}` });
     const allowed = make("p", { class: "allowed", id: `${id}-allowed` });
     const sentence = make("p", { class: "sentence", role: "alert", hidden: true });
     const label = make("label", { for: id }, Explore.spaced(first.name), first.symbol ? make("i", {}, ` ${first.symbol}`) : null);
@@ -121,7 +121,7 @@
       if (found) app.take(`${law}.toml`, found.text);
     };
     const laws = Explore.menu("Cam law", [], "", take);
-    const contacts = Explore.menu("Follower", Object.entries(CONTACTS), "", (contact) => app.take(app.question().file, withContact(app.model, contact), "text"));
+    const contacts = Explore.menu("Follower", Object.entries(CONTACTS), "", (contact) => app.take(app.fileName(), withContact(app.model, contact), "text"));
     const note = make("p", { class: "allowed" }, "A new law starts from an example machine. Undo brings yours back.");
     return {
       element: make("div", { class: "laws" }, laws, contacts, note),
@@ -139,7 +139,7 @@
     let timer = null;
     area.addEventListener("input", () => {
       clearTimeout(timer);
-      timer = setTimeout(() => app.take(app.question().file, area.value, "text"), 400);
+      timer = setTimeout(() => app.take(app.fileName(), area.value, "text"), 400);
     });
     const load = make("input", { type: "file", accept: ".toml,text/plain", hidden: true, onchange: async () => {
       const file = load.files[0];

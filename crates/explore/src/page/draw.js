@@ -222,6 +222,14 @@ const Explore = {};
     own.putImageData(data, 0, 0);
     to.save(); to.setTransform(1, 0, 0, 1, 0, 0); to.drawImage(canvas, 0, 0); to.restore();
   };
+  /** Several SVG files below each other as one. */
+  Explore.stack = (files) => {
+    const sizes = files.map((file) => /width="([\d.]+)" height="([\d.]+)"/.exec(file).slice(1).map(Number));
+    const [width, height] = [Math.max(...sizes.map(([each]) => each)), sizes.reduce((sum, [, each]) => sum + each, 0)];
+    let top = 0;
+    const parts = files.map((file, index) => { const placed = file.replace("<svg ", `<svg x="${(width - sizes[index][0]) / 2}" y="${top}" `); top += sizes[index][1]; return placed; });
+    return `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 ${width} ${height}" width="${width}" height="${height}">${parts.join("")}</svg>\n`;
+  };
   Explore.sans = 'system-ui, "Segoe UI", "Helvetica Neue", Arial, sans-serif';
   /** A colour as one little-endian pixel. */
   Explore.rgba = (context, colour) => {
@@ -231,6 +239,7 @@ const Explore = {};
     return ((255 << 24) | (parts[2] << 16) | (parts[1] << 8) | parts[0]) >>> 0;
   };
 
+  let clips = 0;
   /** A pen that writes SVG; `finish()` returns the file. */
   Explore.svgPen = (width, height, paper, title) => {
     const parts = [];
@@ -244,7 +253,6 @@ const Explore = {};
         arc: (x, y, r) => d.push(`A${at(r)} ${at(r)} 0 1 1 ${at(x - r)} ${at(y)}A${at(r)} ${at(r)} 0 1 1 ${at(x + r)} ${at(y)}`),
         rect: (x, y, w, h) => d.push(`M${at(x)} ${at(y)}h${at(w)}v${at(h)}h${at(-w)}z`) };
     };
-    let clips = 0;
     return {
       path: (xs, ys, style) => {
         const to = trace();

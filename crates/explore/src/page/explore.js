@@ -10,9 +10,11 @@
     const app = { element, transport, store: Explore.store(initial), model: null, selecting: [], views: null, controls: null };
     const now = () => app.store.state;
     app.question = () => ({ file: now().file, text: now().text, set: now().set });
+    /** The name that the model file has, or gets where the reader changes the built-in model's text. */
+    app.fileName = () => now().file || `${(app.model ? app.model.name : "model").replace(/ with .*$/, "").replace(/[^\w.-]+/g, "-")}.toml`;
     app.ask = (question, lane) => transport.ask({ model: app.question(), ...question }, lane).then(
       (answer) => { if (answer.error) { app.refused(answer.error); return null; } return answer.found; },
-      (problem) => { if (problem !== Explore.superseded) app.refused({ sentence: problem.message }); return null; });
+      (problem) => { if (problem !== Explore.superseded) app.refused({ sentence: problem.message, broken: true }); return null; });
     app.number = (path) => (app.model ? app.model.numbers.find((each) => each.path === path) : null);
     /** A number of the model by its path, or the speed. */
     app.value = (path) => {
@@ -131,7 +133,7 @@
         if (problem !== Explore.superseded) known.textContent = problem.message;
       }
     };
-    const refuse = (error) => { text.textContent = "The model cannot be run"; known.textContent = error.sentence; };
+    const refuse = (error) => { text.textContent = error.broken ? "Nothing can be computed here" : "The model cannot be run"; known.textContent = error.sentence; };
     return { element: make("div", { class: "headline-box" }, text, known), update, refuse };
   };
 

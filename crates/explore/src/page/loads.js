@@ -37,7 +37,7 @@
   ];
   const separationLayers = ({ separation }) => (separation ? [
     separation.error_rpm > 1e-6 * separation.speed_rpm && { kind: "rects", colour: "vermilion", alpha: 0.2, rects: [[separation.speed_rpm - separation.error_rpm, separation.speed_rpm + separation.error_rpm, -1e12, 1e12]] },
-    { kind: "rule", x: separation.speed_rpm, colour: "vermilion", dash: [6, 3], label: `separates at ${withError(separation.speed_rpm, separation.error_rpm, 7)} rpm` },
+    { kind: "rule", x: separation.speed_rpm, colour: "vermilion", dash: [6, 3], label: `${withError(separation.speed_rpm, separation.error_rpm, 7)} rpm` },
   ] : []);
 
   // The need ---------------------------------------------------------------------------------------------------------------
@@ -52,11 +52,13 @@
   };
   const meets = (row) => row.value !== null && (row.is_upper_bound ? row.now <= row.value - (row.error || 0) : row.now >= row.value + (row.error || 0)) && !(row.other < row.now);
   const misses = (row) => (row.is_upper_bound ? row.now > row.value + (row.error || 0) : row.now < row.value - (row.error || 0)) || row.other < row.now;
-  /** The number to set so that the need is met at the far end of ±: rounded to the safe side. */
+  /** The number to set so that the need is met at the far end of ±: rounded to the safe side, in steps no smaller than ±. */
   const safe = (row) => {
     const edge = row.is_upper_bound ? row.value - (row.error || 0) : row.value + (row.error || 0);
-    const unit = 10 ** (Math.floor(Math.log10(Math.abs(edge))) - 2);
-    return Number(((row.is_upper_bound ? Math.floor(edge / unit) : Math.ceil(edge / unit)) * unit).toPrecision(3));
+    const least = Math.max(row.error || 0, Math.abs(edge) * 1e-3);
+    const unit = 10 ** Math.floor(Math.log10(least));
+    const step = unit * [1, 2, 5, 10].find((each) => each * unit >= least * 0.999);
+    return Number((((row.is_upper_bound ? Math.floor : Math.ceil)(edge / step)) * step).toPrecision(6));
   };
   /** What the need asks of each number, as a list with buttons that try it. */
   const needList = (rows, context) => {
@@ -116,7 +118,7 @@
         const unit = unitOf(rows.unit);
         const hover = (index) => ({ title: `${number(rows.x[index], 6)} rpm`, rows: [["least force", `${withError(rows.y[index], rows.error[index])} ${unit}`], ["at cam angle", Number.isFinite(shown.contact_force[index].cam_angle_rad) ? `${number(Explore.turned(shown.contact_force[index].cam_angle_rad), 5)}°` : "–"]], known: rows.y[index] < 0 ? "computed; below 0 they separate" : "computed" });
         return {
-          x: { label: "speed", unit: "rpm", range: range() }, y: { label: "least force of the cam on the follower", unit, range: extent([rows.y, [0]]) },
+          x: { label: "speed", unit: "rpm", range: range() }, y: { label: "least contact force", unit, range: extent([rows.y, [0]]) },
           layers: [{ kind: "rule", y: 0, colour: "ink", width: 1 }, ...separationLayers(shown), ...curve(rows, "blue", hover), { kind: "rule", x: context.state().rpm, colour: "grey", width: 1.5, dash: [2, 3], label: "" }, needRule()],
           description: `${headline()}. At ${number(rows.x[0], 5)} rpm the cam presses with ${withError(rows.y[0], rows.error[0])} ${unit} at least, at ${number(rows.x[rows.x.length - 1], 5)} rpm with ${withError(rows.y[rows.y.length - 1], rows.error[rows.error.length - 1])} ${unit}`,
         };
@@ -138,7 +140,7 @@
       const headline = () => {
         const { separation: found, separates } = shown;
         if (found) return `Separates at ${withError(found.speed_rpm, found.error_rpm, 7)} rpm, at ${withError(Explore.turned(found.cam_angle_rad), Explore.degrees(found.cam_angle_error_rad || 0), 5)}° of the cam`;
-        return separates && separates !== "at-a-speed" ? `Separation: ${String(separates).replace(/-/g, " ")}` : "Stays on the cam at these speeds";
+        return { "at-every-speed": "Separates at every speed, however slow", never: "Stays on the cam at every speed" }[separates] || `Separates ${String(separates).replace(/-/g, " ")}`;
       };
       const draw = () => {
         if (!shown) return;
@@ -174,15 +176,20 @@
         if (below.element.firstChild) below.element.firstChild.textContent = `below (${loadUnit()})`;
         return state;
       };
+      // A machine that separates at every speed or at none has no range of its own.
+      const speeds = () => {
+        const range = context.option("range", null) || (context.model().separation ? null : context.model().speeds);
+        return range ? { rpm: range } : {};
+      };
       /** The curves: of a measured cam first at a few speeds, as each takes a run of 16 cams. */
       const curves = async (coarse) => {
         const measured = Boolean(context.model().separation && context.model().separation.error_rpm);
-        const asked = { view: "design", ...(context.option("range", null) ? { rpm: context.option("range", null) } : {}) };
+        const asked = { view: "design", ...speeds() };
         if (coarse && measured) return null;
         const counts = coarse ? [14] : measured ? [11, 41] : [41];
         for (const count of counts) {
           const found = await context.ask({ ...asked, count }, { slow: true, coarse });
-          if (!found) return null;
+          if (!found) { if (Explore.parts.refused(panel)) shown = null; return null; }
           [shown, required] = [found, shownFor(found)];
           draw();
         }
@@ -198,7 +205,7 @@
           await curves(coarse);
           if (coarse || !shown || !need() || same()) return;
           const [text, model] = [needText(need(), loadUnit()), JSON.stringify(context.app.question())];
-          const found = await context.ask({ view: "design", ...(context.option("range", null) ? { rpm: context.option("range", null) } : {}), count: 2, needs: [text] }, { lane: "loads-need", slow: true });
+          const found = await context.ask({ view: "design", ...speeds(), count: 2, needs: [text] }, { lane: "loads-need", slow: true });
           if (!found || !need()) return;
           required = { text, model, rows: found.needs || [] };
           draw();

@@ -16,6 +16,15 @@
   const rpmAt = (found, change) => 60 / (found.period_s + change);
   const reachOf = (found) => found.reach_s || 1e-3 * found.period_s;
 
+  /** The rays of the local map, out of the answer of `verify`: enough while a slider moves. `local` adds the machine's own orbits. */
+  const raysOf = ({ corner_impact: corner, local_map: maps = [] }) => {
+    const sides = maps.filter((each) => each.speeds === "faster" || each.speeds === "slower").map((each) => ({ ...each, sign: each.speeds === "faster" ? -1 : 1 }));
+    return {
+      period_s: corner.period_s,
+      rays: sides.flatMap((each) => each.periodic_orbits.map((orbit) => ({ word: orbit.word, sign: each.sign, stable: orbit.stable, positions: orbit.points.map(([q]) => q) }))),
+      left: sides.filter((each) => each.ends.every((end) => end.end === "escapes")).map((each) => each.sign),
+    };
+  };
   const rayLayers = (found, reach, scale) => found.rays.filter((ray) => ray.positions.length <= 2).flatMap((ray) => ray.positions.map((slope) => {
     const parts = [...Array(21).keys()].map((step) => (step / 20) * reach);
     return {
@@ -99,21 +108,21 @@
     if (!asked.length) return "";
     const unit = strip.found.unit ? ` ${strip.found.unit}` : "";
     const between = changes(strip.rows);
-    if (!between.length) return `${nameOf(asked[0].verdict)} at all ${asked.length} values of ${strip.found.name} from ${number(asked[0].value, 4)} to ${number(asked[asked.length - 1].value, 4)}${unit}.`;
+    if (!between.length) return `${nameOf(asked[0].verdict)} at ${asked[0].verdict.kind === "none" ? "any of" : "all"} ${asked.length} values of ${strip.found.name} from ${number(asked[0].value, 4)} to ${number(asked[asked.length - 1].value, 4)}${unit}.`;
     const parts = between.map(([a, b]) => `from ${nameOf(a.verdict).toLowerCase()} to ${nameOf(b.verdict).toLowerCase()} between ${number(a.value, 5)} and ${number(b.value, 5)}${unit}`);
     return `As ${strip.found.name} grows, the verdict changes ${parts.join(", then ")}${strip.done ? "" : "; still computing"}.`;
   };
   /** Ranges of one verdict that are wide enough for a word: `[from, to, verdict]`. */
-  const ranges = (rows) => {
+  const ranges = (rows, least) => {
     const asked = rows.filter((row) => row.verdict);
     const found = [];
     asked.forEach((row) => {
       const last = found[found.length - 1];
       if (last && last[2].kind === row.verdict.kind) last[1] = row.value; else found.push([row.value, row.value, row.verdict]);
     });
-    return asked.length < 2 ? [] : found.filter(([from, to]) => to - from > 0.12 * (rows[rows.length - 1].value - rows[0].value));
+    return asked.length < 2 ? [] : found.filter(([from, to]) => to - from > least * (rows[rows.length - 1].value - rows[0].value));
   };
-  const stripScene = (strip, now, move) => {
+  const stripScene = (strip, now, move, width) => {
     const asked = strip.rows.filter((row) => row.verdict);
     const log = strip.found.scale === "log" && strip.found.slider[0] > 0;
     const middle = (a, b) => (log ? Math.sqrt(a * b) : (a + b) / 2);
@@ -127,7 +136,7 @@
         ...kinds.map((kind) => ({ kind: "rects", colour: Explore.verdict.looks[kind].colour, alpha: 0.3, rects: strip.rows.flatMap((row, index) => (row.verdict && row.verdict.kind === kind ? [[...ends[index], 0, 1]] : [])) })),
         { kind: "points", x: marked.map((row) => row.value), y: marked.map(() => 0.5), size: 8, colours: marked.map((row) => Explore.verdict.looks[row.verdict.kind].colour), shapes: marked.map((row) => Explore.verdict.looks[row.verdict.kind].shape),
           hover: (index) => ({ title: nameOf(marked[index].verdict), rows: [[strip.found.name, quantity(marked[index].value, strip.found.unit)], ...(marked[index].verdict.speed ? [["corner impact at", `${number(marked[index].verdict.speed, 8)} rpm`]] : []), ...(marked[index].verdict.danger ? [["danger", marked[index].verdict.danger]] : [])], known: marked[index].verdict.sentence ? marked[index].verdict.sentence.split("\n")[0].slice(0, 120) : "computed" }) },
-        ...ranges(strip.rows).map(([a, b, verdict]) => ({ kind: "text", x: middle(Math.max(a, strip.found.slider[0]), b), y: 0.82, anchor: "middle", text: nameOf(verdict).toLowerCase(), colour: "ink", size: 11 })),
+        ...ranges(strip.rows, 110 / width).map(([a, b, verdict]) => ({ kind: "text", x: middle(Math.max(a, strip.found.slider[0]), b), y: 0.82, anchor: "middle", text: nameOf(verdict).toLowerCase(), colour: "ink", size: 11 })),
         { kind: "flags", x: marked.filter((row) => row.verdict.danger).map((row) => row.value), colour: "vermilion", shape: "triangle" },
         { kind: "rule", x: now, label: `${number(now, 5)}`, move },
       ],
@@ -179,7 +188,7 @@
       const [pair, signs] = [make("div", { class: "pair" }), make("div", { class: "pair" })];
       const titled = (host, title) => { const box = make("div", {}, make("h4", {}, title)); host.append(box); return box; };
       panel.body.append(words, pair);
-      const [all, near] = [context.plot(titled(pair, "Orbits of the local map; grey: the machine's own"), { label: "Orbits near the corner impact", aspect: 0.6, least: 220 }), context.plot(titled(pair, "The same, enlarged about the flattest"), { label: "The same, enlarged", aspect: 0.6, least: 220 })];
+      const [all, near] = [context.plot(titled(pair, "Orbits of the local map"), { label: "Orbits near the corner impact", aspect: 0.6, least: 220 }), context.plot(titled(pair, "The same, enlarged about the flattest"), { label: "The same, enlarged", aspect: 0.6, least: 220 })];
       const over = Explore.menu("Verdict over", [], "", (path) => context.setOption("over", path));
       const strip = context.plot(panel.body, { label: "Verdict over a number", height: () => 124 });
       strip.element.before(over);
@@ -196,7 +205,7 @@
       const drawStrip = () => {
         if (!row) return;
         const now = context.value(row.path);
-        strip.draw(stripScene(row, now, (value, done) => context.assign(row.path, Number(value.toPrecision(4)), { moving: !done })));
+        strip.draw(stripScene(row, now, (value, done) => context.assign(row.path, Number(value.toPrecision(4)), { moving: !done }), strip.element.clientWidth || 700));
         said.textContent = stripWords(row);
         folds.draw(signsScene(row.rows, verdict, FOLDS.pair, FOLDS.names, FOLDS.words));
         flips.draw(signsScene(row.rows, verdict, FLIPS.pair, FLIPS.names, FLIPS.words));
@@ -221,9 +230,14 @@
         words.replaceChildren(...Explore.verdict.words(found).map((each) => make("p", {}, each)));
         numbers.lastChild.replaceChildren(Explore.verdict.table(found, Explore.parts.units(context)));
         parts.forEach((each) => { each.hidden = false; });
-        const local = await context.ask({ view: "local" }, { lane: "local-rays", slow: true, coarse, silent: true });
-        if (!local) return;
+        drawRays(raysOf(found));
+        if (coarse) return;
+        const local = await context.ask({ view: "local" }, { lane: "local-rays", slow: true, silent: true });
+        if (local && verdict && answered === JSON.stringify(context.app.question())) drawRays(local);
+      };
+      const drawRays = (local) => {
         const unit = Explore.parts.units(context);
+        all.element.parentNode.firstChild.textContent = local.machine && local.machine.length ? "Orbits of the local map; grey: the machine's own" : "Orbits of the local map";
         all.draw(raysScene(local, unit, false));
         // The flattest rays are drawn once more where the steepest leave no room for them.
         const sizes = local.rays.filter((ray) => ray.positions.length <= 2).flatMap((ray) => ray.positions.map(Math.abs)).filter((size) => size > 0);
@@ -241,6 +255,7 @@
           if (JSON.stringify(context.app.question()) !== key || context.answer("local")) return;
           // Refused: the panel has the program's sentence. The strip may still show where a verdict is to be had.
           [verdict, answered] = [null, key];
+          Explore.parts.refused(panel);
           panel.heading("No corner impact to classify here");
           words.replaceChildren();
           parts.forEach((each) => { each.hidden = true; });

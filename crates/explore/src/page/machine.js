@@ -236,7 +236,7 @@
           const light = Explore.theme(canvas, true);
           const pen = Explore.svgPen(480, 480, light.paper, `The machine at ${context.state().rpm} rpm`);
           paint(pen, 480, 480, box, cam, frameAt(clock.time), light);
-          return pen.finish();
+          return Explore.stack([pen.finish(), gap.svg(480), force.svg(480)]);
         },
       };
     },

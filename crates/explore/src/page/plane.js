@@ -26,6 +26,13 @@
   const anglesOf = (found) => Explore.angles(found, "cam_angle_").map(Explore.radians);
   const capital = (text) => text.charAt(0).toUpperCase() + text.slice(1);
   const many = (count, one, more = `${one}s`) => `${number(count)} ${count === 1 ? one : more}`;
+  /** Where the program refuses, its sentence stands in the panel: a heading and evidence of an earlier answer go. */
+  const refused = (panel) => {
+    if (panel.element.querySelector(".sentence").hidden) return false;
+    panel.heading(panel.view.title);
+    panel.known(null);
+    return true;
+  };
   const units = (context) => (context.model() || {}).units || {};
 
   /** The name of a long-run motion in words; an ending of `basins` names its kind `ending`. */
@@ -180,7 +187,7 @@
           [axes, turns].forEach((each, index) => each.set(String(index ? revolutions : context.option("axes", "follower"))));
           approach.set(approaching);
           const found = await context.ask({ view: "motion", rpm: state.rpm, transient: approaching ? 0 : 300, revolutions, samples: coarse ? 120 : 360, ...context.start() }, { coarse });
-          if (!found) return;
+          if (!found) { refused(panel); return; }
           shown = { found, rpm: state.rpm };
           const hits = found.events && found.events.event ? found.events.event.filter((each) => each === "impact").length : 0;
           if (coarse) panel.heading(`${capital(many(hits, "impact"))} in ${many(revolutions, "revolution")}`);
@@ -189,7 +196,7 @@
           if (coarse) return;
           const long = await longRun(context, state);
           if (!long || state !== context.state()) return;
-          panel.heading(long.kind === "chaotic" ? "Chaotic: the curve never closes" : `The curve closes: ${Explore.ending(long)}`);
+          panel.heading(long.kind === "chaotic" ? "Chaotic: the curve never closes" : long.revolutions ? `The curve closes: ${Explore.ending(long)}` : capital(Explore.ending(long)));
           draw(state);
         },
         highlight(to) {
@@ -233,12 +240,18 @@
       motion: (index) => ({ rpm, cam_angle_rad: angle[index], relative_velocity: speed[index] }),
     };
   });
+  /** Where the map is looked at: a few points are shown in the whole turn, where the corners are. */
+  const rangeOf = (drawn, orbits, returns, few) => {
+    const [x, y] = [[drawn.x, ...orbits.map((each) => each.x)], [drawn.y, ...orbits.map((each) => each.y)]];
+    const turn = (lists) => (few ? [0, 360] : inTurn(extent(lists)));
+    return { x: turn(x), y: returns ? turn(y) : few ? extent([...y, [0]], 0.15) : extent(y) };
+  };
   const impactHeading = (long, { angle }) => {
     if (!angle.length) return "No impacts: the follower stays on the cam";
     if (long.kind === "chaotic") return "The impacts never repeat: chaos";
     const own = angle.slice(0, long.impacts || 0).map((at) => `${number(turned(at), 5)}°`);
     if (long.kind === "periodic" && own.length <= 3) return `The impacts repeat at ${own.join(", ")}`;
-    return `${capital(Explore.ending(long))}: the impacts repeat`;
+    return `${capital(Explore.ending(long))}${long.revolutions ? ": the impacts repeat" : ""}`;
   };
 
   Explore.view({
@@ -280,8 +293,8 @@
         const other = pointed && planeOf(pointed, returns);
         const different = drawn.x.length > 20000 ? Infinity : distinct(drawn);
         const few = different <= 100;
-        // A few points are shown in the whole turn, where the corners are.
-        const range = context.option("range", null) || { x: different <= 12 ? [0, 360] : inTurn(extent([drawn.x])), y: returns ? (different <= 12 ? [0, 360] : inTurn(extent([drawn.y]))) : different <= 12 ? extent([drawn.y, [0]], 0.15) : extent([drawn.y]) };
+        const own = returns || !context.option("orbits", false) || !shown.orbits ? [] : orbitLayers(shown.orbits, context.value("follower.restitution"), rpm);
+        const range = context.option("range", null) || rangeOf(drawn, own, returns, different <= 12);
         const corners = ((context.model() || {}).corners || []).map((each) => each.angle_deg).filter((at) => at >= range.x[0] && at <= range.x[1]);
         plot.draw({
           x: { label: returns ? "cam angle at an impact" : "cam angle at the impact", unit: "°", range: range.x, turn: true },
@@ -292,7 +305,7 @@
             { kind: "points", ...drawn, shape: few ? "disc" : "dot", size: few ? 8 : 2, colour: "blue", images: true, hover: hover(impacts),
               motion: (index) => ({ rpm, cam_angle_rad: impacts.angle[index], position: impacts.position[index], velocity: impacts.velocity[index], relative_velocity: impacts.speed[index] }) },
             other && { kind: "points", ...other, shape: "ring", size: 9, colour: "purple" },
-            ...(returns || !context.option("orbits", false) || !shown.orbits ? [] : orbitLayers(shown.orbits, context.value("follower.restitution"), rpm)),
+            ...own,
           ],
           message: drawn.x.length ? "" : impacts.angle.length ? "one impact alone" : "no impacts: the follower stays on the cam",
           description: `${panel.element.querySelector("h3").textContent}. ${many(impacts.angle.length, "impact")} at ${number(rpm, 8)} rpm`,
@@ -311,7 +324,7 @@
           orbits.set(context.option("orbits", false));
           const asked = eventsOf({ rpm: state.rpm, transient: 300, ...context.start() });
           const first = await context.ask({ ...asked, revolutions: FEW }, { lane: "impacts-first", coarse, silent: !coarse });
-          if (!first) return;
+          if (!first) { refused(panel); return; }
           const more = enough(impactsOf(first).angle.length, FEW);
           const found = coarse ? first : await context.ask({ ...asked, revolutions: more });
           if (!found) return;
@@ -347,5 +360,5 @@
       };
     },
   });
-  Explore.parts = { capital, many, units, onTop, arrow };
+  Explore.parts = { capital, many, units, refused };
 })();

@@ -143,7 +143,8 @@
       fit();
       const to = canvas.getContext("2d");
       to.clearRect(0, 0, ...size);
-      plot.place = Explore.render(Explore.canvasPen(to), plot.scene, ...size, Explore.theme(element), false);
+      plot.theme = Explore.theme(element);
+      plot.place = Explore.render(Explore.canvasPen(to), plot.scene, ...size, plot.theme, false);
       plot.overlay();
     };
     plot.draw = (scene) => {
@@ -160,7 +161,7 @@
       const to = over.getContext("2d");
       to.clearRect(0, 0, ...size);
       if (!plot.place) return;
-      const [pen, theme, { across, up, box }] = [Explore.canvasPen(to), Explore.theme(element), plot.place];
+      const [pen, theme, { across, up, box }] = [Explore.canvasPen(to), plot.theme, plot.place];
       pen.clip(box);
       plot.scene.layers.filter(moves).forEach((layer) => drawn.rule(pen, layer, plot.place, theme));
       if (plot.line !== null) { const at = across(plot.line); pen.path([at, at], [box.top, box.bottom], { stroke: theme.ink, width: 1.5 }); }

@@ -28,7 +28,7 @@
       field.select();
     }
   };
-  const stem = (app) => (app.question().file || (app.model && app.model.name) || "model").replace(/^.*[\\/]/, "").replace(/\.toml$/, "");
+  const stem = (app) => app.fileName().replace(/^.*[\\/]/, "").replace(/\.toml$/, "");
 
   /** The buttons under a panel: Save SVG, Save CSV, Copy as command. */
   Explore.saveButtons = (entry, app) => {
@@ -36,7 +36,9 @@
     const name = (extension) => `${stem(app)}-${view.name}.${extension}`;
     const nothing = () => Explore.say("There is nothing to save yet.");
     const svg = () => {
-      const text = instance.svg ? instance.svg() : context.plots.length ? context.plots[0].svg() : null;
+      const drawn = instance.svg ? [instance.svg()] : context.plots.filter(({ element }) => element.clientWidth).map((plot) => plot.svg());
+      const files = drawn.filter(Boolean);
+      const text = files.length > 1 ? Explore.stack(files) : files[0];
       if (text) Explore.download(name("svg"), text, "image/svg+xml"); else nothing();
     };
     const csv = () => {

@@ -116,9 +116,9 @@
         const ours = !store.alone && history.state && history.state.load === load && history.state.explore === store.index;
         if (!ours) { store.apply(to); tell("replaceState"); return; }
         history.go(by);
-        // A frame's history can be refused: the step is then taken without it.
+        // A history that does not answer, as in some frames: the step is taken without it.
         const index = store.index;
-        setTimeout(() => { if (store.index === index) { store.alone = true; store.apply(to); } }, 400);
+        setTimeout(() => { if (store.index === index) store.apply(to); }, 600);
       },
       undo: () => store.go(-1),
       redo: () => store.go(1),

@@ -44,12 +44,13 @@
   /** Where the starts of the local map end, at faster and at slower speeds. */
   const endings = (found) => (found.local_map || []).filter((each) => each.speeds === "faster" || each.speeds === "slower").map((each) => {
     const parts = each.ends.map((end) => `${end.starts} ${ENDS[end.end] || end.end}${end.word ? ` ${end.word}` : ""}`);
+    if (each.ends.length === 1) return `At ${each.speeds} speeds all ${parts[0].replace(/^\d+ /, `${each.starts} starts of the local map `)}.`;
     return `At ${each.speeds} speeds, of ${each.starts} starts of the local map ${parts.join(", ")}.`;
   });
   const KNOWN = { proved: "proved", computed: "computed", sampled: "sampled" };
   const danger = ({ danger: found }) => {
     if (!found) return [];
-    const grows = found.diverges && found.diverges.word ? ` Motions from at least ${number(found.diverges.share_of_directions * 100, 3)} % of the directions diverge, along ${found.diverges.word}, by a factor of ${number(found.diverges.multiplier, 5)} each time (${KNOWN[found.diverges.known] || found.diverges.known}).` : "";
+    const grows = found.diverges && found.diverges.word ? ` Motions from at least ${Math.floor(found.diverges.share_of_directions * 1000) / 10} % of the directions diverge, along ${found.diverges.word}, by a factor of ${number(found.diverges.multiplier, 5)} each time (${KNOWN[found.diverges.known] || found.diverges.known}).` : "";
     if (found.kind === "dangerous") return [`Dangerous: the basin of the stable motion shrinks to nothing at the corner impact, although the motion stays stable (${KNOWN[found.known] || found.known}).${grows}`];
     return [`Several attractors meet at the corner impact: the smallest disturbance decides on which one the motion settles (${KNOWN[found.known] || found.known}).${grows}`];
   };

@@ -4,7 +4,7 @@
 //   INSTANCE = { update(state, { coarse }), csv(), svg(), command(), highlight(motion) }   all but update may be missing
 // `update` runs when the state has changed and the panel is in sight: at once with `coarse: true`, and again with
 // `coarse: false` when the state has rested. It asks with `context.ask` and draws.
-// A missing csv(), command() are filled in from the last answer; svg() from the panel's first plot.
+// A missing csv(), command() are filled in from the last answer; svg() from the panel's plots, below each other.
 //
 //   panel: { element, body, options (row of controls), heading(text), note(text), known(known, how), status(text), error(error) }
 //   context: {
