@@ -74,6 +74,12 @@ fn columns(table: &str) -> BTreeMap<String, Vec<String>> {
     columns
 }
 
+/// The rows of impacts of a table of events.
+fn impacts(table: &str) -> String {
+    let is_kept = |line: &&str| !line.contains(",stick,") && !line.contains(",release,");
+    table.lines().filter(is_kept).collect::<Vec<_>>().join("\n")
+}
+
 /// Asserts that columns of an answer are those of a table, digit for digit.
 fn assert_columns(found: &Value, table: &BTreeMap<String, Vec<String>>, names: &[(&str, &str)]) {
     for (name, head) in names {
@@ -147,15 +153,12 @@ fn runs_and_diagrams_are_those_of_the_tables() {
         for (over, rpm) in [(speed, Value::Null), (restitution, json!(rpm))] {
             let name = over["name"].as_str().unwrap().replace("restitution", "follower.restitution");
             let answer = asked(&model, json!({ "view": "diagram", "rpm": rpm, "over": over, "transient": 50, "record": 4 }));
-            let table = printed(&answer);
-            let is_kept = |line: &&str| !line.contains(",stick,") && !line.contains(",release,");
-            let impacts: Vec<&str> = table.lines().filter(is_kept).collect();
             let names = [("value", name.as_str()), ("cam_angle_", "cam_angle_"), ("position_", "position_"),
                 ("velocity_before_", "velocity_before_"), ("velocity_after_", "velocity_after_")];
             // `values` stands before `value`.
             let mut found = answer["found"].clone();
             found.as_object_mut().unwrap().remove("values");
-            assert_columns(&found, &columns(&impacts.join("\n")), &names);
+            assert_columns(&found, &columns(&impacts(&printed(&answer))), &names);
         }
     }
 }
@@ -165,7 +168,7 @@ fn attractors_basins_and_long_runs_are_those_of_the_commands() {
     let model = model(MACHINES[0]);
     let over = json!({ "name": "rpm", "low": 676.0, "high": 680.0, "count": 2 });
     let answer = asked(&model, json!({ "view": "diagram", "over": over, "transient": 20, "record": 2, "attractors": true }));
-    let table = columns(&printed(&answer));
+    let table = columns(&impacts(&printed(&answer)));
     assert_columns(&answer["found"], &table, &[("attractor", "attractor"), ("cam_angle_", "cam_angle_")]);
     assert!(answer["found"]["attractor"].as_array().unwrap().contains(&json!(1)), "two motions coexist at 676 rpm");
 

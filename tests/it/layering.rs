@@ -3,8 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::path::{Path, PathBuf};
 
-/// The packages: the library, the plotting engine, and the command.
-const PACKAGES: [&str; 3] = ["src", "crates/plot/src", "crates/program/src"];
+/// The packages: the library, the plotting engine, the command, and the live page.
+const PACKAGES: [&str; 4] = ["src", "crates/plot/src", "crates/program/src", "crates/explore/src"];
 
 /// The source folder of each package.
 pub fn packages() -> impl Iterator<Item = PathBuf> {
@@ -73,7 +73,8 @@ fn no_package_asks_for_one_above_it() {
     let own = |path: &str| manifest(path).into_iter().filter(|name| name.starts_with("corner-impact")).count();
     assert_eq!(own("Cargo.toml"), 0);
     assert_eq!(own("crates/plot/Cargo.toml"), 0);
-    assert_eq!(own("crates/program/Cargo.toml"), 2);
+    assert_eq!(own("crates/explore/Cargo.toml"), 1);
+    assert_eq!(own("crates/program/Cargo.toml"), 3);
     for terminal in ["clap", "indicatif", "maud", "miette", "resvg", "signal-hook", "terminal_size"] {
         assert!(!manifest("Cargo.toml").iter().any(|name| name == terminal), "the library asks for {terminal}");
     }

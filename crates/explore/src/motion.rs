@@ -78,7 +78,7 @@ impl MotionFound {
             cam_velocity_m_s: of(|sample| sample.cam_velocity),
             gap_m: of(|sample| sample.gap),
             contact_force_n: pressing.collect(),
-            events: EventColumns::of(&events, |event| time(event.turned_since(0.0))),
+            events: EventColumns::of(&events, |event| event.turned_since(first.cam_angle) / omega),
         })
     }
 }
