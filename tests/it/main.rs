@@ -52,6 +52,8 @@ mod dynamics;
 mod elementary;
 mod exact_numbers;
 mod explain;
+mod explore_refusals;
+mod explore_server;
 mod falling;
 mod figures;
 mod first_touch;
