@@ -1,6 +1,6 @@
 //! What does the report's page do in a browser, opened from disk? Skipped, and said to be, where there is no Chromium.
 
-mod devtools;
+pub mod devtools;
 
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;

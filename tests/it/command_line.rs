@@ -8,8 +8,9 @@ use crate::common::{PROGRAM, ROOT, copy_program, corner_impact, program, text};
 use rayon::prelude::*;
 use tempfile::TempDir;
 
-pub const COMMANDS: [&str; 22] = [
+pub const COMMANDS: [&str; 23] = [
     "verify",
+    "explore",
     "report",
     "claims",
     "explain",
@@ -49,9 +50,16 @@ fn examples(help: &str) -> Vec<String> {
 #[ignore = "slow"]
 fn examples_work_as_written() {
     /// Examples that run elsewhere: `verify` and `report` by every landing, `claims` by another test here, and `speeds` within the report, where
-    /// it takes longest of all.
-    const LONG: [&str; 4] =
-        ["corner-impact verify", "corner-impact report", "corner-impact speeds", "corner-impact claims"];
+    /// it takes longest of all. Those of `explore` serve until a page is closed, or need the module that not every build has.
+    const LONG: [&str; 7] = [
+        "corner-impact verify",
+        "corner-impact report",
+        "corner-impact speeds",
+        "corner-impact claims",
+        "corner-impact explore",
+        "corner-impact explore models/sharp-nose.toml --no-open",
+        "corner-impact explore models/sharp-nose.toml --out live.html",
+    ];
     let folder = TempDir::new().unwrap();
     std::fs::create_dir(folder.path().join("models")).unwrap();
     for path in ["models", "models/laws"] {

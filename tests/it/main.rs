@@ -53,6 +53,8 @@ mod elementary;
 mod exact_numbers;
 mod explain;
 mod explore;
+mod explore_refusals;
+mod explore_server;
 mod falling;
 mod figures;
 mod first_touch;

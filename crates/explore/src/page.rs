@@ -9,7 +9,12 @@ use serde::Serialize;
 #[derive(Clone, Copy, Debug)]
 pub enum Transport<'a> {
     /// To the server that the page came from.
-    Server,
+    Server {
+        /// Address that the questions go below.
+        base: &'a str,
+        /// Word that the server's `Content-Security-Policy` has for the scripts and styles of this page.
+        nonce: &'a str,
+    },
     /// To a WebAssembly module inside the page: the module, compressed by gzip, in base64.
     Module(&'a str),
 }
@@ -65,7 +70,7 @@ pub const SCRIPTS: &str = concat!(
 /// Script that puts the live part into the element with the identifier `explore`.
 pub fn mounting(transport: Transport<'_>, model: &PageModel) -> String {
     let transport = match transport {
-        Transport::Server => "Explore.server(\"\")".to_owned(),
+        Transport::Server { base, .. } => format!("Explore.server(\"{base}\")"),
         Transport::Module(module) => format!("Explore.module(\"{module}\")"),
     };
     format!(
@@ -92,8 +97,13 @@ fn tour_models() -> BTreeMap<&'static str, String> {
 /// The whole page.
 pub fn page(transport: Transport<'_>, model: &PageModel, words: PageWords<'_>) -> String {
     let title = words.title.replace('&', "&amp;").replace('<', "&lt;");
+    let nonce = match transport {
+        Transport::Server { nonce, .. } => format!(" nonce=\"{nonce}\""),
+        Transport::Module(_) => String::new(),
+    };
     let parts = [
         ("title", title.as_str()),
+        ("nonce", &nonce),
         ("version", words.version),
         ("still", words.still),
         ("footer", words.footer),

@@ -13,6 +13,8 @@
 //!    ▼
 //!  pages                 the page of each command, and that of the report
 //!    ▼
+//!  explore               the server of the live page
+//!    ▼
 //!  cli                   parse, one library call, exit code
 //! ```
 //!
@@ -36,6 +38,9 @@ pub mod explain;
 
 #[doc(hidden)]
 pub mod pages;
+
+#[doc(hidden)]
+pub mod explore;
 
 #[doc(hidden)]
 pub mod cli;

@@ -19,10 +19,11 @@ pub(crate) fn on_threads<T: Send>(count: Option<usize>, work: impl FnOnce() -> T
     if cfg!(target_family = "wasm") { Ok(work()) } else { Ok(threads(count)?.install(work)) }
 }
 
-/// Builds a pool of `count` threads, or for `None` of one for each core.
+/// Builds a pool of `count` threads. For `None` it has as many as the pool that this thread belongs to, or else one for each core.
 pub fn threads(count: Option<usize>) -> Result<rayon::ThreadPool, SweepError> {
     // For 0, the builder makes as many threads as there are cores.
-    let builder = rayon::ThreadPoolBuilder::new().num_threads(count.unwrap_or(0));
+    let here = || rayon::current_thread_index().map(|_| rayon::current_num_threads());
+    let builder = rayon::ThreadPoolBuilder::new().num_threads(count.or_else(here).unwrap_or(0));
     let builder = builder
         .spawn_handler(|thread| std::thread::Builder::new().spawn(cancel::carry(move || thread.run())).map(drop));
     builder.build().map_err(|error| SweepError::Threads(error.to_string()))

@@ -36,6 +36,11 @@ pub struct Page {
 impl Page {
     /// Opens a file from disk in a browser that starts for it; `None`, said plainly, where there is none.
     pub fn open(file: &Path) -> Option<Self> {
+        Self::visit(&format!("file://{}", file.display()))
+    }
+
+    /// Opens an address in a browser that starts for it; `None`, said plainly, where there is none.
+    pub fn visit(address: &str) -> Option<Self> {
         let Some(program) = found() else {
             // Past what the test harness keeps to itself of a test that passes.
             let words = "SKIPPED: no Chromium on this machine, so the page was not opened";
@@ -47,7 +52,7 @@ impl Page {
             page.call(&format!("{domain}.enable"), json!({}));
         }
         page.window(1280, 900, false);
-        page.go(&format!("file://{}", file.display()));
+        page.go(address);
         Some(page)
     }
 
@@ -115,7 +120,7 @@ impl Page {
     /// Goes to an address and waits until it is loaded.
     pub fn go(&mut self, address: &str) {
         self.call("Page.navigate", json!({ "url": address }));
-        self.until("document.readyState === 'complete' && location.protocol === 'file:'");
+        self.until("document.readyState === 'complete' && location.href !== 'about:blank'");
     }
 
     /// The value of an expression on the page.

@@ -98,6 +98,16 @@ pub fn ends<T: Send + 'static>(run: impl FnOnce() -> T + Send + 'static) -> Resu
     receiver.recv_timeout(PATIENCE).map_err(|error| format!("no end after {PATIENCE:?}, or a panic: {error}"))
 }
 
+/// Waits until something is so, for as long as a busy machine may take.
+#[track_caller]
+pub fn until(what: &str, is_so: impl Fn() -> bool) {
+    let begun = std::time::Instant::now();
+    while !is_so() {
+        assert!(begun.elapsed() < PATIENCE, "never: {what}");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
 /// Every model file that has a corner impact to verify, by name; `models/laws` has those that need none.
 pub fn model_files() -> Vec<PathBuf> {
     let folder = Path::new(env!("PROJECT")).join("models");

@@ -60,7 +60,7 @@
         then(value);
         next();
       };
-      worker.run(job.text).then(finish((answer) => {
+      worker.run(job.text, job.lane).then(finish((answer) => {
         counts.answered += 1;
         counts.times.push([job.lane, job.coarse, performance.now() - job.began]);
         if (counts.times.length > 2000) counts.times.shift();
@@ -84,18 +84,23 @@
   /** The program on this machine, below `base` (its address with the token; "" where the page came from there). */
   Explore.server = (base) => {
     const root = base === "" || base.endsWith("/") ? base : `${base}/`;
+    let sequence = 0;
     const caller = (slow) => {
       let controller = null;
       return {
         slow,
-        run: async (text) => {
+        run: async (text, lane) => {
           controller = new AbortController();
+          sequence += 1;
+          const place = `lane=${encodeURIComponent(lane)}&sequence=${sequence}`;
           let response;
           try {
-            response = await fetch(`${root}answer`, { method: "POST", headers: { "Content-Type": "application/json" }, body: text, signal: controller.signal });
+            response = await fetch(`${root}answer?${place}`, { method: "POST", headers: { "Content-Type": "application/json" }, body: text, signal: controller.signal });
           } catch (problem) {
             throw problem.name === "AbortError" ? Explore.superseded : new Error("The program has ended. Start it again with corner-impact explore, then load this page again.");
           }
+          // The program has stopped this question for a newer one of its lane.
+          if (response.status === 409) throw Explore.superseded;
           if (!response.ok) throw new Error((await response.text()) || `The program answered with status ${response.status}.`);
           return response.json();
         },

@@ -15,6 +15,7 @@ mod curve;
 mod design;
 mod diagram;
 mod explain;
+mod explore;
 mod external;
 mod figure;
 mod help;
@@ -120,6 +121,7 @@ subcommands! {
         Design = design => "simulate{model} --rpm {rpm}",
         Simulate = simulate => "speeds{model}",
         Speeds = speeds => "report{model}",
+        Explore = explore => "",
         Report = report => "compare{model} --set NAME=VALUE",
         Compare = compare => "explain speed_rpm{model}",
     "Attractors, periodic orbits and bifurcations":

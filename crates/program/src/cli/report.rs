@@ -10,8 +10,8 @@ use super::progress::watched;
 use super::{CommandError, Exit, ModelArgument, Session};
 use crate::pages::report::html;
 use crate::report::Report;
-use corner_impact::json;
 use corner_impact::file::Output;
+use corner_impact::json;
 use corner_impact::model::{Model, ModelError};
 
 /// Writes all about a model as one HTML page.
@@ -49,7 +49,7 @@ pub(super) struct Arguments {
 }
 
 /// A file name of a page, for clap.
-fn page(text: &str) -> Result<PathBuf, String> {
+pub(super) fn page(text: &str) -> Result<PathBuf, String> {
     let path = PathBuf::from(text);
     let is_page = path.extension().is_none() || ends_in(&path, &["html", "htm"]);
     if is_page { Ok(path) } else { Err("must end in .html, or be -".into()) }

@@ -130,10 +130,10 @@ pub(super) fn in_columns(text: &str, columns: Option<usize>) -> String {
 pub(super) fn only_prints(command: &clap::Command, matches: &clap::ArgMatches) -> bool {
     let Some((name, given)) = matches.subcommand() else { return false };
     let arguments = command.find_subcommand(name).map(clap::Command::get_arguments).into_iter().flatten();
-    // A report has a file if none is named.
+    // A report has a file if none is named, and a live page is read in a browser.
     let of_files = |names: &[Str]| names.iter().any(|name| ["FILE", "DIR"].contains(&name.as_str()));
     let mut files = arguments.filter(|argument| argument.get_value_names().is_some_and(of_files));
-    name != "report"
+    !["report", "explore"].contains(&name)
         && files.all(|file| given.get_raw(file.get_id().as_str()).is_none_or(|mut names| names.all(|name| name == "-")))
 }
 

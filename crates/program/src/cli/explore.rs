@@ -1,0 +1,71 @@
+//! `corner-impact explore [MODEL]`.
+
+use std::io::Write;
+use std::path::PathBuf;
+
+use super::report::page;
+use super::{CommandError, Exit, ModelArgument, Session};
+use crate::explore::{End, Patience, Server};
+use crate::live;
+use corner_impact::file::Output;
+use corner_impact_explore::Transport;
+
+/// Opens a live page of a model: change a number, and every picture follows.
+///
+/// The page is served to the browsers of this machine alone, until it has been closed for a minute, or until Ctrl-C.
+#[derive(clap::Args)]
+#[command(after_help = "Examples:\n\
+    \x20 corner-impact explore\n\
+    \x20 corner-impact explore models/sharp-nose.toml --no-open\n\
+    \x20 corner-impact explore models/sharp-nose.toml --out live.html\n\
+    \n\
+    The address of the page is printed. It contains a secret word: whoever has it can ask the program to compute.\n\
+    With --out, the page is one file, which needs neither this program nor a network.\n\
+    Exit code: 0 the page was closed, or never opened, or is written; 2 bad model file, usage, port or file.")]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    model: ModelArgument,
+    /// Write the page as a file that computes by itself, instead of serving it; - for standard output.
+    #[arg(long, value_name = "FILE", value_parser = page)]
+    out: Option<PathBuf>,
+    /// Open the page once it is written; a page that is served is opened without this.
+    #[arg(long)]
+    open: bool,
+    /// Serve the page without opening a browser.
+    #[arg(long, conflicts_with_all = ["open", "out"])]
+    no_open: bool,
+    /// Port of the page [default: any that is free].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..), conflicts_with = "out")]
+    port: Option<u16>,
+    /// Divide every waiting time of the server: tests cannot wait for a minute.
+    #[arg(long, value_name = "N", default_value_t = 1, hide = true)]
+    hurried: u32,
+}
+
+pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
+    let model = arguments.model.read(session)?;
+    if let Some(path) = &arguments.out {
+        let page = live::page(&model)?;
+        let mut file = Output::create(path, &mut *session.out)?;
+        file.write_all(page.as_bytes())?;
+        file.commit()?;
+        return Ok(Exit::Agrees);
+    }
+    let page = move |base: &str, nonce: &str| live::page_by(Transport::Server { base, nonce }, &model);
+    let server = Server::listen(arguments.port, session.threads, Patience::hurried(arguments.hurried), Box::new(page));
+    let server = server.map_err(|error| {
+        let port = arguments.port.map_or(String::new(), |port| format!("--port {port}: "));
+        CommandError::Words(format!("{port}no page can be served: {error}"))
+    })?;
+    session.print(&format!("{}\n", server.address()))?;
+    session.note("the page is served until it has been closed for a minute; Ctrl-C ends it at once");
+    if !arguments.no_open && open::that_detached(server.first_visit()).is_err() {
+        session.note("no browser was found: open the address above in one");
+    }
+    let end = server.serve().map_err(|error| CommandError::Words(format!("no page can be served: {error}")))?;
+    session.note(match end {
+        End::Closed => "the page has been closed for a minute, so its server ends",
+        End::Unopened => "nobody opened the page within ten minutes, so its server ends",
+    });
+    Ok(Exit::Agrees)
+}

@@ -1,0 +1,84 @@
+//! Whether a page is open: each open page waits for the answer to a long poll.
+
+use std::sync::{Condvar, Mutex, PoisonError};
+use std::time::Instant;
+
+use super::Patience;
+
+/// Reason why the server ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum End {
+    /// The page was closed, and not opened again for a minute.
+    Closed,
+    /// Nobody opened the page within ten minutes.
+    Unopened,
+}
+
+/// Pages that are open.
+pub(super) struct Presence {
+    state: Mutex<State>,
+    changed: Condvar,
+}
+
+struct State {
+    /// Long polls that wait for their answer.
+    polls: usize,
+    /// Whether a page was ever served.
+    is_opened: bool,
+    /// Moment of the last sign of a page; of the beginning, before the first.
+    last: Instant,
+}
+
+impl Presence {
+    pub(super) fn new() -> Self {
+        let state = State { polls: 0, is_opened: false, last: Instant::now() };
+        Self { state: Mutex::new(state), changed: Condvar::new() }
+    }
+
+    fn change(&self, change: impl FnOnce(&mut State)) {
+        let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
+        change(&mut state);
+        state.last = Instant::now();
+        self.changed.notify_all();
+    }
+
+    /// Notes that a page was served.
+    pub(super) fn served(&self) {
+        self.change(|state| state.is_opened = true);
+    }
+
+    /// Counts a long poll until the returned value is dropped.
+    pub(super) fn poll(&self) -> Poll<'_> {
+        self.change(|state| state.polls += 1);
+        Poll(self)
+    }
+
+    /// Waits until no page has been open for long enough.
+    pub(super) fn wait(&self, patience: &Patience) -> End {
+        let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
+        loop {
+            let (end, patience) = match state.is_opened {
+                true => (End::Closed, patience.closed),
+                false => (End::Unopened, patience.unopened),
+            };
+            let left = match state.polls {
+                0 => (state.last + patience).saturating_duration_since(Instant::now()),
+                // Until something changes.
+                _ => patience,
+            };
+            if left.is_zero() {
+                return end;
+            }
+            state = self.changed.wait_timeout(state, left).unwrap_or_else(PoisonError::into_inner).0;
+        }
+    }
+}
+
+/// Long poll that waits for its answer.
+pub(super) struct Poll<'a>(&'a Presence);
+
+impl Drop for Poll<'_> {
+    fn drop(&mut self) {
+        self.0.change(|state| state.polls = state.polls.saturating_sub(1));
+    }
+}
