@@ -35,7 +35,9 @@ impl Page {
     /// The page in a frame of its own, for a notebook.
     fn _repr_html_(&self) -> String {
         let html = self.html.replace('&', "&amp;").replace('"', "&quot;");
-        format!("<iframe title=\"corner-impact\" style=\"width: 100%; height: 52rem; border: 0\" srcdoc=\"{html}\"></iframe>")
+        format!(
+            "<iframe title=\"corner-impact\" style=\"width: 100%; height: 52rem; border: 0\" srcdoc=\"{html}\"></iframe>"
+        )
     }
 
     fn __repr__(&self) -> String {

@@ -2,11 +2,11 @@
 
 use corner_impact::cam::within_a_turn;
 use corner_impact::flight::State;
+use corner_impact::json;
 use corner_impact::model::{Model, Units};
 use corner_impact::orbit::Parameter;
 use corner_impact::orbit::long_run::Budget;
 use corner_impact::study::survey::{Axis, Placed, Spacing, Start, Values, limits};
-use corner_impact::json;
 use numpy::{AllowTypeChange, PyArrayLike1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;

@@ -307,7 +307,8 @@ impl<'a> Rows<'a> {
         let square = self.noise * self.noise;
         Some(Trend {
             is_seen: tolerance::DWELL_TREND.value * trend > square,
-            is_smooth: lifts.norm_squared() <= square * (free as f64 + (2.0 * free as f64).sqrt() / tolerance::DWELL_SMOOTH.value),
+            is_smooth: lifts.norm_squared()
+                <= square * (free as f64 + (2.0 * free as f64).sqrt() / tolerance::DWELL_SMOOTH.value),
         })
     }
 

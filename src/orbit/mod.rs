@@ -48,10 +48,10 @@ use crate::tolerance;
 pub use complete::Undecided;
 pub use cycle::{Cycle, Impact, NotClosed};
 pub(crate) use departure::Departure;
-pub use family::Parameter;
 pub(crate) use family::Family;
 #[doc(hidden)]
 pub use family::FamilyError;
+pub use family::Parameter;
 pub use multipliers::{Eigenvalue, eigenvalues};
 pub use search::{Search, Searched, search, search_all};
 pub use stability::{Judgement, Stability};

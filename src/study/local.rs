@@ -146,7 +146,8 @@ fn close_by(model: &Model, cam: &Cam, at: &CornerImpact, range: [f64; 2]) -> Res
     let mut branches: Vec<Branch> = Vec::new();
     for (rpm, revolutions) in range.into_iter().flat_map(|rpm| [(rpm, 1), (rpm, 2)]) {
         let wanted = Search { revolutions, impacts: Some(revolutions as usize) };
-        let orbits = search(&Machine::new(cam.clone(), &model.follower, angular_velocity(rpm)), &wanted).map_err(|error| error.to_string())?;
+        let orbits = search(&Machine::new(cam.clone(), &model.follower, angular_velocity(rpm)), &wanted)
+            .map_err(|error| error.to_string())?;
         for orbit in orbits.iter().filter(|orbit| is_near(orbit, at)) {
             if !branches.iter().any(|branch| branch.holds(rpm, orbit)) {
                 let branch = Branch::through(model, rpm, orbit, &following);

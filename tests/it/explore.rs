@@ -8,8 +8,12 @@ use serde_json::{Value, json};
 use crate::common::{corner_impact, text};
 
 /// The machines that are asked about: the paper's, others in other units, and measured ones.
-const MACHINES: [&str; 4] =
-    ["models/osorio-2008.toml", "models/damped-heavy.toml", "models/machines/harmonic-valve.toml", "models/machines/tangent-roller.toml"];
+const MACHINES: [&str; 4] = [
+    "models/osorio-2008.toml",
+    "models/damped-heavy.toml",
+    "models/machines/harmonic-valve.toml",
+    "models/machines/tangent-roller.toml",
+];
 
 fn model(file: &str) -> Value {
     json!({ "file": file, "text": std::fs::read_to_string(std::path::Path::new(crate::common::ROOT).join(file)).unwrap() })
@@ -84,8 +88,10 @@ fn impacts(table: &str) -> String {
 fn assert_columns(found: &Value, table: &BTreeMap<String, Vec<String>>, names: &[(&str, &str)]) {
     for (name, head) in names {
         let begins = |all: &str| all.starts_with(head) && (all.len() == head.len() || head.ends_with('_'));
-        let (_, cells) = table.iter().find(|(all, _)| begins(all)).unwrap_or_else(|| panic!("{head}: {:?}", table.keys()));
-        let own = found.as_object().unwrap().iter().find(|(all, _)| all.starts_with(name)).unwrap().1.as_array().unwrap();
+        let (_, cells) =
+            table.iter().find(|(all, _)| begins(all)).unwrap_or_else(|| panic!("{head}: {:?}", table.keys()));
+        let own =
+            found.as_object().unwrap().iter().find(|(all, _)| all.starts_with(name)).unwrap().1.as_array().unwrap();
         assert_eq!(own.len(), cells.len(), "{name}");
         for (own, cell) in own.iter().zip(cells) {
             match own.as_f64() {
@@ -121,7 +127,9 @@ fn documents_are_those_of_the_commands() {
 #[test]
 fn a_corner_impact_is_that_of_verify_and_locate() {
     let model = model(MACHINES[0]);
-    for set in [json!({}), json!({ "follower.restitution": 0.7 }), json!({ "restitution": 0.75, "follower.damping": 2.5 })] {
+    for set in
+        [json!({}), json!({ "follower.restitution": 0.7 }), json!({ "restitution": 0.75, "follower.damping": 2.5 })]
+    {
         let mut changed = model.clone();
         changed["set"] = set;
         for view in [json!({ "view": "verify" }), json!({ "view": "locate", "rpm": [660.0, 700.0] })] {
@@ -139,22 +147,46 @@ fn runs_and_diagrams_are_those_of_the_tables() {
         let [low, high] = [0, 1].map(|end| page["speeds"][end].as_f64().unwrap().round());
         let rpm = (0.3 * low + 0.7 * high).round();
         let lift = asked(&model, json!({ "view": "cam" }))["found"]["sheet"].clone();
-        let top = lift.as_object().unwrap().iter().find(|(name, _)| name.starts_with("lift_")).unwrap().1[1].as_f64().unwrap();
+        let top = lift.as_object().unwrap().iter().find(|(name, _)| name.starts_with("lift_")).unwrap().1[1]
+            .as_f64()
+            .unwrap();
         for start in [json!({}), json!({ "cam_angle_rad": 0.5, "position": 1.1 * top, "velocity": -0.25 })] {
-            let run = asked(&model, json!({ "view": "motion", "rpm": rpm, "transient": 20, "revolutions": 3, "samples": 90, "start": start }));
-            let names = ["time_", "cam_angle_", "position_", "velocity_", "gap_", "contact_force_"].map(|name| (name, name));
+            let run = asked(
+                &model,
+                json!({ "view": "motion", "rpm": rpm, "transient": 20, "revolutions": 3, "samples": 90, "start": start }),
+            );
+            let names =
+                ["time_", "cam_angle_", "position_", "velocity_", "gap_", "contact_force_"].map(|name| (name, name));
             assert_columns(&run["found"], &columns(&printed(&run)), &names);
-            let events = asked(&model, json!({ "view": "motion", "rpm": rpm, "transient": 0, "revolutions": 25, "samples": 0, "start": start }));
-            let names = ["revolution", "time_", "cam_angle_", "event", "position_", "velocity_before_", "velocity_after_", "cam_velocity_"];
+            let events = asked(
+                &model,
+                json!({ "view": "motion", "rpm": rpm, "transient": 0, "revolutions": 25, "samples": 0, "start": start }),
+            );
+            let names = [
+                "revolution",
+                "time_",
+                "cam_angle_",
+                "event",
+                "position_",
+                "velocity_before_",
+                "velocity_after_",
+                "cam_velocity_",
+            ];
             assert_columns(&events["found"]["events"], &columns(&printed(&events)), &names.map(|name| (name, name)));
         }
         let restitution = json!({ "name": "restitution", "low": 0.2, "high": 0.8, "count": 4 });
         let speed = json!({ "name": "rpm", "low": low, "high": high, "count": 7 });
         for (over, rpm) in [(speed, Value::Null), (restitution, json!(rpm))] {
             let name = over["name"].as_str().unwrap().replace("restitution", "follower.restitution");
-            let answer = asked(&model, json!({ "view": "diagram", "rpm": rpm, "over": over, "transient": 50, "record": 4 }));
-            let names = [("value", name.as_str()), ("cam_angle_", "cam_angle_"), ("position_", "position_"),
-                ("velocity_before_", "velocity_before_"), ("velocity_after_", "velocity_after_")];
+            let answer =
+                asked(&model, json!({ "view": "diagram", "rpm": rpm, "over": over, "transient": 50, "record": 4 }));
+            let names = [
+                ("value", name.as_str()),
+                ("cam_angle_", "cam_angle_"),
+                ("position_", "position_"),
+                ("velocity_before_", "velocity_before_"),
+                ("velocity_after_", "velocity_after_"),
+            ];
             // `values` stands before `value`.
             let mut found = answer["found"].clone();
             found.as_object_mut().unwrap().remove("values");
@@ -167,7 +199,8 @@ fn runs_and_diagrams_are_those_of_the_tables() {
 fn attractors_basins_and_long_runs_are_those_of_the_commands() {
     let model = model(MACHINES[0]);
     let over = json!({ "name": "rpm", "low": 676.0, "high": 680.0, "count": 2 });
-    let answer = asked(&model, json!({ "view": "diagram", "over": over, "transient": 20, "record": 2, "attractors": true }));
+    let answer =
+        asked(&model, json!({ "view": "diagram", "over": over, "transient": 20, "record": 2, "attractors": true }));
     let table = columns(&impacts(&printed(&answer)));
     assert_columns(&answer["found"], &table, &[("attractor", "attractor"), ("cam_angle_", "cam_angle_")]);
     assert!(answer["found"]["attractor"].as_array().unwrap().contains(&json!(1)), "two motions coexist at 676 rpm");
@@ -204,7 +237,8 @@ fn the_whole_model_file_is_the_changed_model() {
             assert_eq!(number(&page, path), number(&again, path), "{file}: {path}");
         }
         assert_eq!(number(&again, "follower.restitution"), 0.375);
-        let motion = json!({ "view": "motion", "rpm": page["speeds"][1], "transient": 5, "revolutions": 2, "samples": 12 });
+        let motion =
+            json!({ "view": "motion", "rpm": page["speeds"][1], "transient": 5, "revolutions": 2, "samples": 12 });
         assert_eq!(asked(&changed, motion.clone())["found"], asked(&whole, motion)["found"], "{file}");
     }
 }
@@ -236,7 +270,8 @@ fn each_law_has_a_template_that_is_a_whole_model() {
     let laws = asked(&json!({}), json!({ "view": "model" }))["found"]["laws"].clone();
     for law in laws.as_array().unwrap() {
         let template = asked(&json!({}), json!({ "view": "template", "law": law }))["found"]["text"].clone();
-        let page = asked(&json!({ "file": "mine.toml", "text": template }), json!({ "view": "model" }))["found"].clone();
+        let page =
+            asked(&json!({ "file": "mine.toml", "text": template }), json!({ "view": "model" }))["found"].clone();
         assert_eq!(page["law"], *law);
     }
 }
@@ -251,12 +286,19 @@ fn what_cannot_be_answered_has_the_sentence_and_its_place() {
     let of = |error: &Value| error["sentence"].as_str().unwrap().to_owned();
     let bad = json!({ "file": "bad.toml", "text": "[follower]\nmass = -1" });
     let error = refused(json!({ "view": "model", "model": bad }));
-    assert_eq!((error["file"].as_str(), error["line"].as_u64(), error["field"].as_str()), (Some("bad.toml"), Some(2), Some("follower.mass")));
-    assert!(of(&refused(json!({ "view": "model", "model": { "set": { "restitution": 1.5 } } }))).contains("from 0 to 1"));
+    assert_eq!(
+        (error["file"].as_str(), error["line"].as_u64(), error["field"].as_str()),
+        (Some("bad.toml"), Some(2), Some("follower.mass"))
+    );
+    assert!(
+        of(&refused(json!({ "view": "model", "model": { "set": { "restitution": 1.5 } } }))).contains("from 0 to 1")
+    );
     assert!(of(&refused(json!({ "view": "motion", "rpm": -3.0 }))).contains("forwards"));
     assert!(of(&refused(json!({ "view": "nonsense" }))).contains("nonsense"));
     assert!(of(&refused(json!({ "view": "template", "law": "round" }))).contains("must be one of arcs"));
-    assert!(of(&refused(json!({ "view": "motion", "rpm": 700.0, "revolutions": 1_000_000_000_u64 }))).contains("at most"));
+    assert!(
+        of(&refused(json!({ "view": "motion", "rpm": 700.0, "revolutions": 1_000_000_000_u64 }))).contains("at most")
+    );
     let endless = json!({ "name": "rpm", "low": 600.0, "high": 700.0, "count": 10_000_000 });
     assert!(of(&refused(json!({ "view": "diagram", "over": endless }))).contains("at most"));
     let long = json!({ "name": "rpm", "low": 600.0, "high": 700.0, "count": 1000 });

@@ -53,6 +53,7 @@ mod elementary;
 mod exact_numbers;
 mod explain;
 mod explore;
+mod explore_page;
 mod explore_refusals;
 mod explore_server;
 mod falling;

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use corner_impact::model::{Model, OSORIO_2008};
 use corner_impact::json;
+use corner_impact::model::{Model, OSORIO_2008};
 use serde_json::Value;
 
 use crate::common::{self, corner_impact, program, text};

@@ -220,7 +220,9 @@ fn basins(model: &Model, asked: &BasinsRequest) -> Result<GridBasins, Refusal> {
 
 fn basins_options(asked: &BasinsRequest) -> String {
     let [columns, rows] = asked.grid;
-    let range = |name: &str, ends: Option<[f64; 2]>| ends.map_or(String::new(), |[low, high]| format!(" --{name}={low}:{high}"));
+    let range = |name: &str, ends: Option<[f64; 2]>| {
+        ends.map_or(String::new(), |[low, high]| format!(" --{name}={low}:{high}"))
+    };
     format!(
         "--rpm {} --strobe {} --grid {columns}x{rows}{}{} --out basins.csv",
         asked.rpm,

@@ -217,7 +217,8 @@ impl Template {
     pub(crate) fn of(law: &str) -> Result<Self, Refusal> {
         let laws = || TEMPLATES.iter().map(|template| template.law).collect::<Vec<_>>().join(", ");
         let template = ModelTemplate::of(law);
-        let template = template.ok_or_else(|| Refusal::of_words(format!("law \"{law}\": must be one of {}", laws())))?;
+        let template =
+            template.ok_or_else(|| Refusal::of_words(format!("law \"{law}\": must be one of {}", laws())))?;
         Ok(Self { text: template.whole() })
     }
 }

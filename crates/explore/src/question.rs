@@ -207,7 +207,8 @@ impl StartRequest {
     /// Options of a command for this start, each after a blank.
     pub(crate) fn options(self) -> String {
         let state = self.position.zip(self.velocity);
-        let leaving = self.relative_velocity.map_or(String::new(), |velocity| format!(" --relative-velocity {velocity}"));
+        let leaving =
+            self.relative_velocity.map_or(String::new(), |velocity| format!(" --relative-velocity {velocity}"));
         let state = state.map_or(leaving, |(position, velocity)| format!(" --state={position},{velocity}"));
         if self.cam_angle_rad == 0.0 { state } else { format!(" --start-angle {}{state}", self.cam_angle_rad) }
     }

@@ -12,7 +12,9 @@ static MODULE: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/explore.wasm.gz
 
 /// Reason why a page in a file cannot be live.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("this program was built without the module that answers a page in a file: run `make explore` in its source folder, and build it again")]
+#[error(
+    "this program was built without the module that answers a page in a file: run `make explore` in its source folder, and build it again"
+)]
 pub struct NoModule;
 
 /// The module in base64.

@@ -3,8 +3,8 @@
 use super::{AnswerArguments, CommandError, Exit, ModelArgument, Session, progress::Progress};
 use crate::pages;
 use crate::show::{Page, markdown};
-use corner_impact::json;
 use corner_impact::cam::Cam;
+use corner_impact::json;
 use corner_impact::known::Evidence;
 use corner_impact::paper::{Claims, Context};
 use corner_impact::published::Verdict;

@@ -8,8 +8,8 @@ use super::{CommandError, Exit, ModelArgument, Session, progress::watched, sessi
 use crate::figures::{branches_figure, corner_marks};
 use crate::pages;
 use crate::show::csv;
-use corner_impact::json;
 use corner_impact::cam::Cam;
+use corner_impact::json;
 use corner_impact::orbit::branch::Following;
 use corner_impact::orbit::{Parameter, Search};
 use corner_impact::study::continuation::branches;

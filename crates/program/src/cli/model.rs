@@ -6,8 +6,8 @@ use clap::{Arg, ArgMatches, CommandFactory, FromArgMatches};
 
 use super::picture::ends_in;
 use super::{CommandError, progress::watched, session::Session};
-use corner_impact::command::{changed, named, shell_word};
 use crate::show::notes;
+use corner_impact::command::{changed, named, shell_word};
 use corner_impact::model::{CONTACTS, Model, ModelError, ModelNumber, Numeral, Units, finite, nearest, parted};
 use corner_impact::orbit::Parameter;
 use corner_impact::untrusted;

@@ -144,7 +144,8 @@ fn segments(pieces: &[OutlinePiece]) -> Vec<Series> {
         return vec![Series::line("", Colour::Blue, Stroke::Solid, points)];
     }
     let ways = OTHERS.into_iter().cycle();
-    let line = |(piece, (colour, stroke)): (&OutlinePiece, _)| Series::line("", colour, stroke, piece.points.iter().copied());
+    let line =
+        |(piece, (colour, stroke)): (&OutlinePiece, _)| Series::line("", colour, stroke, piece.points.iter().copied());
     pieces.iter().zip(ways).map(line).collect()
 }
 

@@ -11,10 +11,10 @@ use crate::figures::{
 };
 use crate::report::quantities::{ReportQuantity, quantities};
 use crate::report::through::ThroughCorner;
-use corner_impact::command::command;
 use crate::show::words;
 use corner_impact::agreement::by_quantity;
 use corner_impact::cam::{Cam, Jet, Side};
+use corner_impact::command::command;
 use corner_impact::measured::Measured;
 use corner_impact::model::{Model, ModelError, Units};
 use corner_impact::paper::{Claims, Context, LedgerError};
