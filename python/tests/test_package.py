@@ -31,3 +31,15 @@ def test_the_command_is_installed() -> None:
     assert version == f"corner-impact {corner_impact.__version__}\n"
     wrong = subprocess.run([*line, "simulate", "--rpm", "0"], capture_output=True, text=True)
     assert wrong.returncode == 2 and "above 0" in wrong.stderr
+
+
+def test_a_live_page_is_shown_and_saved(tmp_path: Path) -> None:
+    try:
+        page = Model.paper().with_number("restitution", 0.7).explore()
+    except RuntimeError as error:
+        assert "make explore" in str(error)
+        return
+    assert "Explore.mount" in page.html and "restitution = 0.7" in page.html
+    page.save(tmp_path / "page.html")
+    assert (tmp_path / "page.html").read_text(encoding="utf-8") == page.html
+    assert page._repr_html_().startswith("<iframe") and 'srcdoc="' in page._repr_html_()
