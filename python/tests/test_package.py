@@ -4,8 +4,10 @@ import doctest
 import inspect
 import subprocess
 import sys
+from pathlib import Path
 
 import corner_impact
+from corner_impact import Model
 
 
 def test_the_examples_hold() -> None:
