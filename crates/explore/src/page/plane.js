@@ -8,12 +8,12 @@
 
   // What the views share ----------------------------------------------------------------------------------------------
 
-  /** What a question takes as `start`, from a motion that is pointed at; null where it is no state. */
+  /** What a question takes as `start`, from a motion that is pointed at: at rest on the cam where it names a cam angle alone. */
   Explore.startOf = (motion) => {
     if (!motion || !Number.isFinite(motion.cam_angle_rad)) return null;
     const start = { cam_angle_rad: motion.cam_angle_rad };
     if (Number.isFinite(motion.position) && Number.isFinite(motion.velocity)) return { ...start, position: motion.position, velocity: motion.velocity };
-    return Number.isFinite(motion.relative_velocity) ? { ...start, relative_velocity: motion.relative_velocity } : null;
+    return Number.isFinite(motion.relative_velocity) ? { ...start, relative_velocity: motion.relative_velocity } : start;
   };
   /** The question of a motion that is pointed at: its speed, its start, and the model with the number that the diagram varies. */
   Explore.questionOf = (motion, context) => {
@@ -96,7 +96,7 @@
       if (since < 0.33) continue;
       since = 0;
       const [px, py] = [(x[index] - x0) / (x1 - x0), ((y[index] - y0) / (y1 - y0)) * aspect];
-      if (taken.some(([a, b]) => Math.hypot(a - px, b - py) < 0.06)) continue;
+      if (taken.some(([a, b]) => Math.hypot(a - px, b - py) < 0.12)) continue;
       taken.push([px, py]);
       const [ux, uy] = [dx / far, dy / far];
       const back = (side) => [x[index] + (-0.02 * ux - side * 0.009 * uy) * (x1 - x0), y[index] + ((-0.02 * uy + side * 0.009 * ux) / aspect) * (y1 - y0)];
