@@ -90,6 +90,7 @@
         store.tell({ moving });
       },
       settle: (step) => {
+        clearTimeout(store.late);
         const now = Date.now();
         const again = step !== null && store.last.name === step && now - store.last.at < 1000 && store.index > 0;
         store.last = { name: step, at: now };
