@@ -172,7 +172,7 @@
       // An impact begins at a square and ends at a triangle.
       const ends = ({ x, y }) => {
         const at = (offset) => ({ x: x.filter((_, index) => index % 3 === offset), y: y.filter((_, index) => index % 3 === offset) });
-        return x.length > 600 ? [] : [{ kind: "points", ...at(0), shape: "square", size: 5, colour: "vermilion" }, { kind: "points", ...at(1), shape: "triangle", size: 6, colour: "vermilion" }];
+        return x.length > 1500 ? [] : [{ kind: "points", ...at(0), shape: "square", size: 5, colour: "vermilion" }, { kind: "points", ...at(1), shape: "triangle", size: 6, colour: "vermilion" }];
       };
       const point = async (to) => {
         const question = to && to.from !== "machine" ? Explore.questionOf(to, context) : null;
@@ -186,7 +186,7 @@
           const [revolutions, approaching] = [context.option("revolutions", 4), context.option("approach", false)];
           [axes, turns].forEach((each, index) => each.set(String(index ? revolutions : context.option("axes", "follower"))));
           approach.set(approaching);
-          const found = await context.ask({ view: "motion", rpm: state.rpm, transient: approaching ? 0 : 300, revolutions, samples: coarse ? 120 : 360, ...context.start() }, { coarse });
+          const found = await context.ask({ view: "motion", rpm: state.rpm, transient: approaching ? 0 : 300, revolutions, samples: coarse ? 120 : revolutions <= 4 ? 720 : 360, ...context.start() }, { coarse });
           if (!found) { refused(panel); return; }
           shown = { found, rpm: state.rpm };
           const hits = found.events && found.events.event ? found.events.event.filter((each) => each === "impact").length : 0;
