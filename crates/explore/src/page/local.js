@@ -77,11 +77,14 @@
     const place = (row) => { strip.rows.push(row); strip.rows.sort((a, b) => a.value - b.value); };
     strip.ask = async (from, onRow) => {
       try {
+        const began = performance.now();
         const order = strip.rows.filter((row) => !row.verdict).sort((a, b) => Math.abs(a.value - from) - Math.abs(b.value - from));
         for (const row of order) { row.verdict = await verdictAt(row.value); if (strip.stopped) return; onRow(); }
+        // Where a verdict takes long, as where motions are searched for danger, the ends of its range are left wider.
+        const halvings = (performance.now() - began) / Math.max(1, order.length) > 200 ? HALVINGS - 3 : HALVINGS;
         for (const [low, high] of changes(strip.rows)) {
           let [a, b] = [low, high];
-          for (let step = 0; step < HALVINGS; step += 1) {
+          for (let step = 0; step < halvings; step += 1) {
             const row = { value: Number(((a.value + b.value) / 2).toPrecision(8)), verdict: null };
             row.verdict = await verdictAt(row.value);
             if (strip.stopped) return;
