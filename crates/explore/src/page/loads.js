@@ -30,10 +30,10 @@
   const unitOf = (name) => (name in UNITS ? UNITS[name] : name.replace(/_/g, " "));
 
   /** A curve with the band of its error. */
-  const curve = ({ x, y, error }, colour, hover) => [
+  const curve = ({ x, y, error }, colour, hover, motion) => [
     error.some((each) => each > 0) && { kind: "band", x, low: y.map((each, index) => (each === null ? null : each - error[index])), high: y.map((each, index) => (each === null ? null : each + error[index])), colour, alpha: 0.25 },
     { kind: "line", x, y, colour, width: 2 },
-    { kind: "points", x, y, colour, size: 4, shape: "disc", hover },
+    { kind: "points", x, y, colour, size: 4, shape: "disc", hover, motion },
   ];
   const separationLayers = ({ separation }) => (separation ? [
     separation.error_rpm > 1e-6 * separation.speed_rpm && { kind: "rects", colour: "vermilion", alpha: 0.2, rects: [[separation.speed_rpm - separation.error_rpm, separation.speed_rpm + separation.error_rpm, -1e12, 1e12]] },
@@ -71,6 +71,8 @@
       return make("li", {}, make("strong", {}, row.parameter), ` ${limit(row)}${unit} (now ${number(row.now, 5)}; ${known(row)})${row.note ? `; ${row.note}` : ""} `, set);
     }));
   };
+  /** The motion from rest at the speed of a point. */
+  const atSpeed = ({ x }) => (index) => ({ rpm: x[index], cam_angle_rad: 0 });
   /** The value of a curve at a speed, between its points; null outside. */
   const at = ({ x, y }, rpm) => {
     const index = x.findIndex((each) => each >= rpm);
@@ -119,7 +121,7 @@
         const hover = (index) => ({ title: `${number(rows.x[index], 6)} rpm`, rows: [["least force", `${withError(rows.y[index], rows.error[index])} ${unit}`], ["at cam angle", Number.isFinite(shown.contact_force[index].cam_angle_rad) ? `${number(Explore.turned(shown.contact_force[index].cam_angle_rad), 5)}°` : "–"]], known: rows.y[index] < 0 ? "computed; below 0 they separate" : "computed" });
         return {
           x: { label: "speed", unit: "rpm", range: range() }, y: { label: "least contact force", unit, range: extent([rows.y, [0]]) },
-          layers: [{ kind: "rule", y: 0, colour: "ink", width: 1 }, ...separationLayers(shown), ...curve(rows, "blue", hover), { kind: "rule", x: context.state().rpm, colour: "grey", width: 1.5, dash: [2, 3], label: "" }, needRule()],
+          layers: [{ kind: "rule", y: 0, colour: "ink", width: 1 }, ...separationLayers(shown), ...curve(rows, "blue", hover, atSpeed(rows)), { kind: "rule", x: context.state().rpm, colour: "grey", width: 1.5, dash: [2, 3], label: "" }, needRule()],
           description: `${headline()}. At ${number(rows.x[0], 5)} rpm the cam presses with ${withError(rows.y[0], rows.error[0])} ${unit} at least, at ${number(rows.x[rows.x.length - 1], 5)} rpm with ${withError(rows.y[rows.y.length - 1], rows.error[rows.error.length - 1])} ${unit}`,
         };
       };
@@ -133,7 +135,7 @@
         const last = rows.y.length - 1;
         return {
           x: { label: "speed", unit: "rpm", range: range() }, y: { label: LOADS[key].name, unit, range: extent([rows.y, [0], bound ? [need().below] : []]) },
-          layers: [...separationLayers(shown), ...curve(rows, "purple", hover), bound, needRule()],
+          layers: [...separationLayers(shown), ...curve(rows, "purple", hover, atSpeed(rows)), bound, needRule()],
           description: `${LOADS[key].name}, sampled, rises to ${withError(rows.y[last], rows.error[last])} ${unit} at ${number(rows.x[last], 5)} rpm`,
         };
       };
@@ -209,6 +211,12 @@
           if (!found || !need()) return;
           required = { text, model, rows: found.needs || [] };
           draw();
+        },
+        highlight(motion) {
+          if (!shown) return;
+          const mark = (plot, rows) => { const y = motion && rows.x.length ? at(rows, motion.rpm) : null; plot.mark(y === null ? [] : [{ x: motion.rpm, y }]); };
+          mark(force, columnsOf(shown.contact_force, "least"));
+          mark(loads, columnsOf(shown.loads, loadKey()));
         },
         command: () => { const answer = context.answer(need() ? "loads-need" : "loads") || context.answer("loads"); return answer ? answer.command : null; },
         csv: () => {

@@ -21,15 +21,18 @@
     const sides = maps.filter((each) => each.speeds === "faster" || each.speeds === "slower").map((each) => ({ ...each, sign: each.speeds === "faster" ? -1 : 1 }));
     return {
       period_s: corner.period_s,
-      rays: sides.flatMap((each) => each.periodic_orbits.map((orbit) => ({ word: orbit.word, sign: each.sign, stable: orbit.stable, positions: orbit.points.map(([q]) => q) }))),
+      // x* itself, on the section half a revolution from the corner.
+      section: (corner.cam_angle_rad + Math.PI) % (2 * Math.PI), at: [corner.state[0] + Explore.column(corner, "state_origin_"), corner.state[1]],
+      rays: sides.flatMap((each) => each.periodic_orbits.map((orbit) => ({ word: orbit.word, sign: each.sign, stable: orbit.stable, positions: orbit.points.map(([q]) => q), velocities: orbit.points.map(([, v]) => v) }))),
       left: sides.filter((each) => each.ends.every((end) => end.end === "escapes")).map((each) => each.sign),
     };
   };
-  const rayLayers = (found, reach, scale) => found.rays.filter((ray) => ray.positions.length <= 2).flatMap((ray) => ray.positions.map((slope) => {
+  const rayLayers = (found, reach, scale) => found.rays.filter((ray) => ray.positions.length <= 2).flatMap((ray) => ray.positions.map((slope, point) => {
     const parts = [...Array(21).keys()].map((step) => (step / 20) * reach);
     return {
       kind: "line", x: parts.map((at) => at * ray.sign * scale), y: parts.map((at) => at * slope), ...(stableOf(ray) ? STABLE : UNSTABLE),
       hover: (index) => ({ title: `Orbit ${ray.word} of the local map, ${stableOf(ray) ? "stable" : "unstable"}`, rows: [["at", `${number(rpmAt(found, parts[index] * ray.sign), 9)} rpm`], ["position from x*", number(parts[index] * slope, 5)]], known: "computed" }),
+      motion: (index) => ({ rpm: rpmAt(found, parts[index] * ray.sign), cam_angle_rad: found.section, position: found.at[0] + parts[index] * slope, velocity: found.at[1] + parts[index] * ray.velocities[point] }),
     };
   }));
   const machineLayers = (found, scale) => (found.machine || []).map((line) => ({
@@ -74,11 +77,14 @@
     const place = (row) => { strip.rows.push(row); strip.rows.sort((a, b) => a.value - b.value); };
     strip.ask = async (from, onRow) => {
       try {
+        const began = performance.now();
         const order = strip.rows.filter((row) => !row.verdict).sort((a, b) => Math.abs(a.value - from) - Math.abs(b.value - from));
         for (const row of order) { row.verdict = await verdictAt(row.value); if (strip.stopped) return; onRow(); }
+        // Where a verdict takes long, as where motions are searched for danger, the ends of its range are left wider.
+        const halvings = (performance.now() - began) / Math.max(1, order.length) > 200 ? HALVINGS - 3 : HALVINGS;
         for (const [low, high] of changes(strip.rows)) {
           let [a, b] = [low, high];
-          for (let step = 0; step < HALVINGS; step += 1) {
+          for (let step = 0; step < halvings; step += 1) {
             const row = { value: Number(((a.value + b.value) / 2).toPrecision(8)), verdict: null };
             row.verdict = await verdictAt(row.value);
             if (strip.stopped) return;
@@ -194,7 +200,7 @@
       strip.element.before(over);
       panel.body.append(said, signs, numbers);
       const [folds, flips] = [context.plot(titled(signs, "These signs decide on persistence or fold"), { label: "Signs that decide on a fold", aspect: 0.7, least: 210 }), context.plot(titled(signs, "These signs decide on period two"), { label: "Signs that decide on period two", aspect: 0.7, least: 210 })];
-      let [verdict, row, answered] = [null, null, null];
+      let [verdict, row, answered, rays] = [null, null, null, null];
 
       const choices = () => context.model().numbers.filter((each) => each.path.startsWith("follower.") || Object.keys(context.state().set).includes(each.path));
       const chosen = () => {
@@ -233,9 +239,10 @@
         drawRays(raysOf(found));
         if (coarse) return;
         const local = await context.ask({ view: "local" }, { lane: "local-rays", slow: true, silent: true });
-        if (local && verdict && answered === JSON.stringify(context.app.question())) drawRays(local);
+        if (local && verdict && answered === JSON.stringify(context.app.question())) drawRays({ ...raysOf(found), reach_s: local.reach_s, machine: local.machine });
       };
       const drawRays = (local) => {
+        rays = local;
         const unit = Explore.parts.units(context);
         all.element.parentNode.firstChild.textContent = local.machine && local.machine.length ? "Orbits of the local map; grey: the machine's own" : "Orbits of the local map";
         all.draw(raysScene(local, unit, false));
@@ -260,6 +267,12 @@
           words.replaceChildren();
           parts.forEach((each) => { each.hidden = true; });
           drawStrip();
+        },
+        /** A motion on the section of the map is a point beside its orbits. */
+        highlight(motion) {
+          const here = rays && motion && Number.isFinite(motion.position) && Math.abs(motion.cam_angle_rad - rays.section) < 1e-6;
+          const scale = rays && reachOf(rays) * 1e3 < 1 ? 1e6 : 1e3;
+          [all, near].forEach((plot) => plot.mark(here ? [{ x: (60 / motion.rpm - rays.period_s) * scale, y: motion.position - rays.at[0] }] : []));
         },
         csv: () => (row ? Explore.csv({
           [row.path]: row.rows.map((each) => each.value), verdict: row.rows.map((each) => (each.verdict || {}).kind || ""), danger: row.rows.map((each) => (each.verdict || {}).danger || ""), corner_impact_rpm: row.rows.map((each) => (each.verdict || {}).speed ?? ""),

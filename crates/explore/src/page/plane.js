@@ -8,12 +8,12 @@
 
   // What the views share ----------------------------------------------------------------------------------------------
 
-  /** What a question takes as `start`, from a motion that is pointed at; null where it is no state. */
+  /** What a question takes as `start`, from a motion that is pointed at: at rest on the cam where it names a cam angle alone. */
   Explore.startOf = (motion) => {
     if (!motion || !Number.isFinite(motion.cam_angle_rad)) return null;
     const start = { cam_angle_rad: motion.cam_angle_rad };
     if (Number.isFinite(motion.position) && Number.isFinite(motion.velocity)) return { ...start, position: motion.position, velocity: motion.velocity };
-    return Number.isFinite(motion.relative_velocity) ? { ...start, relative_velocity: motion.relative_velocity } : null;
+    return Number.isFinite(motion.relative_velocity) ? { ...start, relative_velocity: motion.relative_velocity } : start;
   };
   /** The question of a motion that is pointed at: its speed, its start, and the model with the number that the diagram varies. */
   Explore.questionOf = (motion, context) => {
@@ -96,7 +96,7 @@
       if (since < 0.33) continue;
       since = 0;
       const [px, py] = [(x[index] - x0) / (x1 - x0), ((y[index] - y0) / (y1 - y0)) * aspect];
-      if (taken.some(([a, b]) => Math.hypot(a - px, b - py) < 0.06)) continue;
+      if (taken.some(([a, b]) => Math.hypot(a - px, b - py) < 0.12)) continue;
       taken.push([px, py]);
       const [ux, uy] = [dx / far, dy / far];
       const back = (side) => [x[index] + (-0.02 * ux - side * 0.009 * uy) * (x1 - x0), y[index] + ((-0.02 * uy + side * 0.009 * ux) / aspect) * (y1 - y0)];
@@ -172,7 +172,7 @@
       // An impact begins at a square and ends at a triangle.
       const ends = ({ x, y }) => {
         const at = (offset) => ({ x: x.filter((_, index) => index % 3 === offset), y: y.filter((_, index) => index % 3 === offset) });
-        return x.length > 600 ? [] : [{ kind: "points", ...at(0), shape: "square", size: 5, colour: "vermilion" }, { kind: "points", ...at(1), shape: "triangle", size: 6, colour: "vermilion" }];
+        return x.length > 1500 ? [] : [{ kind: "points", ...at(0), shape: "square", size: 5, colour: "vermilion" }, { kind: "points", ...at(1), shape: "triangle", size: 6, colour: "vermilion" }];
       };
       const point = async (to) => {
         const question = to && to.from !== "machine" ? Explore.questionOf(to, context) : null;
@@ -186,7 +186,7 @@
           const [revolutions, approaching] = [context.option("revolutions", 4), context.option("approach", false)];
           [axes, turns].forEach((each, index) => each.set(String(index ? revolutions : context.option("axes", "follower"))));
           approach.set(approaching);
-          const found = await context.ask({ view: "motion", rpm: state.rpm, transient: approaching ? 0 : 300, revolutions, samples: coarse ? 120 : 360, ...context.start() }, { coarse });
+          const found = await context.ask({ view: "motion", rpm: state.rpm, transient: approaching ? 0 : 300, revolutions, samples: coarse ? 120 : revolutions <= 4 ? 720 : 360, ...context.start() }, { coarse });
           if (!found) { refused(panel); return; }
           shown = { found, rpm: state.rpm };
           const hits = found.events && found.events.event ? found.events.event.filter((each) => each === "impact").length : 0;

@@ -77,7 +77,7 @@
       } catch { return false; }
     };
     const store = {
-      initial, state: initial, steps: [initial], index: 0, listeners: [], before: null, last: { name: null, at: 0 }, alone: false,
+      initial, state: initial, steps: [initial], index: 0, listeners: [], before: null, last: { name: null, at: 0 }, alone: false, late: null,
       subscribe: (fn) => store.listeners.push(fn),
       tell: (how) => store.listeners.forEach((fn) => fn(store.state, how)),
       /** Changes the state. `moving` while something is dragged; `step` names a change so that quick repeats are one step. */
@@ -90,6 +90,7 @@
         store.tell({ moving });
       },
       settle: (step) => {
+        clearTimeout(store.late);
         const now = Date.now();
         const again = step !== null && store.last.name === step && now - store.last.at < 1000 && store.index > 0;
         store.last = { name: step, at: now };
@@ -117,12 +118,13 @@
         if (!ours) { store.apply(to); tell("replaceState"); return; }
         history.go(by);
         // A history that does not answer, as in some frames: the step is taken without it.
-        const index = store.index;
-        setTimeout(() => { if (store.index === index) store.apply(to); }, 600);
+        clearTimeout(store.late);
+        store.late = setTimeout(() => store.apply(to), 600);
       },
       undo: () => store.go(-1),
       redo: () => store.go(1),
       apply: (index) => {
+        clearTimeout(store.late);
         [store.index, store.state, store.before, store.last] = [index, store.steps[index], null, { name: null, at: 0 }];
         store.tell({ moving: false });
       },

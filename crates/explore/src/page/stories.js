@@ -129,6 +129,7 @@
       const story = now();
       const step = story ? story.steps[state.story.step] : null;
       bar.hidden = !step;
+      app.element.classList.toggle("touring", Boolean(step));
       list.querySelectorAll("button").forEach((button) => button.setAttribute("aria-pressed", String(Boolean(step && button.dataset.story === story.name))));
       if (!step) { if (shown) told(null); shown = null; return; }
       const key = `${story.name} ${state.story.step}`;
