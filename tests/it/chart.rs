@@ -333,9 +333,16 @@ fn curves_go_over_the_chart() {
         let is_thick = |line: &&str| line.contains("stroke-width=\"4.5\"") && line.contains("s-ink");
         let line = svg.lines().filter(|line| line.starts_with("<path")).find(is_thick).unwrap();
         let line = &line[line.find(" d=\"M").unwrap() + 5..];
-        let points = line[..line.find('"').unwrap()].split(['M', 'L']).map(|point| {
-            let (x, y) = point.split_once(' ').unwrap();
-            (number(x) - place[0]).hypot(number(y) - place[1])
+        let line = line[..line.find('"').unwrap()].replace('-', " -");
+        let points = line.split('M').flat_map(|run| {
+            let mut at = [0.0; 2];
+            // The first point of a run, then the steps from each point to the next.
+            let parts: Vec<f64> = run.split(['l', ' ']).filter(|part| !part.is_empty()).map(number).collect();
+            let steps = parts.chunks(2).map(|step| {
+                at = [at[0] + step[0], at[1] + step[1]];
+                (at[0] - place[0]).hypot(at[1] - place[1])
+            });
+            steps.collect::<Vec<_>>()
         });
         let nearest = points.fold(f64::INFINITY, f64::min);
         assert!(nearest < 0.02, "{name}: {nearest} from {place:?} in {line}");

@@ -7,11 +7,16 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::fmt::Write;
 
 use approx::assert_relative_eq;
+use corner_impact::border_collision::feigin::Speeds;
 use corner_impact::cam::apart;
 use corner_impact::corner::range::{FoundCornerImpacts, find_corner_impacts};
 use corner_impact::corner::{CornerImpact, Way, locate};
 use corner_impact::model::{Model, Study};
+use corner_impact::orbit::{Course, PeriodicOrbit, Search, eigenvalues, search};
 use corner_impact::progress::Unwatched;
+use corner_impact::section::StroboscopicMap;
+use corner_impact::simulate::{Machine, Unobserved, angular_velocity};
+use corner_impact::study::verify::{External, verify};
 use corner_impact::tolerance;
 
 use crate::common;
@@ -317,4 +322,100 @@ fn a_part_of_a_range_is_looked_through_in_the_same_ways() {
     let (Some((rpm, one)), Some((_, other))) = (part.last(), whole.last()) else { panic!("{part:?} {whole:?}") };
     assert_relative_eq!(one.speed_rpm(), other.speed_rpm(), max_relative = 1e-9);
     assert_eq!(one.ways, other.ways, "{rpm}");
+}
+
+/// The orbits next to the corner impact are those that Feigin's classification counts, for every model that has one.
+#[test]
+#[ignore = "slow"]
+fn orbits_on_either_side_are_those_of_the_classification() {
+    let mut checked = 0;
+    for file in common::model_files() {
+        let model = common::read(&file);
+        let findings = verify(&model, External::LeftOut).unwrap();
+        let Ok(kind) = &findings.classification else { continue };
+        checked += 1;
+        let at = &findings.at;
+        let machine = Machine::new(common::cam(&model), &model.follower, at.angular_velocity());
+        let [before, after] = [machine.cam().before(at.corner.segment), at.corner.segment];
+        // Orbits of one impact a revolution on a segment next to the corner, at a speed next to that of the corner impact.
+        let beside = |segment: usize, share: f64| {
+            let machine = machine.at_speed(angular_velocity(at.speed_rpm() * (1.0 + share)));
+            let found = search(&machine, &Search { revolutions: 1, impacts: Some(1) }).unwrap();
+            let stable = |orbit: &PeriodicOrbit| {
+                let impact = orbit.impacts().next()?;
+                let from_corner = (impact.cam_angle - at.corner.angle + PI).rem_euclid(TAU) - PI;
+                // Another orbit on the same segment, far from the corner, is none of the local map's.
+                let is_beside = impact.segment == segment && from_corner.abs() < 0.05;
+                (is_beside && matches!(orbit.course, Course::Impacts(_))).then(|| orbit.is_stable())
+            };
+            found.iter().filter_map(stable).collect::<Vec<_>>()
+        };
+        for (segment, side, matrix) in
+            [(before, &kind.minus, findings.map.minus.a), (after, &kind.plus, findings.map.plus.a)]
+        {
+            const NEXT: f64 = 7e-6;
+            let expected = |there: bool| if there { vec![side.stable] } else { vec![] };
+            let (on_faster, on_slower) = match side.exists_for {
+                Speeds::Faster => (true, false),
+                Speeds::Slower => (false, true),
+            };
+            assert_eq!(beside(segment, NEXT), expected(on_faster), "{} {segment} faster", file.display());
+            assert_eq!(beside(segment, -NEXT), expected(on_slower), "{} {segment} slower", file.display());
+            // At the corner impact the multipliers are the eigenvalues of that side's matrix.
+            let mut cycle = at.cycle.clone();
+            let impact = &mut cycle.impacts[at.impact];
+            impact.segment = segment;
+            // A segment that ends at 2 pi has the corner at its end.
+            if segment > at.corner.segment {
+                impact.cam_angle = machine.cam().segments()[segment].end;
+            }
+            let orbit = PeriodicOrbit::of_cycle(&machine, cycle, at.residual);
+            for (one, other) in orbit.multipliers().iter().zip(eigenvalues(&matrix)) {
+                assert!((one.re - other.re).hypot(one.im - other.im) < 1e-6, "{}: {one:?} {other:?}", file.display());
+            }
+        }
+    }
+    assert!(checked >= 8, "{checked}");
+}
+
+/// Orbits faster than the corner impact, and their multipliers, against the simulator, which knows neither.
+#[test]
+#[ignore = "slow"]
+fn orbits_beyond_the_corner_impact_are_those_of_the_simulator() {
+    let model = common::osorio();
+    let at = verify(&model, External::LeftOut).unwrap().at;
+    let at_rest = Machine::new(common::cam(&model), &model.follower, 1.0);
+    let orbits = |share: f64| {
+        let machine = at_rest.at_speed(angular_velocity(at.speed_rpm() * (1.0 + share)));
+        let found = search(&machine, &Search { revolutions: 1, impacts: Some(1) }).unwrap();
+        (machine, found)
+    };
+    for share in [1e-5, 1e-4, 1e-3, 0.01, 0.02, 0.03, 0.04, 0.05, 0.06] {
+        let (machine, found) = orbits(share);
+        assert_eq!(found.len(), 2, "{share}");
+        for orbit in &found {
+            let Course::Impacts(cycle) = &orbit.course else { panic!("{share}: {orbit:?}") };
+            let impact = orbit.impacts().next().unwrap();
+            let leaving =
+                impact.velocity_after - machine.angular_velocity() * machine.cam().lift(impact.cam_angle).slope;
+            let mut motion = machine.start_on_cam(impact.cam_angle, leaving).unwrap();
+            let goal = motion.next(0.0);
+            let _ = machine.advance(&mut motion, goal, &mut Unobserved).unwrap();
+            // The flight of the cycle after the rest of the revolution.
+            let (from, period) = cycle.flight(&machine, 0);
+            let rest = (TAU - impact.cam_angle.rem_euclid(TAU)) / TAU * period;
+            let position = from.position + machine.flight().fly(from, rest).0;
+            assert!((position - motion.state.position).abs() < 1e-8, "{position} {:?}", motion.state);
+            let map = StroboscopicMap { machine: machine.clone(), cam_angle: 0.0 };
+            let (state, matrix) = map.carry(motion.state, 1).unwrap();
+            assert!((state.position - motion.state.position).abs() < 1e-8);
+            for (one, other) in orbit.multipliers().iter().zip(eigenvalues(&matrix)) {
+                assert!((one.re - other.re).hypot(one.im - other.im) < 1e-6, "{share}: {one:?} {other:?}");
+            }
+        }
+    }
+    // Slower there is no such orbit.
+    for share in [-1e-5, -1e-3, -0.02, -0.06] {
+        assert!(orbits(share).1.is_empty(), "{share}");
+    }
 }

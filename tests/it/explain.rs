@@ -149,7 +149,8 @@ fn unexplained(page: &str) -> Vec<String> {
             while open.pop().is_some_and(|(name, _)| name != closed) {}
         } else if !["br", "meta", "input", "hr", "!DOCTYPE"].contains(&name.as_str()) && !tag.ends_with('/') {
             let is_about = tag.contains("data-about=\"") || tag.starts_with("section id=\"numbers\"");
-            if name == "data" && !open.iter().any(|(_, is_about)| *is_about) {
+            let is_number = name == "data" || tag.contains(" data-value=\"");
+            if is_number && !is_about && !open.iter().any(|(_, is_about)| *is_about) {
                 found.push(rest.chars().take(30).collect());
             }
             open.push((name, is_about));
@@ -172,6 +173,7 @@ pub fn all_are_explained(page: &str) {
 fn every_number_of_the_report_is_explained() {
     all_are_explained(&papers().1);
     assert_eq!(unexplained("<p><data value=\"1\">1</data></p>"), ["1"]);
+    assert_eq!(unexplained("<tr><td data-value=\"2\">2</td><td data-about=\"a\" data-value=\"3\">3</td></tr>"), ["2"]);
 }
 
 #[test]

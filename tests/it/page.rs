@@ -7,17 +7,12 @@ use std::sync::OnceLock;
 use crate::common;
 use crate::explain::all_are_explained;
 use base64::Engine;
-use corner_impact::border_collision::feigin::Speeds;
 use corner_impact::model::{Model, OSORIO_2008};
-use corner_impact::orbit::eigenvalues;
 use corner_impact::progress::Unwatched;
-use corner_impact::section::StroboscopicMap;
-use corner_impact::simulate::{Machine, angular_velocity};
-use corner_impact::study::verify::{External, verify};
-use corner_impact_cli::figures::through_corner::{ImpactSide, Moment, ShownOrbit, through_corner};
+use corner_impact::study::verify::External;
 use corner_impact_cli::pages::report::html;
 use corner_impact_cli::report::Report;
-use corner_impact_cli::report::through::ThroughCorner;
+use corner_impact_plot::{Data, Figure};
 use serde_json::Value;
 
 /// The paper's report and its page, made once.
@@ -74,7 +69,9 @@ fn every_number_on_the_page_is_one_of_the_document_and_shows_it() {
     let (dossier, page) = papers();
     let mut known = BTreeSet::new();
     numbers(&serde_json::to_value(dossier).unwrap(), &mut known);
-    let shown = between(page, "<data value=\"", "</data>");
+    let cells = between(page, " data-value=\"", "</t");
+    assert!(cells.len() > 500, "{} cells", cells.len());
+    let shown = [between(page, "<data value=\"", "</data>"), cells].concat();
     assert!(shown.len() > 1000, "{} numbers", shown.len());
     for number in shown {
         let (value, text) = number.split_once("\">").unwrap();
@@ -94,21 +91,103 @@ fn every_number_on_the_page_is_one_of_the_document_and_shows_it() {
     }
 }
 
-#[test]
-#[ignore = "slow"]
-fn the_sliders_data_are_the_documents() {
-    let (dossier, page) = papers();
-    let embedded = between(page, "id=\"through-data\">", "</script>");
-    let [embedded] = embedded.as_slice() else { panic!("{} blocks of data", embedded.len()) };
-    let embedded = unpacked(embedded);
-    assert_eq!(embedded, serde_json::to_value(dossier.through.as_ref().unwrap()).unwrap());
+/// Figures that the page draws.
+fn drawn(dossier: &Report) -> Vec<(&'static str, &Figure)> {
+    let beside = [&dossier.overview, &dossier.loads, &dossier.attractors].into_iter().flatten();
+    beside
+        .chain(&dossier.plates)
+        .filter_map(|plate| plate.drawn.as_ref().ok().map(|drawn| (plate.id, &drawn.figure)))
+        .collect()
+}
+
+/// Whole multiples of a power of ten, each as its difference from the one before.
+fn column(column: &Value) -> (Vec<f64>, f64) {
+    let unit = 10_f64.powi(-column["places"].as_i64().unwrap() as i32);
+    let mut sum = 0.0;
+    let value = |step: &Value| {
+        step.as_f64().map_or(f64::NAN, |step| {
+            sum += step;
+            sum * unit
+        })
+    };
+    (column["steps"].as_array().unwrap().iter().map(value).collect(), unit)
+}
+
+/// Half a unit in the last place, and what a sum of units is off by.
+fn shows(value: f64, shown: f64, unit: f64) -> bool {
+    (value.is_nan() && shown.is_nan()) || (value - shown).abs() <= 0.5001 * unit + 1e-12 * value.abs()
 }
 
 #[test]
 #[ignore = "slow"]
+fn values_of_figures_are_the_documents() {
+    let (dossier, page) = papers();
+    let mut checked = [0; 3];
+    for (id, figure) in drawn(dossier) {
+        let part = between(page, &format!("<figure id=\"plate-{id}\""), "</figure>");
+        let [part] = part.as_slice() else { panic!("{id}: {} figures", part.len()) };
+        let values = unpacked(between(part, "class=\"save\" data-packed=\"", "\"")[0]);
+        let panels = values["panels"].as_array().unwrap();
+        assert_eq!(panels.len(), figure.panels.len(), "{id}");
+        for (told, panel) in panels.iter().zip(&figure.panels) {
+            assert_eq!(told["y"]["label"], panel.y.label);
+            assert_eq!(told["y"]["unit"], panel.y.unit);
+            for told in told["series"].as_array().unwrap() {
+                let series = &panel.series[told["number"].as_u64().unwrap() as usize];
+                let case = format!("{id}: {} {}", series.label, told["kind"]);
+                match &series.data {
+                    Data::Points { points, .. } => {
+                        let [(x, across), (y, up)] = ["x", "y"].map(|part| column(&told[part]));
+                        assert_eq!((x.len(), y.len()), (points.len(), points.len()), "{case}");
+                        let told = x.iter().zip(&y).zip(points);
+                        assert!(
+                            told.clone().all(|((x, y), at)| shows(at[0], *x, across) && shows(at[1], *y, up)),
+                            "{case}"
+                        );
+                        checked[0] += points.len();
+                    }
+                    Data::Line { points, .. } | Data::Area { points, .. } | Data::Arrow { points, .. } => {
+                        let [(x, across), (y, up)] = ["x", "y"].map(|part| column(&told[part]));
+                        assert!(x.len() <= points.len(), "{case}");
+                        // Each is one of the line's own points, in order.
+                        let mut rest = points.iter().filter(|at| !at[0].is_nan() && !at[1].is_nan());
+                        let mut kept = x.iter().zip(&y).filter(|(x, _)| !x.is_nan());
+                        let is_there =
+                            |(x, y): (&f64, &f64)| rest.any(|at| shows(at[0], *x, across) && shows(at[1], *y, up));
+                        assert!(kept.all(is_there), "{case}");
+                        checked[1] += x.len();
+                    }
+                    Data::Density(cells) => {
+                        let (gaps, counts) = (told["gaps"].as_array().unwrap(), told["counts"].as_array().unwrap());
+                        let rows = told["rows"].as_u64().unwrap();
+                        let mut cell = 0;
+                        let told: BTreeSet<([usize; 2], u64)> = (gaps.iter().zip(counts))
+                            .map(|(gap, count)| {
+                                cell += gap.as_u64().unwrap();
+                                ([(cell / rows) as usize, (cell % rows) as usize], count.as_u64().unwrap())
+                            })
+                            .collect();
+                        let known = cells.occupied_cells().map(|(at, count)| (at, u64::from(count))).collect();
+                        assert_eq!(told, known, "{case}");
+                        checked[2] += told.len();
+                    }
+                    Data::Band { .. } | Data::Region { .. } | Data::Words(_) => {}
+                }
+            }
+        }
+    }
+    assert!(checked[0] > 500 && checked[1] > 5000 && checked[2] > 50_000, "{checked:?}");
+}
+
+/// With the module of the live page it is at most 2.5 MB.
+#[test]
+#[ignore = "slow"]
 fn the_page_needs_nothing_beside_it_and_is_small() {
     let (_, page) = papers();
-    assert!(page.len() < 5_000_000, "{} bytes", page.len());
+    assert!(page.len() < 1_400_000, "{} bytes", page.len());
+    let markup = page.split("<script>").next().unwrap();
+    let elements = markup.matches('<').count() - markup.matches("</").count() - markup.matches("<!").count();
+    assert!((5000..9500).contains(&elements), "{elements} elements");
     for loading in [
         "src=\"http",
         "href=\"http",
@@ -166,7 +245,7 @@ fn claims_routes_and_figures_are_all_there() {
     let places: Vec<usize> = dossier
         .plates
         .iter()
-        .filter(|plate| plate.id != "cam")
+        .filter(|plate| plate.id != "cam" && plate.id != "fast-impacts")
         .map(|plate| page.find(&format!("id=\"plate-{}\"", plate.id)).unwrap())
         .collect();
     assert!(places.is_sorted());
@@ -186,7 +265,7 @@ fn a_models_name_is_text_whatever_it_holds() {
     let model = Model::parse("<b>evil</b>.toml", &text).unwrap();
     assert!(model.name.contains("<script>"));
     let dossier = Report::of(&model, External::LeftOut, Some([690.0, 700.0]), &Unwatched).unwrap();
-    assert!(dossier.through.is_ok() && dossier.claims.is_some());
+    assert!(dossier.claims.is_some());
     let page = html::render(&dossier).unwrap();
     for raw in ["<script>alert", "<img src=x", "<b>evil"] {
         assert!(!page.contains(raw), "{raw}");
@@ -196,19 +275,6 @@ fn a_models_name_is_text_whatever_it_holds() {
     assert!(page.contains("&lt;script&gt;alert(1)") && page.contains("\\u{1b}[31m\\u{0}\\u{202e}"));
     assert!(!page.contains(|letter: char| letter.is_control() && letter != '\n' || letter == '\u{202e}'));
     assert_eq!(page.matches("<script").count(), page.matches("</script>").count());
-}
-
-/// The same text in the slider's data would end its element.
-#[test]
-#[ignore = "slow"]
-fn text_in_the_sliders_data_does_not_end_it() {
-    let mut dossier = papers().0.clone();
-    dossier.through.as_mut().unwrap().corner = "</script><script>alert(1)</script><!--".into();
-    let page = html::render(&dossier).unwrap();
-    assert!(!page.contains("<script>alert"));
-    let embedded = between(&page, "id=\"through-data\">", "</script>");
-    let embedded = unpacked(embedded[0]);
-    assert_eq!(embedded["corner"], "</script><script>alert(1)</script><!--");
 }
 
 #[test]
@@ -247,7 +313,9 @@ fn a_model_without_a_corner_impact_has_a_page_that_says_why() {
     ));
     assert!(!page.contains("study.rpm_min is needed"));
     let sections: Vec<&str> = between(&page, "<section id=\"", "\"").into_iter().collect();
-    assert_eq!(sections, ["answer", "loads", "model", "speeds", "figures", "reproduce", "numbers"]);
+    assert_eq!(sections, ["answer", "explore", "loads", "model", "speeds", "figures", "reproduce", "numbers"]);
+    // In the place of the live page stands what there is to see of a machine without a corner impact.
+    assert!(between(&page, "<section id=\"explore\"", "</section>")[0].contains("id=\"plate-attractors\""));
     all_are_explained(&page);
     for said in ["Separation.", "Impacts.", "Coexistence.", "What is proved.", "id=\"plate-overview\""] {
         let at = page.find(said).unwrap_or_else(|| panic!("{said}"));
@@ -259,7 +327,7 @@ fn a_model_without_a_corner_impact_has_a_page_that_says_why() {
         "{:?}",
         between(&page, "<figcaption>", "</figcaption>")
     );
-    assert!(!page.contains("id=\"through-data\"") && !page.contains("id=\"ledger-filter\""));
+    assert!(!page.contains("id=\"plate-fast-impacts\"") && !page.contains("id=\"ledger-filter\""));
     assert!(page.contains("id=\"plate-cam\"") && page.contains("id=\"speeds\""));
 }
 
@@ -280,85 +348,6 @@ fn the_command_says_what_it_cannot_do() {
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
 }
 
-/// The orbits next to the corner impact are those that Feigin's classification counts, for every model that has one.
-#[test]
-#[ignore = "slow"]
-fn orbits_on_either_side_are_those_of_the_classification() {
-    let mut checked = 0;
-    for file in common::model_files() {
-        let model = common::read(&file);
-        let findings = verify(&model, External::LeftOut).unwrap();
-        let Ok(kind) = &findings.classification else { continue };
-        checked += 1;
-        let cam = common::cam(&model);
-        let (moments, at_corner) = through_corner(&model, &cam, &findings.at).unwrap().unwrap();
-        let [slower, faster] = [&moments[at_corner - 1], &moments[at_corner + 1]];
-        for (place, side) in [(ImpactSide::Before, &kind.minus), (ImpactSide::After, &kind.plus)] {
-            let of = |moment: &Moment| {
-                // Another orbit on the same segment, far from the corner, is none of the local map's.
-                let beside = |orbit: &&ShownOrbit| orbit.from_corner_deg.to_radians().abs() < 0.05;
-                let here = moment.orbits.iter().filter(|orbit| orbit.place == place).filter(beside);
-                here.map(|orbit| orbit.stable).collect::<Vec<_>>()
-            };
-            let expected = |there: bool| if there { vec![side.stable] } else { vec![] };
-            let (on_faster, on_slower) = match side.exists_for {
-                Speeds::Faster => (true, false),
-                Speeds::Slower => (false, true),
-            };
-            assert_eq!(of(faster), expected(on_faster), "{} {place:?} faster", file.display());
-            assert_eq!(of(slower), expected(on_slower), "{} {place:?} slower", file.display());
-            // At the corner impact the multipliers are the eigenvalues of that side's matrix.
-            let at = moments[at_corner].orbits.iter().find(|orbit| orbit.place == place).unwrap();
-            let map = &findings.map;
-            let matrix = if place == ImpactSide::Before { map.minus.a } else { map.plus.a };
-            for (one, other) in at.multipliers.iter().zip(eigenvalues(&matrix)) {
-                assert!((one.re - other.re).hypot(one.im - other.im) < 1e-6, "{}: {one:?} {other:?}", file.display());
-            }
-        }
-    }
-    assert!(checked >= 8, "{checked}");
-}
-
-/// A machine ten thousand times smaller has the same slider, in its own numbers.
-#[test]
-#[ignore = "slow"]
-fn the_slider_shows_a_machine_of_any_size() {
-    const SMALLER: f64 = 1e-4;
-    let lengths = ["follower.rest_position", "cam.base_radius", "cam.flank_radius", "cam.nose_radius"];
-    let model = common::osorio();
-    let mut small = model.clone();
-    for name in lengths {
-        let length = model.numbers().find(|(path, _)| *path == name).unwrap().1;
-        small = small.with_number(name, SMALLER * length).unwrap();
-    }
-    let shown = |model: &Model| {
-        let (cam, at) = (common::cam(model), verify(model, External::LeftOut).unwrap().at);
-        ThroughCorner::new(through_corner(model, &cam, &at).unwrap().unwrap(), &cam, at.corner.angle).unwrap()
-    };
-    let (large, small) = (shown(&model), shown(&small));
-    assert_eq!((large.corner.as_str(), small.corner.as_str()), ("P", "P"));
-    assert_eq!(large.cam.len(), small.cam.len());
-    // Half a step of the fifth digit of the travel, and as much of the other's.
-    let near = |one: f64, other: f64, extent: f64| (SMALLER * one - other).abs() <= SMALLER * extent * 1.1e-4;
-    for (one, other) in large.cam.iter().zip(&small.cam) {
-        assert!(near(one[1], other[1], 0.154) && near(one[2], other[2], 2.2), "{one:?} {other:?}");
-    }
-    let speeds: Vec<f64> = large.frames.iter().map(|frame| frame.rpm).collect();
-    assert!(speeds.windows(2).all(|pair| pair[0] < pair[1]), "{speeds:?}");
-    for (one, other) in large.frames.iter().zip(&small.frames) {
-        assert_eq!(one.orbits.len(), other.orbits.len());
-        for (one, other) in one.orbits.iter().zip(&other.orbits) {
-            assert!(near(one.velocity_before_m_s, other.velocity_before_m_s, 200.0), "{one:?} {other:?}");
-            assert!(other.path.iter().all(|[_, position]| *position > 0.0));
-        }
-    }
-    for axes in [&large.axes, &small.axes] {
-        for axis in [&axes.position, &axes.acceleration, &axes.speed, &axes.near] {
-            assert!(axis.range[0] < axis.range[1] && !axis.ticks.is_empty(), "{axis:?}");
-        }
-    }
-}
-
 /// Two digits of a small number are two, with and without a power of ten.
 #[test]
 #[ignore = "slow"]
@@ -373,52 +362,7 @@ fn sizes_have_two_digits() {
     pairs[4].max_abs_diff = f64::NAN;
     let page = html::render(&dossier).unwrap();
     for (size, text) in sizes {
-        assert!(page.contains(&format!("<data value=\"{size}\">{text}</data>")), "{size} as {text}");
+        assert!(page.contains(&format!(" data-value=\"{size}\">{text}</td>")), "{size} as {text}");
     }
     assert!(page.contains("NaN") && !page.contains("NaN\u{202f}×"));
-}
-
-/// Drawn orbits and multipliers against the simulator, which knows neither.
-#[test]
-#[ignore = "slow"]
-fn drawn_orbits_are_those_of_the_simulator() {
-    let model = common::osorio();
-    let cam = common::cam(&model);
-    let findings = verify(&model, External::LeftOut).unwrap();
-    let (moments, at_corner) = through_corner(&model, &cam, &findings.at).unwrap().unwrap();
-    let machine = Machine::new(cam, &model.follower, 1.0);
-    let mut checked = 0;
-    for moment in moments.iter().skip(at_corner + 1).step_by(10) {
-        let machine = machine.at_speed(angular_velocity(moment.rpm));
-        assert_eq!(moment.orbits.len(), 2, "{}", moment.rpm);
-        for orbit in &moment.orbits {
-            let angle = orbit.angle_deg.to_radians();
-            let cam_velocity = machine.angular_velocity() * machine.cam().lift(angle).slope;
-            let guess = machine.start_on_cam(angle, orbit.velocity_after_m_s - cam_velocity).unwrap();
-            let map = StroboscopicMap { machine: machine.clone(), cam_angle: 0.0 };
-            let mut motion = guess;
-            let goal = motion.next(0.0);
-            let _ = machine.advance(&mut motion, goal, &mut corner_impact::simulate::Unobserved).unwrap();
-            let first = orbit.path[0];
-            assert!((first[1] - motion.state.position).abs() < 1e-8, "{first:?} {:?}", motion.state);
-            let (state, matrix) = map.carry(motion.state, 1).unwrap();
-            assert!((state.position - motion.state.position).abs() < 1e-8);
-            for (one, other) in orbit.multipliers.iter().zip(eigenvalues(&matrix)) {
-                assert!((one.re - other.re).hypot(one.im - other.im) < 1e-6, "{}: {one:?} {other:?}", moment.rpm);
-            }
-            checked += 1;
-            if orbit.stable {
-                let run = moment.slowing.impacts_deg.last().unwrap();
-                assert!((run.to_radians() - angle).abs() < 1e-3, "{}: {run} {}", moment.rpm, orbit.angle_deg);
-            }
-        }
-    }
-    assert!(checked >= 18, "{checked}");
-    // Slower there is no such orbit; a run has other impacts, once it is far enough not to dwell where the orbit was.
-    for moment in &moments[..at_corner] {
-        assert!(moment.orbits.is_empty(), "{}", moment.rpm);
-        let near = findings.at.speed_rpm() - moment.rpm < 1.0;
-        let last = moment.slowing.impacts_deg.last().unwrap();
-        assert!(near || moment.slowing.impacts_deg.iter().any(|angle| (angle - last).abs() > 10.0), "{}", moment.rpm);
-    }
 }

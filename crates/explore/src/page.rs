@@ -17,6 +17,8 @@ pub enum Transport<'a> {
     },
     /// To a WebAssembly module inside the page: the module, compressed by gzip, in base64.
     Module(&'a str),
+    /// To the same as the text of the element with this identifier.
+    Element(&'a str),
 }
 
 /// The model that the page begins with; the paper's without a text.
@@ -67,14 +69,15 @@ pub const SCRIPTS: &str = concat!(
     include_str!("page/explore.js"),
 );
 
-/// Script that puts the live part into the element with the identifier `explore`.
-pub fn mounting(transport: Transport<'_>, model: &PageModel) -> String {
+/// Script that puts the live part into the element with an identifier.
+pub fn mounting(element: &str, transport: Transport<'_>, model: &PageModel) -> String {
     let transport = match transport {
         Transport::Server { base, .. } => format!("Explore.server(\"{base}\")"),
         Transport::Module(module) => format!("Explore.module(\"{module}\")"),
+        Transport::Element(id) => format!("Explore.module(document.getElementById(\"{id}\").textContent)"),
     };
     format!(
-        "\"use strict\";\nExplore.models = {};\nExplore.app = Explore.mount(document.getElementById(\"explore\"), {{ transport: {transport}, model: {} }});",
+        "\"use strict\";\nExplore.models = {};\nExplore.app = Explore.mount(document.getElementById(\"{element}\"), {{ transport: {transport}, model: {} }});",
         in_script(&tour_models()),
         in_script(model)
     )
@@ -99,7 +102,7 @@ pub fn page(transport: Transport<'_>, model: &PageModel, words: PageWords<'_>) -
     let title = words.title.replace('&', "&amp;").replace('<', "&lt;");
     let nonce = match transport {
         Transport::Server { nonce, .. } => format!(" nonce=\"{nonce}\""),
-        Transport::Module(_) => String::new(),
+        Transport::Module(_) | Transport::Element(_) => String::new(),
     };
     let parts = [
         ("title", title.as_str()),
@@ -109,7 +112,7 @@ pub fn page(transport: Transport<'_>, model: &PageModel, words: PageWords<'_>) -
         ("footer", words.footer),
         ("style", STYLE),
         ("scripts", SCRIPTS),
-        ("mount", &mounting(transport, model)),
+        ("mount", &mounting("explore", transport, model)),
     ];
     filled(PAGE, &parts)
 }

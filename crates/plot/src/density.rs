@@ -84,15 +84,19 @@ impl Density {
         [self.columns, self.rows]
     }
 
+    /// Column and row, from below, of each occupied cell, and its count.
+    pub fn occupied_cells(&self) -> impl Iterator<Item = ([usize; 2], u16)> {
+        let counts = self.counts.iter().enumerate().filter(|(_, count)| **count > 0);
+        counts.map(|(cell, count)| ([cell % self.columns, cell / self.columns], *count))
+    }
+
     /// The centre of each occupied cell, and its count.
     pub fn counted(&self) -> impl Iterator<Item = ([f64; 2], u16)> {
         let middle = |index: usize, count: usize, [low, high]: [f64; 2]| {
             low + (high - low) * (index as f64 + 0.5) / count as f64
         };
-        let counts = self.counts.iter().enumerate().filter(|(_, count)| **count > 0);
-        counts.map(move |(cell, count)| {
-            let [column, row] = [cell % self.columns, cell / self.columns];
-            ([middle(column, self.columns, self.x), middle(row, self.rows, self.y)], *count)
+        self.occupied_cells().map(move |([column, row], count)| {
+            ([middle(column, self.columns, self.x), middle(row, self.rows, self.y)], count)
         })
     }
 

@@ -118,6 +118,47 @@ pub fn escaped(text: &str) -> String {
     escaped
 }
 
+/// Appends a path through points, rounded to parts of a unit (10 or 100): absolute at its start, then relative to the rounded point before,
+/// so that errors do not add up.
+pub(super) fn polyline(path: &mut String, points: impl IntoIterator<Item = [f64; 2]>, parts: f64) {
+    let (mut last, mut letter): (Option<[f64; 2]>, &str) = (None, "l");
+    for point in points {
+        let at = point.map(|part| (parts * part.clamp(-FAR, FAR)).round());
+        match last {
+            None => {
+                let [x, y] = at.map(|part| number(part / parts));
+                path.push_str(&format!("M{x} {y}"));
+            }
+            Some(before) if before == at => {}
+            Some([x, y]) => {
+                path.push_str(letter);
+                let across = short((at[0] - x) / parts);
+                let gap = if letter.is_empty() && !across.starts_with('-') { " " } else { "" };
+                path.push_str(gap);
+                path.push_str(&across);
+                let up = short((at[1] - y) / parts);
+                path.push_str(if up.starts_with('-') { "" } else { " " });
+                path.push_str(&up);
+                letter = "";
+            }
+        }
+        last = Some(at);
+    }
+    // A single point has no length to stroke.
+    if letter == "l" && last.is_some() {
+        path.push_str("h.01");
+    }
+}
+
+/// A coordinate without the zero before its point.
+fn short(value: f64) -> String {
+    let text = number(value);
+    match text.strip_prefix("0.").zip(Some("")).or_else(|| text.strip_prefix("-0.").zip(Some("-"))) {
+        Some((parts, sign)) => format!("{sign}.{parts}"),
+        None => text,
+    }
+}
+
 /// A coordinate with two decimals, without trailing zeros.
 pub(super) fn number(value: f64) -> String {
     let text = format!("{:.2}", value.clamp(-FAR, FAR));

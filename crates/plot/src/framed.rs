@@ -2,10 +2,20 @@
 
 use super::layout::{LARGEST, Layout};
 use super::look::{LegendPlace, Look, LookError};
+use super::series::Page;
 use super::{Data, Figure, Panel, extent};
 
 /// Largest ratio of the drawn range to the displayed range: farther out, coordinates are clamped, and lines would change direction.
 const FARTHEST: f64 = 100.0;
+
+/// Ranges and lines of a panel as they are drawn.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DrawnPanel {
+    /// Ends of the axes, across and up.
+    pub ranges: [[f64; 2]; 2],
+    /// For each series the values of the points through which its line is drawn, with its breaks; empty for other data.
+    pub lines: Vec<Vec<[f64; 2]>>,
+}
 
 impl Look {
     /// Checks that the figure fits into the height of the look, beside its legend.
@@ -24,6 +34,21 @@ impl Look {
         let legend = layout.panels.iter().flat_map(|panel| &panel.legend).map(|(_, text)| text.at[0]);
         let is_apart = self.legend != LegendPlace::Right || reaches < legend.fold(f64::INFINITY, f64::min);
         if is_apart { Ok(()) } else { Err(LookError::Legend(width)) }
+    }
+
+    /// Each panel of a figure as it is drawn.
+    pub fn drawn(&self, figure: &Figure) -> Vec<DrawnPanel> {
+        let layout = Layout::new(figure, self);
+        let of = |page: &Page, data: &Data| match data {
+            Data::Line { points, .. } | Data::Area { points, .. } | Data::Arrow { points, .. } => page.thinned(points),
+            _ => Vec::new(),
+        };
+        let panels = figure.panels.iter().zip(&layout.panels).map(|(panel, place)| {
+            let page = Page::new(place, [false; 2]);
+            let lines = panel.series.iter().map(|series| of(&page, &series.data)).collect();
+            DrawnPanel { ranges: [page.x, page.y], lines }
+        });
+        panels.collect()
     }
 
     /// Restricts the figure to the requested ranges; the vertical one applies to the first panel only.

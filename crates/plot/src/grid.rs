@@ -43,12 +43,22 @@ impl Grid {
     pub(super) fn write(&self, out: &mut impl Write, colour: Colour) -> fmt::Result {
         match self {
             Self::Cells { shades, place, strength } => {
-                let image = image(shades, colour).map_err(|_| fmt::Error)?;
-                let [left, top, width, height, strength] =
-                    [place[0], place[1], place[2], place[3], *strength].map(number);
+                let (image, is_turned) = image(shades, colour).map_err(|_| fmt::Error)?;
+                let [left, top, width, height] = place.map(number);
+                // Turned over its diagonal, an image has the page's vertical axis across.
+                let place = match is_turned {
+                    false => format!(r#"x="{left}" y="{top}" width="{width}" height="{height}""#),
+                    true => {
+                        format!(
+                            r#"transform="matrix(0 1 1 0 0 0)" x="{top}" y="{left}" width="{height}" height="{width}""#
+                        )
+                    }
+                };
+                let strength =
+                    if *strength < 1.0 { format!(r#" opacity="{}""#, number(*strength)) } else { String::new() };
                 writeln!(
                     out,
-                    r#"<image class="dense" x="{left}" y="{top}" width="{width}" height="{height}" opacity="{strength}" preserveAspectRatio="none" href="data:image/png;base64,{image}"/>"#
+                    r#"<image class="dense" {place}{strength} preserveAspectRatio="none" href="data:image/png;base64,{image}"/>"#
                 )
             }
             Self::Dots { at, size } => {
@@ -126,20 +136,42 @@ impl Grid {
     }
 }
 
-/// Shades as a PNG in base 64: one colour, with an opacity for each shade.
-fn image(shades: &Shades, colour: Colour) -> Result<String, png::EncodingError> {
+/// Shades as a PNG in base 64, and whether it is turned over its diagonal. Clouds of speeds stand in columns, which pack better as rows.
+fn image(shades: &Shades, colour: Colour) -> Result<(String, bool), png::EncodingError> {
+    let size = [shades.columns(), shades.rows().len()];
+    // Rows from above.
+    let upright = encoded(size, shades.rows().rev().flatten().copied().collect(), colour)?;
+    let turned = encoded([size[1], size[0]], turned(shades), colour)?;
+    Ok(if turned.len() < upright.len() { (STANDARD.encode(turned), true) } else { (STANDARD.encode(upright), false) })
+}
+
+/// Columns of the shades from the left, each from above, two cells in a byte.
+fn turned(shades: &Shades) -> Vec<u8> {
+    let long = shades.rows().len().div_ceil(2);
+    let mut packed = vec![0; long * shades.columns()];
+    for (row, cells) in shades.rows().rev().enumerate() {
+        let shift = if row % 2 == 0 { 4 } else { 0 };
+        for (column, shade) in shades.cells(cells).enumerate().filter(|(_, shade)| *shade > 0) {
+            packed[column * long + row / 2] |= shade << shift;
+        }
+    }
+    packed
+}
+
+/// A PNG of one colour, with an opacity for each shade; two shades in a byte.
+fn encoded([width, height]: [usize; 2], packed: Vec<u8>, colour: Colour) -> Result<Vec<u8>, png::EncodingError> {
     let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, shades.columns() as u32, shades.rows().len() as u32);
+    let mut encoder = png::Encoder::new(&mut bytes, width as u32, height as u32);
     encoder.set_color(png::ColorType::Indexed);
     encoder.set_depth(png::BitDepth::Four);
     let alpha: Vec<u8> = (0..=SHADES).map(alpha).collect();
     encoder.set_palette(colour.rgb().repeat(alpha.len()));
     encoder.set_trns(alpha);
     encoder.set_compression(png::Compression::High);
+    // Differences of shades pack worse than the shades.
+    encoder.set_filter(png::Filter::NoFilter);
     let mut writer = encoder.write_header()?;
-    // Rows from above.
-    let packed: Vec<u8> = shades.rows().rev().flatten().copied().collect();
     writer.write_image_data(&packed)?;
     writer.finish()?;
-    Ok(STANDARD.encode(bytes))
+    Ok(bytes)
 }

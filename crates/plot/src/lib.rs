@@ -24,6 +24,7 @@ use serde::Serialize;
 
 pub use density::{Cloud, Density};
 pub use element::{dashes, stroke_width};
+pub use framed::DrawnPanel;
 pub use look::{LegendPlace, Look, Theme, TitleChoice};
 pub use series::dot_size;
 pub use ticks::TickSpacing;

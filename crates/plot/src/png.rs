@@ -8,7 +8,7 @@ use resvg::usvg::Tree;
 use super::grid::Grid;
 use super::layout::Layout;
 use super::look::Look;
-use super::sheet::Layer;
+use super::sheet::{Host, Layer};
 use super::svg;
 use super::{Colour, Figure};
 
@@ -58,7 +58,7 @@ pub fn render(figure: Figure, look: &Look, width: u32) -> Result<Vec<u8>, PngErr
     let fonts = look.fonts.clone().unwrap_or_default();
     let scale = f64::from(width) / look.across();
     let height = (Layout::new(&figure, look).height * scale).ceil() as u32;
-    let layers = svg::write(&figure, look, true)?.into_iter().map(|layer| match layer {
+    let layers = svg::write(&figure, look, true, Host::File)?.into_iter().map(|layer| match layer {
         Layer::Drawing(text) => fonts.tree(&text).map(|tree| Paint::Drawing(Box::new(tree))),
         Layer::Grid(grid, colour, frame) => Ok(Paint::Grid(grid, colour, frame)),
     });

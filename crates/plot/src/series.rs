@@ -1,20 +1,36 @@
-//! The inside of a frame: each series as SVG, with no more bytes than print can show.
+//! The inside of a frame: each series as SVG, with no more bytes than print or a page can show.
 
 use std::fmt::{self, Write};
 
 use super::density::{Density, SHADES, Shades};
-use super::element::{FAR, fill, markers, number, rim, stroke_width, stroked};
+use super::element::{FAR, fill, markers, number, polyline, rim, stroke_width, stroked};
 use super::grid::Grid;
-use super::layout::share;
-use super::sheet::Sheet;
-use super::{Colour, Data, Marker, Series, Stroke, thin, words};
+use super::layout::{Frame, PanelLayout, share};
+use super::sheet::{Host, Sheet};
+use super::{BREAK, Colour, Data, Marker, Series, Stroke, thin, words};
 
 /// Most points of a line; a longer line is counted on a grid instead.
 const MOST_POINTS: usize = 40_000;
 /// Most cells, in all, along a line counted on a grid: a second of work.
 const MOST_STEPS: usize = 100_000_000;
-/// Most occupied cells that are drawn as dots; with more, an image is embedded.
-const MOST_DOTS: usize = 25_000;
+impl Host {
+    /// Most occupied cells that are drawn as dots; with more, an image is embedded. In a page an image takes its place as soon as dots are
+    /// as small as the cells: it has a fourth of the bytes.
+    fn most_dots(self) -> usize {
+        match self {
+            Self::File => 25_000,
+            Self::Page => 6000,
+        }
+    }
+
+    /// Parts of a unit to which lines are rounded: a tenth is a fortieth of a millimetre on paper.
+    fn parts(self) -> f64 {
+        match self {
+            Self::File => 100.0,
+            Self::Page => 10.0,
+        }
+    }
+}
 
 /// Diameter of the dots for so many occupied cells. A machine with few motions has some hundred; smaller dots would vanish in print.
 pub fn dot_size(cells: usize) -> f64 {
@@ -38,6 +54,24 @@ pub(super) struct Page {
 }
 
 impl Page {
+    pub(super) fn new(place: &PanelLayout, is_rimmed: [bool; 2]) -> Self {
+        let Frame { width, height, .. } = place.frame;
+        Self { width, height, x: place.across.range, y: place.range, is_rimmed }
+    }
+
+    /// The values of the points through which a line is drawn, with its breaks.
+    pub(super) fn thinned(&self, points: &[[f64; 2]]) -> Vec<[f64; 2]> {
+        let value = |share: f64, [low, high]: [f64; 2]| low + share * (high - low);
+        let mut kept = Vec::new();
+        for stroke in thin::strokes(points.iter().map(|point| self.at(*point)), MOST_POINTS) {
+            kept.extend((!kept.is_empty()).then_some(BREAK));
+            kept.extend(
+                stroke.iter().map(|[x, y]| [value(x / self.width, self.x), value(1.0 - y / self.height, self.y)]),
+            );
+        }
+        kept
+    }
+
     fn at(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let at = [self.width * share(x, self.x), self.height * (1.0 - share(y, self.y))];
         if at.iter().all(|part| part.is_finite()) { at.map(|part| part.clamp(-FAR, FAR)) } else { [f64::NAN; 2] }
@@ -78,18 +112,12 @@ impl Page {
         let (mut edge, mut area) = (String::new(), String::new());
         for stroke in strokes {
             let mut path = String::new();
-            for (index, [x, y]) in stroke.iter().enumerate() {
-                write!(path, "{}{} {}", if index == 0 { 'M' } else { 'L' }, number(*x), number(*y))?;
-            }
+            polyline(&mut path, stroke.iter().copied(), out.host().parts());
             if let (true, Some(first), Some(last)) = (filled, stroke.first(), stroke.last()) {
                 let floor = number(self.height + 2.0);
                 write!(area, "{path}L{} {floor}L{} {floor}z", number(last[0]), number(first[0]))?;
             }
-            // A single point has no length to stroke.
             edge.push_str(&path);
-            if stroke.len() == 1 {
-                edge.push_str("h0.01");
-            }
         }
         if !area.is_empty() {
             writeln!(out, r#"<path d="{area}" fill-opacity="0.22" {}/>"#, fill(colour))?;
@@ -109,9 +137,7 @@ impl Page {
         let mut path = String::new();
         for run in edges.split(|edge| edge.iter().any(|part| part.is_nan())).filter(|run| !run.is_empty()) {
             let around = run.iter().map(side(1)).chain(run.iter().rev().map(side(2))).filter(|at| !at[0].is_nan());
-            for (index, [x, y]) in around.enumerate() {
-                write!(path, "{}{} {}", if index == 0 { 'M' } else { 'L' }, number(x), number(y))?;
-            }
+            polyline(&mut path, around, out.host().parts());
             path.push('z');
         }
         if path.len() < 2 {
@@ -167,7 +193,7 @@ impl Page {
     fn density(&self, out: &mut Sheet, density: &Density, colour: Colour) -> fmt::Result {
         match density.occupied() {
             0 => Ok(()),
-            cells if cells <= MOST_DOTS => out.grid(self.dots(density, cells), colour),
+            cells if cells <= out.host().most_dots() => out.grid(self.dots(density, cells), colour),
             _ => out.grid(self.cells(density, density.shades(true), 1.0), colour),
         }
     }
@@ -186,6 +212,8 @@ impl Page {
             let dot = self.at([middle(cell % columns, columns, x), middle(cell / columns, rows, y)]);
             at[usize::from(shade - 1)].push(dot.map(|part| (10.0 * part).round() as i64));
         }
+        // Clouds of speeds stand in columns: along these the steps are shortest.
+        at.iter_mut().for_each(|dots| dots.sort_unstable());
         Grid::Dots { at, size: dot_size(cells) }
     }
 

@@ -5,6 +5,15 @@ use std::fmt::{self, Write};
 use super::Colour;
 use super::grid::Grid;
 
+/// Surroundings of an SVG.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Host {
+    /// A file of its own.
+    File,
+    /// A page with one style for all its figures. Frames say their ranges, so that a script finds values.
+    Page,
+}
+
 /// A layer of the drawing; the first is the lowest.
 pub(super) enum Layer {
     /// A whole SVG document.
@@ -18,6 +27,7 @@ pub(super) struct Sheet {
     text: String,
     layers: Vec<Layer>,
     apart: bool,
+    host: Host,
     /// Start tags of a document and of a group in it.
     page: String,
     /// Start tag of the open frame, and the frame's position.
@@ -32,14 +42,23 @@ impl Write for Sheet {
 
 impl Sheet {
     /// Creates an empty sheet; `page` opens a document and a group in it. Grids are part of the text unless they are kept `apart`.
-    pub(super) fn new(page: String, apart: bool) -> Self {
-        Self { text: String::new(), layers: Vec::new(), apart, page, frame: (String::new(), [0.0; 4]) }
+    pub(super) fn new(page: String, apart: bool, host: Host) -> Self {
+        Self { text: String::new(), layers: Vec::new(), apart, host, page, frame: (String::new(), [0.0; 4]) }
     }
 
-    /// Opens a frame: left, top, width and height.
-    pub(super) fn open_frame(&mut self, frame: [f64; 4]) {
+    /// The surroundings.
+    pub(super) fn host(&self) -> Host {
+        self.host
+    }
+
+    /// Opens a frame: left, top, width and height, with its ranges across and up.
+    pub(super) fn open_frame(&mut self, frame: [f64; 4], [x, y]: [[f64; 2]; 2]) {
         let [left, top, width, height] = frame.map(super::element::number);
-        let tag = format!("<svg x=\"{left}\" y=\"{top}\" width=\"{width}\" height=\"{height}\">\n");
+        let ranges = match self.host {
+            Host::File => String::new(),
+            Host::Page => format!(" data-x=\"{} {}\" data-y=\"{} {}\"", x[0], x[1], y[0], y[1]),
+        };
+        let tag = format!("<svg x=\"{left}\" y=\"{top}\" width=\"{width}\" height=\"{height}\"{ranges}>\n");
         self.text.push_str(&tag);
         self.frame = (tag, frame);
     }

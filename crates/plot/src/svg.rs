@@ -6,14 +6,14 @@ use std::fmt::{self, Write};
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use resvg::usvg::Tree;
+use resvg::usvg::fontdb::{Database, ID};
 
 use super::element::{escaped, fill, markers, number, stroke, stroke_width, stroked};
-use super::font::{cut, used};
+use super::font::{Glyphs, cut, used};
 use super::layout::{Frame, Layout, MarkLine, PanelLayout, SAMPLE, TEXT, TITLE, Text, share};
 use super::look::{Look, Theme};
 use super::series::Page;
-use super::sheet::{Layer, Sheet};
+use super::sheet::{Host, Layer, Sheet};
 use super::{Colour, Data, Figure, Marker, Panel, Series};
 
 /// Width of strokes above which a marker on one would not be seen.
@@ -40,19 +40,48 @@ pub fn render(figure: &Figure, look: &Look) -> Result<String, SvgError> {
     let own = document(figure, look)?;
     match &look.fonts {
         Some(fonts) => {
-            let letters = format!("{HEAD}<style>{}</style>\n", letters(&fonts.tree(&own)?)?.trim_end());
+            let tree = fonts.tree(&own)?;
+            let letters = format!("{HEAD}<style>{}</style>\n", letters(tree.fontdb(), used(&tree))?.trim_end());
             Ok(own.replacen(HEAD, &letters, 1))
         }
         None => Ok(own),
     }
 }
 
-/// Fonts embedded in the figure, for a style.
-fn letters(tree: &Tree) -> Result<String, fmt::Error> {
+/// Renders the figure for a page that has the [`page_style`] of all its figures: without fonts and dark colours of its own, with denser
+/// clouds as images, and with the ranges of its frames.
+pub fn inset(figure: &Figure, look: &Look) -> Result<String, SvgError> {
+    Ok(whole(write(figure, look, false, Host::Page)?))
+}
+
+/// The style of a page's figures: their fonts, each once, and their colours on a dark screen.
+pub fn page_style<'a>(look: &Look, insets: impl IntoIterator<Item = &'a str>) -> Result<String, SvgError> {
+    let mut style = if look.theme == Theme::Screen { dark_screen() } else { String::new() };
+    let Some(fonts) = &look.fonts else { return Ok(style) };
+    let mut all: Vec<(ID, Glyphs)> = Vec::new();
+    let mut database = None;
+    for inset in insets {
+        let tree = fonts.tree(inset)?;
+        for (id, glyphs) in used(&tree) {
+            match all.iter_mut().find(|(other, _)| *other == id) {
+                Some((_, known)) => known.extend(glyphs),
+                None => all.push((id, glyphs)),
+            }
+        }
+        database = Some(std::sync::Arc::clone(tree.fontdb()));
+    }
+    if let Some(database) = database {
+        style.push_str(letters(&database, all)?.trim_end());
+    }
+    Ok(style)
+}
+
+/// Fonts reduced to the glyphs of figures, for a style.
+fn letters(database: &Database, used: Vec<(ID, Glyphs)>) -> Result<String, fmt::Error> {
     let mut faces = String::new();
-    for (id, glyphs) in used(tree) {
-        let name = tree.fontdb().face(id).and_then(|face| Some(face.families.first()?.0.clone())).unwrap_or_default();
-        let face = tree.fontdb().with_face_data(id, |data, index| cut(data, index, &glyphs)).flatten();
+    for (id, glyphs) in used {
+        let name = database.face(id).and_then(|face| Some(face.families.first()?.0.clone())).unwrap_or_default();
+        let face = database.with_face_data(id, |data, index| cut(data, index, &glyphs)).flatten();
         if let Some(face) = face {
             let (name, data) = (escaped(&name), STANDARD.encode(face.data));
             write!(faces, "@font-face {{ font-family: '{name}'; src: url(data:font/ttf;base64,{data}) }} ")?;
@@ -63,15 +92,20 @@ fn letters(tree: &Tree) -> Result<String, fmt::Error> {
 
 /// The document without embedded fonts.
 pub(super) fn document(figure: &Figure, look: &Look) -> Result<String, fmt::Error> {
-    let drawings = write(figure, look, false)?.into_iter().filter_map(|layer| match layer {
+    Ok(whole(write(figure, look, false, Host::File)?))
+}
+
+/// Text of the drawings among layers.
+fn whole(layers: Vec<Layer>) -> String {
+    let drawings = layers.into_iter().filter_map(|layer| match layer {
         Layer::Drawing(text) => Some(text),
         Layer::Grid(..) => None,
     });
-    Ok(drawings.collect())
+    drawings.collect()
 }
 
 /// Writes the figure in layers, with dense grids among them if they are kept `apart`, else as one document.
-pub(super) fn write(figure: &Figure, look: &Look, apart: bool) -> Result<Vec<Layer>, fmt::Error> {
+pub(super) fn write(figure: &Figure, look: &Look, apart: bool, host: Host) -> Result<Vec<Layer>, fmt::Error> {
     let wide = look.across();
     let layout = Layout::new(figure, look);
     let height = layout.height;
@@ -81,14 +115,22 @@ pub(super) fn write(figure: &Figure, look: &Look, apart: bool) -> Result<Vec<Lay
         false => r#"width="100%""#.into(),
     };
     let family = look.fonts.as_ref().map(|fonts| format!("'{}', ", escaped(fonts.family()))).unwrap_or_default();
+    // In a page, a title would hide the values under the pointer.
+    let named = match host {
+        Host::File => String::new(),
+        Host::Page => format!(r#" aria-label="{}""#, escaped(&figure.title)),
+    };
     let page = format!(
-        r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {wide} {height}" {size} role="img" font-family="{family}sans-serif" font-size="{TEXT}">"#
+        r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {wide} {height}" {size} role="img"{named} font-family="{family}sans-serif" font-size="{TEXT}">"#
     );
     let ink = format!("<g {}>", fill(Colour::Ink));
-    let mut out = Sheet::new(format!("{page}\n{ink}\n"), apart);
-    writeln!(out, "{page}\n<title>{}</title>", escaped(&figure.title))?;
-    if look.theme == Theme::Screen {
-        style(&mut out)?;
+    let mut out = Sheet::new(format!("{page}\n{ink}\n"), apart, host);
+    writeln!(out, "{page}")?;
+    if host == Host::File {
+        writeln!(out, "<title>{}</title>", escaped(&figure.title))?;
+    }
+    if look.theme == Theme::Screen && host == Host::File {
+        writeln!(out, "<style>{}</style>", dark_screen())?;
     }
     writeln!(out, r##"<rect class="paper" width="{wide}" height="{height}" fill="#ffffff"/>"##)?;
     writeln!(out, "{ink}")?;
@@ -115,13 +157,16 @@ pub(super) fn write(figure: &Figure, look: &Look, apart: bool) -> Result<Vec<Lay
     Ok(out.layers())
 }
 
-/// Colours on a dark screen.
-fn style(out: &mut Sheet) -> fmt::Result {
-    write!(out, "<style>@media screen and (prefers-color-scheme: dark) {{ .paper {{ fill: {DARK_PAPER} }}")?;
-    for (class, _, dark) in Colour::ALL.map(Colour::shades) {
-        write!(out, " .s-{class} {{ stroke: {dark} }} .f-{class} {{ fill: {dark} }}")?;
-    }
-    writeln!(out, " .halo {{ stroke: {DARK_PAPER} }} .dense {{ filter: {DARK_IMAGE} }} }}</style>")
+/// Style of colours on a dark screen.
+fn dark_screen() -> String {
+    let colours = Colour::ALL.map(Colour::shades);
+    let colours = colours
+        .map(|(class, _, dark)| format!(" .s-{class} {{ stroke: {dark} }} .f-{class} {{ fill: {dark} }}"))
+        .concat();
+    format!(
+        "@media screen and (prefers-color-scheme: dark) {{ .paper {{ fill: {DARK_PAPER} }}{colours} .halo {{ stroke: {DARK_PAPER} }} \
+         .dense {{ filter: {DARK_IMAGE} }} }}"
+    )
 }
 
 fn panel(out: &mut Sheet, panel: &Panel, layout: &Layout, place: &PanelLayout) -> fmt::Result {
@@ -129,9 +174,9 @@ fn panel(out: &mut Sheet, panel: &Panel, layout: &Layout, place: &PanelLayout) -
     let over_regions = panel.series.iter().any(|series| matches!(series.data, Data::Region { .. }));
     let is_thick = |series: &Series| series.data.style().1.is_some_and(|stroke| stroke_width(stroke) > THICK);
     let is_rimmed = [over_regions, over_regions || panel.series.iter().any(is_thick)];
-    let page = Page { width: frame.width, height: frame.height, x: place.across.range, y: place.range, is_rimmed };
+    let page = Page::new(place, is_rimmed);
     let Frame { left, top, width, height } = *frame;
-    out.open_frame([left, top, width, height]);
+    out.open_frame([left, top, width, height], [page.x, page.y]);
     let [left, top, width, height] = [left, top, width, height].map(number);
     for mark in layout.marks.iter().filter(|mark| mark.inside && !place.across.is_own) {
         let x = number(mark.at - frame.left);

@@ -179,11 +179,16 @@ impl Page {
 
     /// Clicks in the middle of an element.
     pub fn click(&mut self, element: &str) {
-        let [x, y] = self.place(element, [0.5, 0.5]);
-        for kind in ["mousePressed", "mouseReleased"] {
-            let parameters = json!({ "type": kind, "x": x, "y": y, "button": "left", "clickCount": 1 });
-            self.call("Input.dispatchMouseEvent", parameters);
-        }
+        let at = self.place(element, [0.5, 0.5]);
+        self.mouse("mousePressed", at);
+        self.mouse("mouseReleased", at);
+    }
+
+    /// Moves the mouse to a place in the window (`mouseMoved`), or presses or releases its button there.
+    pub fn mouse(&mut self, kind: &str, [x, y]: [f64; 2]) {
+        let button = if kind == "mouseMoved" { "none" } else { "left" };
+        let parameters = json!({ "type": kind, "x": x, "y": y, "button": button, "clickCount": 1 });
+        self.call("Input.dispatchMouseEvent", parameters);
     }
 
     /// Console messages, exceptions and log entries.

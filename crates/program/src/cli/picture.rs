@@ -225,7 +225,7 @@ impl Canvas {
         let mut files = Vec::new();
         if let Some(([mut script, mut data], name)) = self.script {
             script.write_all(matplotlib(&figure, look, &name).as_bytes())?;
-            data.write_all(csv::figure(&figure, csv::OF_SCRIPT).as_bytes())?;
+            data.write_all(csv::figure(&figure).as_bytes())?;
             files.extend([script, data]);
         }
         let bytes = match self.kind {

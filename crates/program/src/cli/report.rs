@@ -8,6 +8,7 @@ use super::numbers::rpm_range;
 use super::picture::{LookArguments, ends_in};
 use super::progress::watched;
 use super::{CommandError, Exit, ModelArgument, Session};
+use crate::live;
 use crate::pages::report::html;
 use crate::report::Report;
 use corner_impact::file::Output;
@@ -67,6 +68,9 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     };
     session.wishes.file = path.clone();
     let look = arguments.look.look()?;
+    if let (Some(_), Err(why)) = (&path, live::module()) {
+        session.note(&format!("the pictures of the page will be still: {why}"));
+    }
     // The file is begun before the work: a name that cannot be is told at once.
     let file = match &path {
         Some(path) => Some(Output::create(path, &mut *session.out)?),

@@ -1,7 +1,5 @@
 //! Figures, one per file: data, plot, title, caption and row of the
 //! table. Figures that only a command draws ([`basins_figure`], [`curve_figure`], ...) are not in the table.
-//!
-//! [`mod@through_corner`] is the animated one: orbits and runs at speeds on either side of the corner impact.
 
 mod basins;
 mod branches;
@@ -19,7 +17,6 @@ mod phase_plane;
 pub mod section;
 mod speeds;
 mod subject;
-pub mod through_corner;
 mod trace;
 
 use serde::Serialize;
@@ -44,7 +41,6 @@ pub use phase_plane::phase_plane;
 pub use speeds::{impacts_by_speed, speeds_figure};
 pub(crate) use subject::NO_STUDY;
 pub use subject::{Effort, Fast, FigureContext, ShownSpeeds, Slow};
-pub use through_corner::through_corner;
 pub use trace::{TracedRun, time_trace, with_force};
 
 /// All figures of the report, in the paper's order.
@@ -69,6 +65,11 @@ pub(crate) static FIGURES: [Entry; 15] = [
 /// Name of the figure that shows proved chaos.
 pub(crate) fn chaotic_set() -> &'static str {
     chaos::CHAOTIC_SET.id
+}
+
+/// Name of the figure that shows impacts and orbits at speeds around the corner impact.
+pub(crate) fn around_corner() -> &'static str {
+    branches::FAST_IMPACTS.id
 }
 
 /// A row of the table of figures.

@@ -80,7 +80,7 @@ pub(crate) fn explained(it: &Explanation) -> Vec<Block> {
 /// The function, the proof and the tests of a quantity; each is empty if there is none.
 pub(crate) fn behind(it: &Explanation) -> [Words; 3] {
     let code = |text: &str| Words::from(Span::Code(text.into()));
-    let place = |file: &str, name: &str| words![code(file), ": ", code(name)];
+    let place = |file: &str, name: &str| code(&format!("{file}: {name}"));
     let function = it.code.as_ref().map(|function| place(&function.file, &function.function));
     let proof = it.derivation.as_ref().map(|proof| words![code(&proof.script), ": ", &proof.statement]);
     let tests = Words::joined(it.tests.iter().map(|test| place(&test.file, &test.test)), ", ");

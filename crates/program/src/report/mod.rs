@@ -1,16 +1,14 @@
 //! All results for one model in one value: the contents of the HTML page.
 
 pub(crate) mod quantities;
-pub mod through;
 
 use serde::Serialize;
 
 use crate::figures::{
     Captioned, FigureContext, NO_STUDY, RenderedFigure, corner_marks, design_figure, impacts_by_speed, plates,
-    speeds_figure, through_corner,
+    speeds_figure,
 };
 use crate::report::quantities::{ReportQuantity, quantities};
-use crate::report::through::ThroughCorner;
 use crate::show::words;
 use corner_impact::agreement::by_quantity;
 use corner_impact::cam::{Cam, Jet, Side};
@@ -42,8 +40,6 @@ pub struct Report {
     pub model: ModelSheet,
     /// The corner impact and its map by every route, or the reason why there is none.
     pub verification: Result<Verification, String>,
-    /// Motion at speeds on either side of the corner impact, or the reason why there is none.
-    pub through: Result<ThroughCorner, String>,
     /// The paper's statements, if the model is the paper's.
     pub claims: Option<Claims>,
     /// Speed at which the follower first leaves the cam, from the contact force.
@@ -126,8 +122,6 @@ corner_impact::document!(Report as it {
         .flat_map(|found| [Side::Minus, Side::Plus].map(|side| MapTable { found, side }))
         .collect::<Vec<_>>(),
     quantities: it.verification.iter().flat_map(|found| by_quantity(&found.comparisons)).collect::<Vec<_>>(),
-    through: it.through.as_ref().ok(),
-    no_through: it.through.as_ref().err(),
     claims: it.claims,
     separation_rpm: it.margin.as_ref().map(|margin| margin.separation_rpm),
     margin: it.margin,
@@ -206,7 +200,6 @@ const VERIFIED: f64 = 0.1;
 const HELD: f64 = 0.25;
 const SURVEYED: f64 = 0.55;
 const LOADS: f64 = 0.58;
-const THROUGH: f64 = 0.6;
 
 impl Report {
     /// Computes the report on a model, at speeds of this range, rpm, or of the model's own.
@@ -240,10 +233,8 @@ impl Report {
         let asked = Asked { rpm: Some(range), speeds: LOADED, drawn: Some(DRAWN), ..Asked::default() };
         let design = design(model, &asked, &part(SURVEYED, LOADS)).ok();
         let loads = design.as_ref().map(|found| loads(model, found, range));
-        part(LOADS, THROUGH).at("the orbits on both sides of the corner impact", 0, 1);
-        let through = verification.as_ref().map_err(String::clone).and_then(|found| through(model, &cam, found));
         let subject = FigureContext::with(model, verification.clone(), rpm)?;
-        let drawing = part(THROUGH, 1.0);
+        let drawing = part(LOADS, 1.0);
         let plates = plates(&subject, &mut |done, total| drawing.at("the figures", done as u64, total as u64));
         let agrees = verification.as_ref().map_or(true, |found| found.agrees)
             && claims.as_ref().is_none_or(|claims| claims.agrees);
@@ -265,7 +256,6 @@ impl Report {
             is_paper,
             model: sheet,
             verification,
-            through,
             claims,
             separation,
             separation_error: separation_errors.map(|[error, _]| error),
@@ -338,19 +328,6 @@ fn attractors(model: &Model, cam: &Cam, found: &SpeedSurvey) -> RenderedFigure {
     let [low, high] = found.range;
     let command = command("speeds", model, &format!("--rpm {low}:{high} --out attractors.svg"));
     RenderedFigure { id: "attractors", place: "", title, command, drawn: Ok(Captioned { figure, caption }) }
-}
-
-/// Motion on either side of the corner impact, or the reason why there is none.
-fn through(model: &Model, cam: &Cam, found: &Verification) -> Result<ThroughCorner, String> {
-    match through_corner(model, cam, &found.at) {
-        Ok(Some(found_there)) => {
-            let through =
-                ThroughCorner::new(found_there, cam, found.at.corner.angle).map_err(|error| error.to_string());
-            through.map(|through| through.in_units(&model.units))
-        }
-        Ok(None) => Err("the corner impact is not one of an orbit with one impact a revolution".to_owned()),
-        Err(error) => Err(format!("a run cannot go on: {error}")),
-    }
 }
 
 /// A part of the work, which reports its progress as a share of the whole.

@@ -307,17 +307,13 @@ pub(crate) fn curves(parameter: &str, curves: &[EventCurve], units: &Units) -> S
     lines
 }
 
-/// Digits of the values in a figure's table, across and up.
-pub(crate) type FigureDigits = [usize; 2];
-/// Digits of a page: six across, because speeds may differ little, and five up.
-pub(crate) const OF_PAGE: FigureDigits = [6, 5];
-/// Digits from which a figure is drawn again, however narrow its range.
-pub(crate) const OF_SCRIPT: FigureDigits = [12, 9];
+/// Digits across and up from which a figure is drawn again, however narrow its range.
+const FIGURE_DIGITS: [usize; 2] = [12, 9];
 
 /// Table of a figure's data: a row for each point of its lines and marks, and for each cell of its clouds with the number of points in it.
 /// A region has a row for each rectangle, with the number of cells, and a band one for each place. Cells have one digit less, as two
 /// thousand lie side by side.
-pub(crate) fn figure(figure: &Figure, digits: FigureDigits) -> String {
+pub(crate) fn figure(figure: &Figure) -> String {
     let mut rows = String::from("panel,series,kind,x,y,count,width,height,panel_number,series_number\n");
     let word = |text: &str| format!("\"{}\"", text.replace('"', "\"\""));
     for (panel_number, panel) in figure.panels.iter().enumerate() {
@@ -332,7 +328,7 @@ pub(crate) fn figure(figure: &Figure, digits: FigureDigits) -> String {
             let tails = format!("{panel_number},{series_number}");
             let mut row = |kind: &str, [x, y]: [f64; 2], count: usize, [wide, high]: [f64; 2]| {
                 let is_cell = kind == "cell";
-                let [across, up] = digits.map(|digits| digits - usize::from(is_cell));
+                let [across, up] = FIGURE_DIGITS.map(|digits| digits - usize::from(is_cell));
                 let [x, y, wide, high] =
                     [(x, across), (y, up), (wide, across), (high, up)].map(|(it, to)| shown(it, to));
                 rows.push_str(&format!("{heads},{kind},{x},{y},{count},{wide},{high},{tails}\n"));

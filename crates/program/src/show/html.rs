@@ -6,12 +6,21 @@ use maud::{Markup, html};
 use crate::show::block::{Block, Column, Span, Table, TextMark, Words};
 use crate::show::digits::{Digits, typeset};
 
-/// Blocks in order.
+/// Most rows of a table that is not folded.
+const LONG: usize = 24;
+
+/// Blocks in order. A long table is folded.
 pub(crate) fn blocks(blocks: &[Block]) -> Markup {
-    html! { @for block in blocks { (self::block(block)) } }
+    html! { @for block in blocks { (self::block(block, false)) } }
 }
 
-fn block(block: &Block) -> Markup {
+/// Blocks that are folded together, so that no table in them is folded again.
+fn folded(blocks: &[Block]) -> Markup {
+    html! { @for block in blocks { (self::block(block, true)) } }
+}
+
+fn block(block: &Block, is_folded: bool) -> Markup {
+    let inner = |inside: &[Block]| if is_folded { folded(inside) } else { blocks(inside) };
     html! {
         @match block {
             Block::Title(text) => h1 { (words(text)) }
@@ -19,14 +28,17 @@ fn block(block: &Block) -> Markup {
             Block::Line(text) | Block::Paragraph(_, text) => @if !text.is_empty() { p { (words(text)) } }
             Block::Command(line) => p { code { (line) } }
             Block::Note(text) => p.note { (words(text)) }
-            Block::Entries(_, entries) => table.entries {
-                tbody { @for (name, text) in entries { tr { th scope="row" { (words(name)) } td { (words(text)) } } } }
+            Block::Entries(_, entries) => dl.entries {
+                @for (name, text) in entries { dt { (words(name)) } dd { (words(text)) } }
+            }
+            Block::Table(table) if !is_folded && table.rows.len() > LONG => {
+                details { summary { (table.label) " (" (table.rows.len()) " rows)" } (self::table(table)) }
             }
             Block::Table(table) => (self::table(table)),
             Block::List(items) => ul { @for item in items { li { (words(item)) } } }
-            Block::Details(summary, inside) => details { summary { (words(summary)) } (blocks(inside)) }
-            Block::Full(inside) => (blocks(inside)),
-            Block::About(what, inside) => div data-about=(what) { (blocks(inside)) },
+            Block::Details(summary, inside) => details { summary { (words(summary)) } (folded(inside)) }
+            Block::Full(inside) => (inner(inside)),
+            Block::About(what, inside) => div data-about=(what) { (inner(inside)) },
             Block::Markup(markup) => (markup),
             Block::Brief(_) | Block::Gap => {}
         }
@@ -41,23 +53,29 @@ pub(crate) fn wide(label: &str, body: &Markup) -> Markup {
 fn table(table: &Table) -> Markup {
     let number = |index: usize| table.columns.get(index).filter(|column| !column.left).map(|_| "n");
     let headed = table.columns.iter().any(|column| !column.head.is_empty());
-    // Heads for narrow pages, where the cells of a row are below each other.
-    let head_of =
-        |index: usize| table.columns.get(index).map(|column| plain(&column.head)).filter(|head| !head.is_empty());
+    // Heads for narrow pages, where the cells of a row are below each other: the style sheet takes them from the table.
+    let quoted = |text: &str| format!("'{}'", text.replace('\\', "\\\\").replace('\'', "\\'"));
+    let heads: String = (table.columns.iter().zip(1..))
+        .map(|(column, place)| (plain(&column.head), place))
+        .filter(|(head, _)| !head.is_empty())
+        .map(|(head, place): (String, i32)| format!("--h{place}:{};", quoted(&head)))
+        .collect();
     let head =
         |column: &Column| html! { th class=[(!column.left).then_some("n")] scope="col" { (words(&column.head)) } };
     wide(
         &table.label,
         &html! {
-            table {
+            table style=[Some(heads).filter(|heads| !heads.is_empty())] {
                 caption { (table.label) }
                 @if headed { thead { tr { @for column in &table.columns { (head(column)) } } } }
                 tbody {
                     @for row in &table.rows {
-                        tr.disagrees[row.is_bad] {
+                        tr class=[row.is_bad.then_some("disagrees")] {
                             @for (index, cell) in row.cells.iter().enumerate() {
-                                @if index == 0 { th class=[number(0)] scope="row" data-head=[head_of(0)] { (words(cell)) } }
-                                @else { td class=[number(index)] data-head=[head_of(index)] { (words(cell)) } }
+                                @let (about, cell) = whole_cell(cell);
+                                @let (value, text) = number_cell(cell);
+                                @if index == 0 { th class=[number(0)] scope="row" data-about=[about] data-value=[value] { (text) } }
+                                @else { td class=[number(index)] data-about=[about] data-value=[value] { (text) } }
                             }
                         }
                     }
@@ -65,6 +83,23 @@ fn table(table: &Table) -> Markup {
             }
         },
     )
+}
+
+/// The name for which all words of a cell are, and these words.
+fn whole_cell(cell: &Words) -> (Option<&str>, &Words) {
+    match cell.0.as_slice() {
+        [Span::About(about, inside)] => (Some(about), inside),
+        _ => (None, cell),
+    }
+}
+
+/// The number that a cell is, if it is one, and the cell's text. The cell itself has the number's digits: half the elements.
+fn number_cell(cell: &Words) -> (Option<f64>, Markup) {
+    match cell.0.as_slice() {
+        [Span::Number(value, digits)] if value.is_finite() => (Some(*value), typeset(&digits.typed(*value))),
+        [Span::Against(value, other, digits)] => (Some(*value), compared(*value, *other, *digits)),
+        _ => (None, words(cell)),
+    }
 }
 
 /// Words as plain text, without content that only a browser shows.
@@ -116,7 +151,7 @@ fn span(span: &Span) -> Markup {
                     (sign) data value=(im) { (typeset(&digits.typed(im.abs()))) } "\u{202f}i"
                 }
             },
-            Span::Against(value, other, digits) => (against(*value, *other, *digits)),
+            Span::Against(value, other, digits) => data value=(value) { (compared(*value, *other, *digits)) },
             Span::Formula(text) => span.symbol { (parts(formula::formula(text))) },
             Span::Matrix(rows, digits) => table.matrix {
                 tbody { @for row in rows { tr { @for entry in row { td { (digits.markup(*entry)) } } } } }
@@ -135,10 +170,10 @@ fn span(span: &Span) -> Markup {
 }
 
 /// Writes a number and underlines the digits that differ from the other one.
-fn against(value: f64, other: f64, digits: Digits) -> Markup {
+fn compared(value: f64, other: f64, digits: Digits) -> Markup {
     let (text, other) = (digits.typed(value), digits.typed(other));
     let same: usize =
         text.chars().zip(other.chars()).take_while(|(one, two)| one == two).map(|(one, _)| one.len_utf8()).sum();
     let (head, tail) = text.split_at(same);
-    html! { data value=(value) { (typeset(head)) @if !tail.is_empty() { u { (typeset(tail)) } } } }
+    html! { (typeset(head)) @if !tail.is_empty() { u { (typeset(tail)) } } }
 }

@@ -3,7 +3,7 @@
 
 use crate::figures::chaotic_set;
 use crate::pages::design::leaves;
-use crate::pages::report::html::{HtmlError, plates};
+use crate::pages::report::html::plates::{DrawnFigures, plate};
 use crate::pages::speeds::together;
 use crate::report::Report;
 use crate::show::block::{Block, PageSection, Span, TextMark, Words, about, words};
@@ -12,11 +12,11 @@ use crate::show::sources::Sources;
 use crate::show::words::hypotheses;
 use corner_impact::study::design::contact::Separation;
 
-pub(crate) fn section(report: &Report) -> Result<PageSection, HtmlError> {
-    let picture = report.overview.as_ref().map(|plate| plates::plate(plate, report)).transpose()?;
+pub(crate) fn section(report: &Report, figures: &DrawnFigures) -> PageSection {
+    let picture = report.overview.as_ref().map(|picture| plate(picture, report, figures));
     let said = [Some(separates(report)), margin(report), impacts(report), coexistence(report), Some(proved(report))];
     let blocks = picture.into_iter().chain([Block::List(said.into_iter().flatten().collect())]).collect();
-    Ok(PageSection { id: "answer", title: "In brief".into(), blocks })
+    PageSection { id: "answer", title: "In brief".into(), blocks }
 }
 
 /// Sources of the uncertainty of the machine.

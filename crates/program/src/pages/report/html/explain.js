@@ -11,8 +11,8 @@
   close.addEventListener("click", () => dialog.close());
   dialog.addEventListener("click", (event) => event.target === dialog && dialog.close());
   document.getElementById("main").addEventListener("click", (event) => {
-    // Numbers of figures and of the slider are no elements of their own.
-    const number = event.target.closest("data, figure text, #player output, #player td, #player text");
+    // Numbers of figures are no elements of their own.
+    const number = event.target.closest("data, [data-value], figure text");
     const about = number && !number.closest("#numbers") && number.closest("[data-about]");
     const source = about && document.getElementById(`explain-${about.dataset.about}`);
     if (!source || String(getSelection())) return;

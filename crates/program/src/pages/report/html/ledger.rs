@@ -8,7 +8,7 @@ use crate::explain::Links;
 use crate::pages::explain::behind;
 use crate::pages::report::html::HtmlError;
 use crate::report::Report;
-use crate::show::block::{Block, PageSection};
+use crate::show::block::{Block, PageSection, Words};
 use crate::show::html::sentence;
 use crate::show::html::words;
 use crate::show::words::{slips, verdict, verdict_word};
@@ -37,6 +37,17 @@ pub(crate) fn section(report: &Report) -> Result<Option<PageSection>, HtmlError>
         let found = ledger.claims.iter().position(|claim| claim.id == id);
         found.map_or("claims", |index| anchors[index].as_str())
     };
+    // What all claims have in common is said once.
+    let parts_of = |id: &str| behind_claims.get(id).map(behind).unwrap_or_default();
+    let mut tests = ledger.claims.iter().map(|claim| parts_of(&claim.id)[2].clone());
+    let shared = tests.next().filter(|first| !first.is_empty() && tests.all(|other| other == *first));
+    let behind_of = |id: &str| {
+        let parts = parts_of(id)
+            .into_iter()
+            .enumerate()
+            .filter(|(index, part)| !part.is_empty() && (*index < 2 || shared.is_none()));
+        Words::joined(parts.map(|(_, part)| part), "; ")
+    };
     let body = html! {
         p {
             "Every displayed equation, number, statement and figure of the paper, in words of this project, with a verdict and the "
@@ -44,6 +55,7 @@ pub(crate) fn section(report: &Report) -> Result<Option<PageSection>, HtmlError>
             "is " em { "refuted" } " is wrong; what holds " em { "in part" } " says what does not; a " em { "definition" } " is nothing to "
             "check; " em { "open" } " is not decided here. What is refuted is " (slips(ledger.slips_and_consequences(Verdict::Refuted)))
             " of them, what is misprinted " (slips(ledger.slips_and_consequences(Verdict::Misprint))) "."
+            @if let Some(test) = &shared { " Every check is run by the test " (words(test)) "." }
         }
         div.ledger-page {
         form.filter id="ledger-filter" {
@@ -69,9 +81,11 @@ pub(crate) fn section(report: &Report) -> Result<Option<PageSection>, HtmlError>
                     @for slip in claim.slips.iter().filter(|slip| **slip != claim.id) {
                         p { "By the slip of " a href={ "#" (anchor_of(slip)) } { (slip) } "." }
                     }
-                    p.evidence { "Evidence, " (claim.known) ": " (sentence(&claim.evidence)) }
-                    @for part in behind_claims.get(claim.id.as_str()).map(behind).unwrap_or_default().iter().filter(|part| !part.is_empty()) {
-                        p.behind { (words(part)) }
+                    details {
+                        summary { "Evidence, " (claim.known) }
+                        p.evidence { (sentence(&claim.evidence)) }
+                        @let behind = behind_of(&claim.id);
+                        @if !behind.is_empty() { p.behind { (words(&behind)) } }
                     }
                     @if !claim.as_found { p.disagrees { "This is otherwise than the ledger says." } }
                 }

@@ -1,8 +1,7 @@
 //! Loads on cam and follower at speeds around the separation.
 
 use crate::pages::design::speeds;
-use crate::pages::report::html::HtmlError;
-use crate::pages::report::html::plates::plate;
+use crate::pages::report::html::plates::{DrawnFigures, plate};
 use crate::report::Report;
 use crate::show::block::{Block, PageSection, Span, about, words};
 use crate::show::digits::Digits;
@@ -12,12 +11,12 @@ use corner_impact::study::speeds::SpeedSurvey;
 /// scatter.
 const SHARED: f64 = 1.1;
 
-pub(crate) fn section(report: &Report) -> Result<Option<PageSection>, HtmlError> {
-    let Some((found, picture)) = report.design.as_ref().zip(report.loads.as_ref()) else { return Ok(None) };
+pub(crate) fn section(report: &Report, figures: &DrawnFigures) -> Option<PageSection> {
+    let (found, picture) = report.design.as_ref().zip(report.loads.as_ref())?;
     // Skip the heading: the page has its own.
     let table = Block::About("contact_force".into(), speeds(found).into_iter().skip(1).collect());
     let folded = Block::Details("The same in numbers".into(), vec![table]);
-    let mut blocks = vec![plate(picture, report)?, folded];
+    let mut blocks = vec![plate(picture, report, figures), folded];
     let most = found.loads.iter().map(|loads| loads.impact_speed).fold(0.0, f64::max);
     let hardest = report.speeds.as_ref().ok().and_then(SpeedSurvey::hardest);
     // More starts find more motions, and a rare one may hit hardest.
@@ -33,5 +32,5 @@ pub(crate) fn section(report: &Report) -> Result<Option<PageSection>, HtmlError>
         ];
         blocks.push(Block::Note(about("impact_speed", harder)));
     }
-    Ok(Some(PageSection { id: "loads", title: "How hard it presses and hits".into(), blocks }))
+    Some(PageSection { id: "loads", title: "How hard it presses and hits".into(), blocks })
 }

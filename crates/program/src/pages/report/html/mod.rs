@@ -2,17 +2,18 @@
 //!
 //! The page begins with the answer. Then its sections follow in a referee's order of reading, where the machine has their subject. All
 //! contents come from the [`Report`]; only words, order and digits are chosen here. A computed number is in a `data` element whose value
-//! has all the digits of the document. Numbers in captions and sentences are part of the document's words.
+//! has all the digits of the document, or in a cell with these digits as `data-value`. Numbers in captions and sentences are part of the document's words.
 
 mod answer;
+mod explore;
 mod ledger;
 mod loads;
 mod model;
 mod numbers;
 mod plates;
 mod reproduce;
-mod slider;
 mod speeds;
+mod values;
 mod verdict;
 
 use std::io::Write;
@@ -24,6 +25,7 @@ use flate2::write::ZlibEncoder;
 use maud::{DOCTYPE, PreEscaped, html};
 
 use crate::explain::ExplainError;
+use crate::pages::report::html::plates::DrawnFigures;
 use crate::pages::{local_map, verify};
 use crate::report::{Report, VERSION};
 use crate::show::block::{Block, PageSection, in_units};
@@ -37,8 +39,8 @@ const STYLE: &str = include_str!("page.css");
 const SCRIPTS: [&str; 5] = [
     include_str!("unpack.js"),
     include_str!("ledger.js"),
-    include_str!("slider.js"),
-    include_str!("save.js"),
+    include_str!("values.js"),
+    include_str!("figures.js"),
     include_str!("explain.js"),
 ];
 
@@ -57,39 +59,41 @@ pub enum HtmlError {
     /// A number's name is not in the table of links, or the table is not valid.
     #[error(transparent)]
     Explanation(#[from] ExplainError),
-    /// The slider's data could not be written.
-    #[error("data: {0}")]
+    /// Values of a figure could not be written.
+    #[error("values of a figure: {0}")]
     Data(#[from] serde_json::Error),
 }
 
 /// Renders the page.
 pub fn render(report: &Report) -> Result<String, HtmlError> {
     let found = report.verification.as_ref().ok();
+    let figures = DrawnFigures::of(report)?;
     // Drops the heading of the blocks: the page has its own.
     let titled = |id, title: &str, of: fn(&Verification) -> Vec<Block>| {
         let blocks = found.map(of).filter(|blocks| !blocks.is_empty())?;
         Some(PageSection { id, title: title.into(), blocks: blocks.into_iter().skip(1).collect() })
     };
     let mut sections: Vec<PageSection> = [
-        Some(answer::section(report)?),
-        slider::section(report)?,
-        loads::section(report)?,
+        Some(answer::section(report, &figures)),
+        explore::section(report, &figures),
+        loads::section(report, &figures),
         verdict::section(report),
-        Some(model::section(report)?),
+        Some(model::section(report, &figures)),
         titled("corner-impact", "Where the corner impact is", verify::orbit),
         titled("maps", "The local map by every route", |found| [verify::map(found), verify::agreement(found)].concat()),
         titled("printed", "The paper's digits", verify::published),
         titled("bifurcation", "What happens there", verify::bifurcation),
         titled("local-map", "What the local map does by itself", local_map::blocks),
         ledger::section(report)?,
-        Some(speeds::section(report)?),
-        plates::section(report)?,
+        Some(speeds::section(report, &figures)),
+        plates::section(report, &figures),
         Some(reproduce::section(report)),
     ]
     .into_iter()
     .flatten()
     .collect();
     sections.push(numbers::section(report, &sections)?);
+    let live = sections.iter().any(|section| section.id == "explore").then(|| explore::parts(report)).transpose()?;
     let what = if report.verification.is_ok() { "Corner impact" } else { "Cam and follower" };
     let title = format!("{what} of {}", report.model.name);
     let page = html! {
@@ -102,6 +106,7 @@ pub fn render(report: &Report) -> Result<String, HtmlError> {
                 meta name="generator" content={ "corner-impact " (VERSION) };
                 title { (title) }
                 style { (PreEscaped(STYLE)) }
+                style id="figure-style" { (PreEscaped(&figures.style)) }
             }
             body {
                 a.skip href="#main" { "Skip to the answer" }
@@ -123,6 +128,7 @@ pub fn render(report: &Report) -> Result<String, HtmlError> {
                     }
                 }
                 @for script in SCRIPTS { script { (PreEscaped(script)) } }
+                @if let Some(live) = live { (live) }
             }
         }
     };

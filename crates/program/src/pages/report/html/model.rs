@@ -1,35 +1,28 @@
 //! The model.
 
 use crate::pages::cam;
-use crate::pages::report::html::{HtmlError, plates};
+use crate::pages::report::html::plates::{self, DrawnFigures};
 use crate::report::Report;
 use crate::show::block::{Block, Column, PageSection, Span, Table, about, words};
 use crate::show::digits::Digits;
 
-/// Most rows of a table that is not folded.
-const LONG: usize = 24;
-
-pub(crate) fn section(report: &Report) -> Result<PageSection, HtmlError> {
+pub(crate) fn section(report: &Report, figures: &DrawnFigures) -> PageSection {
     let sheet = &report.model;
     let motion = "A follower of mass $m$ on a spring, slack at $q0$, flies above a cam of lift $c$($theta$), hits it with $v-$ where the \
                   cam has the velocity $c'$, and leaves it with $v+$:";
-    let numbers = Block::Table(numbers(report));
     let source = Span::Quoted(sheet.source.clone());
     let laws = ["m q'' + b q' + k (q - q0) = -m g", "v+ = (1 + r) c' - r v-"];
     let mut blocks = vec![Block::paragraph(source), Block::paragraph(motion)];
     blocks.extend(laws.map(|law| Block::paragraph(Span::Formula(law.into()))));
-    blocks.push(match sheet.quantities.len() {
-        count if count > LONG => Block::Details(words![count, " numbers of the model"], vec![numbers]),
-        _ => numbers,
-    });
+    blocks.push(Block::Table(numbers(report)));
     let mut cam = vec![Block::paragraph(words!["The cam: ", cam::lift(&sheet.cam), "."])];
     cam.extend(sheet.cam.measured.iter().flat_map(cam::measured));
     cam.extend(cam::parts(&sheet.cam));
     blocks.push(Block::About("lift".into(), cam));
     if let Some(plate) = report.plates.iter().find(|plate| plate.id == plates::CAM) {
-        blocks.push(plates::plate(plate, report)?);
+        blocks.push(plates::plate(plate, report, figures));
     }
-    Ok(PageSection { id: "model", title: "The model".into(), blocks })
+    PageSection { id: "model", title: "The model".into(), blocks }
 }
 
 fn numbers(report: &Report) -> Table {

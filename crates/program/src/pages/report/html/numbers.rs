@@ -25,7 +25,7 @@ pub(crate) fn section(report: &Report, sections: &[PageSection]) -> Result<PageS
         let explanation = links.explain(name, &findings)?;
         let inside = in_units(explained(&explanation), &report.units);
         parts.push(Block::Markup(html! {
-            details.explanation id={ "explain-" (name) } { summary { code { (name) } } (blocks(&inside)) }
+            details.explanation id={ "explain-" (name) } { summary { (name) } (blocks(&inside)) }
         }));
     }
     Ok(PageSection { id: "numbers", title: words!["Where each number comes from"], blocks: parts })

@@ -1,21 +1,25 @@
 //! Motions of the follower at other speeds.
 
-use crate::pages::report::html::HtmlError;
-use crate::pages::report::html::plates::plate;
+use crate::pages::report::html::plates::{DrawnFigures, elsewhere, plate, still};
 use crate::pages::speeds::{dangers, detachment, how, remarks, table, together, uncertainty};
 use crate::report::Report;
 use crate::show::block::{self, Block, PageSection, Words, words};
 use corner_impact::study::speeds::SpeedSurvey;
 
-pub(crate) fn section(report: &Report) -> Result<PageSection, HtmlError> {
+pub(crate) fn section(report: &Report, figures: &DrawnFigures) -> PageSection {
     let mut blocks = match &report.speeds {
         Ok(found) => attractors(found),
         Err(why) => vec![Block::paragraph(format!("Not known: {why}."))],
     };
     if let Some(picture) = &report.attractors {
-        blocks.push(plate(picture, report)?);
+        let is_still = still(report).is_some_and(|still| still.id == picture.id);
+        blocks.push(if is_still {
+            Block::Markup(elsewhere(picture, report, " stands above."))
+        } else {
+            plate(picture, report, figures)
+        });
     }
-    Ok(PageSection { id: "speeds", title: "At each speed".into(), blocks })
+    PageSection { id: "speeds", title: "At each speed".into(), blocks }
 }
 
 fn attractors(found: &SpeedSurvey) -> Vec<Block> {
