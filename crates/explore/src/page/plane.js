@@ -355,8 +355,6 @@
           const name = (start, of) => `${start}_${(of || "").replace("/", "_")}`;
           return Explore.csv({ cam_angle_deg: impacts.angle.map(degrees), [name("position", unit.length)]: impacts.position, [name("velocity_after", unit.velocity)]: impacts.velocity, [name("relative_velocity_after", unit.velocity)]: impacts.speed });
         },
-        // The answer's command writes moments of the run; its events are what is seen here.
-        command: () => { const answer = context.answer(); return answer && answer.command ? answer.command.replace(/ --drawn \S+ --points-per-revolution \S+/, "").replace("--out motion.csv", "--events impacts.csv") : null; },
       };
     },
   });
