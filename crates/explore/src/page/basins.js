@@ -125,6 +125,8 @@
     return element;
   };
 
+  const sectionOf = (context) => Explore.parts.optionOf(context, "section_deg", (value) => Number.isFinite(value) && value >= 0 && value < 360, 0);
+
   Explore.view({
     name: "basins", title: "Basins of attraction", wide: true,
     mount(panel, context) {
@@ -132,10 +134,10 @@
       const plot = context.plot(panel.body, {
         label: "Basins of attraction", aspect: 0.55, least: 280,
         zoom: ({ x, y }) => context.setOption("range", { x: neat(x), y: neat(y) }),
-        back: () => { if (!context.option("range", null)) return false; context.setOption("range", null); return true; },
+        back: () => { if (!Explore.parts.boxOf(context)) return false; context.setOption("range", null); return true; },
       });
       panel.body.append(legend);
-      const angle = () => radians(context.option("section_deg", 0));
+      const angle = () => radians(sectionOf(context));
       const section = Explore.element("input", { type: "number", min: "0", max: "360", step: "any", value: "0",
         onchange: () => context.setOption("section_deg", ((Number(section.value) % 360) + 360) % 360) });
       const start = typed(context, angle);
@@ -177,7 +179,7 @@
       const compute = async (state, grids) => {
         run += 1;
         const own = run;
-        const [range, at] = [context.option("range", null), angle()];
+        const [range, at] = [Explore.parts.boxOf(context), angle()];
         finer.hidden = true;
         const section = { view: "basins", rpm: state.rpm, cam_angle_rad: at, ...(range ? { position: range.x, velocity: range.y } : {}) };
         for (const grid of grids) {
@@ -198,9 +200,9 @@
       };
       return {
         async update(state, { coarse }) {
-          section.value = String(Number(context.option("section_deg", 0).toPrecision(10)));
+          section.value = String(Number(sectionOf(context).toPrecision(10)));
           start.show(state.start);
-          const key = JSON.stringify([context.app.question(), state.rpm, context.option("section_deg", 0), context.option("range", null)]);
+          const key = JSON.stringify([context.app.question(), state.rpm, sectionOf(context), Explore.parts.boxOf(context)]);
           if (coarse && key !== wanted) { panel.status("computed when the slider rests"); return; }
           if (coarse) return;
           if (key === wanted) { panel.status(""); draw(state); return; }

@@ -42,6 +42,7 @@
 
   // The need ---------------------------------------------------------------------------------------------------------------
 
+  const isNeed = (need) => Boolean(need) && need.rpm > 0 && (need.kind === "separation" || (need.kind in LOADS && Boolean(LOADS[need.kind].need) && need.below > 0));
   /** The need as the program reads it. */
   const needText = (need, unit) => (need.kind === "separation" ? `no separation to ${need.rpm} rpm` : `${LOADS[need.kind].need} below ${need.below} ${unit} to ${need.rpm} rpm`);
   const known = (row) => ({ computed: "computed", sampled: "sampled by runs", proved: "proved" }[row.known] || row.known);
@@ -87,7 +88,7 @@
       const pair = make("div", { class: "pair" });
       const [words, list] = [make("p", { class: "need-words" }), make("div", { "aria-live": "polite" })];
       panel.body.append(pair, words, list);
-      const zoom = { zoom: ({ x }) => context.setOption("range", x.map((each) => Number(each.toPrecision(5)))), back: () => { if (!context.option("range", null)) return false; context.setOption("range", null); return true; } };
+      const zoom = { zoom: ({ x }) => context.setOption("range", x.map((each) => Number(each.toPrecision(5)))), back: () => { if (!rangeOf()) return false; context.setOption("range", null); return true; } };
       const hosts = [0, 1].map(() => { const host = make("div"); pair.append(host); return host; });
       const [force, loads] = [context.plot(hosts[0], { label: "Least contact force over the speed", aspect: 0.62, least: 240, ...zoom }), context.plot(hosts[1], { label: "Loads over the speed", aspect: 0.62, least: 240, ...zoom })];
       const shows = Explore.menu("Load", Object.entries(LOADS).map(([key, each]) => [key, each.name]), "impact_speed", (value) => context.setOption("load", value));
@@ -100,7 +101,8 @@
       panel.options.append(shows, kinds, below.element, to.element);
       let [shown, required] = [null, null];
 
-      const need = () => context.option("need", null);
+      const rangeOf = () => Explore.parts.optionOf(context, "range", Explore.parts.isRange, null);
+      const need = () => Explore.parts.optionOf(context, "need", isNeed, null);
       const assign = (patch, done) => { if (need()) context.setOption("need", { ...need(), ...patch }, { moving: !done }); };
       const separation = () => (shown && shown.separation ? shown.separation.speed_rpm : context.model().separation ? context.model().separation.rpm : context.state().rpm);
       const choose = (kind) => {
@@ -110,7 +112,7 @@
         const most = shown ? Math.max(0, ...columnsOf(shown.loads, kind).y.filter(Number.isFinite)) : 1;
         context.setOption("need", { kind, rpm, below: Number((most / 4 || 1).toPrecision(2)) }, {}, {});
       };
-      const loadKey = () => (need() && LOADS[need().kind] ? need().kind : context.option("load", "impact_speed"));
+      const loadKey = () => (need() && LOADS[need().kind] ? need().kind : Explore.parts.optionOf(context, "load", (key) => key in LOADS, "impact_speed"));
       const loadUnit = () => unitOf(shown && shown.loads.length ? columnsOf(shown.loads, loadKey()).unit : "");
       const needRule = () => need() && { kind: "rule", x: need().rpm, colour: "green", width: 2.5, label: `need: to ${number(need().rpm, 5)} rpm`, move: (value, done) => assign({ rpm: Number(value.toPrecision(3)) }, done) };
 
@@ -180,7 +182,7 @@
       };
       // A machine that separates at every speed or at none has no range of its own.
       const speeds = () => {
-        const range = context.option("range", null) || (context.model().separation ? null : context.model().speeds);
+        const range = rangeOf() || (context.model().separation ? null : context.model().speeds);
         return range ? { rpm: range } : {};
       };
       /** The curves: of a measured cam first at a few speeds, as each takes a run of 16 cams. */

@@ -26,6 +26,11 @@
   const anglesOf = (found) => Explore.angles(found, "cam_angle_").map(Explore.radians);
   const capital = (text) => text.charAt(0).toUpperCase() + text.slice(1);
   const many = (count, one, more = `${one}s`) => `${number(count)} ${count === 1 ? one : more}`;
+  // An address can be written by anyone: an option of the wrong kind counts as missing.
+  const isRange = (value) => Array.isArray(value) && value.length === 2 && value.every(Number.isFinite) && value[0] < value[1];
+  const isBox = (value) => Boolean(value) && isRange(value.x) && isRange(value.y);
+  const optionOf = (context, name, isGood, otherwise) => { const value = context.option(name, otherwise); return isGood(value) ? value : otherwise; };
+  const boxOf = (context) => optionOf(context, "range", isBox, null);
   /** Where the program refuses, its sentence stands in the panel: a heading and evidence of an earlier answer go. */
   const refused = (panel) => {
     if (panel.element.querySelector(".sentence").hidden) return false;
@@ -112,6 +117,8 @@
   };
   const runOf = (found, gap) => ({ time: found.time_s || column(found, "time_"), ...coordinates(found, gap) });
 
+  const revolutionsOf = (context) => optionOf(context, "revolutions", (value) => Number.isInteger(value) && value > 0 && value <= 100, 4);
+
   Explore.view({
     name: "plane", title: "Phase plane",
     mount(panel, context) {
@@ -119,7 +126,7 @@
       const plot = context.plot(panel.body, {
         label: "Phase plane of the motion", aspect: ASPECT, least: 260,
         zoom: ({ x, y }) => context.setOption("range", { x: Explore.parts.neat(x), y: Explore.parts.neat(y) }),
-        back: () => { if (!context.option("range", null)) return false; context.setOption("range", null); return true; },
+        back: () => { if (!boxOf(context)) return false; context.setOption("range", null); return true; },
       });
       const axes = Explore.menu("Axes", [["follower", "position and velocity"], ["gap", "gap and relative velocity"]], "follower", (value) => {
         context.change({ views: { ...context.state().views, plane: { ...(context.state().views.plane || {}), axes: value, range: null } } });
@@ -152,7 +159,7 @@
         const cam = gap || !column(found, "cam_velocity_").length ? null : { x: column(found, "cam_lift_"), y: column(found, "cam_velocity_") };
         const other = pointed ? runOf(pointed, gap) : null;
         const lists = cam ? [cam] : [];
-        const range = context.option("range", null) || { x: extent([run.x, ...lists.map(({ x }) => x)]), y: extent([run.y, ...lists.map(({ y }) => y)]) };
+        const range = boxOf(context) || { x: extent([run.x, ...lists.map(({ x }) => x)]), y: extent([run.y, ...lists.map(({ y }) => y)]) };
         const tips = heads(pieces, range.x, range.y, ASPECT);
         const unit = units(context);
         plot.draw({
@@ -166,7 +173,7 @@
             { kind: "line", ...tips, colour: "blue", width: 1.8 },
             ...ends(jumps),
           ],
-          description: `${panel.element.querySelector("h3").textContent} at ${number(state.rpm, 8)} rpm, drawn over ${many(context.option("revolutions", 4), "revolution")} with ${many(jumps.x.length / 3, "impact")}`,
+          description: `${panel.element.querySelector("h3").textContent} at ${number(state.rpm, 8)} rpm, drawn over ${many(revolutionsOf(context), "revolution")} with ${many(jumps.x.length / 3, "impact")}`,
         });
       };
       // An impact begins at a square and ends at a triangle.
@@ -183,7 +190,7 @@
       };
       return {
         async update(state, { coarse }) {
-          const [revolutions, approaching] = [context.option("revolutions", 4), context.option("approach", false)];
+          const [revolutions, approaching] = [revolutionsOf(context), context.option("approach", false)];
           [axes, turns].forEach((each, index) => each.set(String(index ? revolutions : context.option("axes", "follower"))));
           approach.set(approaching);
           const found = await context.ask({ view: "motion", rpm: state.rpm, transient: approaching ? 0 : 300, revolutions, samples: coarse ? 120 : revolutions <= 4 ? 720 : 360, ...context.start() }, { coarse });
@@ -260,7 +267,7 @@
       const plot = context.plot(panel.body, {
         label: "Impact map", aspect: 0.75, least: 260,
         zoom: ({ x, y }) => context.setOption("range", { x: Explore.parts.neat(x), y: Explore.parts.neat(y) }),
-        back: () => { if (!context.option("range", null)) return false; context.setOption("range", null); return true; },
+        back: () => { if (!boxOf(context)) return false; context.setOption("range", null); return true; },
       });
       const show = Explore.menu("Show", [["map", "velocity over angle"], ["return", "each angle over the last"]], "map", (value) => {
         context.change({ views: { ...context.state().views, impacts: { ...(context.state().views.impacts || {}), show: value, range: null } } });
@@ -294,7 +301,7 @@
         const different = drawn.x.length > 20000 ? Infinity : distinct(drawn);
         const few = different <= 100;
         const own = returns || !context.option("orbits", false) || !shown.orbits ? [] : orbitLayers(shown.orbits, context.value("follower.restitution"), rpm);
-        const range = context.option("range", null) || rangeOf(drawn, own, returns, different <= 12);
+        const range = boxOf(context) || rangeOf(drawn, own, returns, different <= 12);
         const corners = ((context.model() || {}).corners || []).map((each) => each.angle_deg).filter((at) => at >= range.x[0] && at <= range.x[1]);
         plot.draw({
           x: { label: returns ? "cam angle at an impact" : "cam angle at the impact", unit: "°", range: range.x, turn: true },
@@ -355,10 +362,8 @@
           const name = (start, of) => `${start}_${(of || "").replace("/", "_")}`;
           return Explore.csv({ cam_angle_deg: impacts.angle.map(degrees), [name("position", unit.length)]: impacts.position, [name("velocity_after", unit.velocity)]: impacts.velocity, [name("relative_velocity_after", unit.velocity)]: impacts.speed });
         },
-        // The answer's command writes moments of the run; its events are what is seen here.
-        command: () => { const answer = context.answer(); return answer && answer.command ? answer.command.replace(/ --drawn \S+ --points-per-revolution \S+/, "").replace("--out motion.csv", "--events impacts.csv") : null; },
       };
     },
   });
-  Explore.parts = { capital, many, units, refused };
+  Explore.parts = { capital, many, units, refused, isRange, optionOf, boxOf };
 })();

@@ -127,7 +127,7 @@
     const told = (name) => app.element.querySelectorAll(".panel").forEach((panel) => panel.classList.toggle("told", panel.id === `view-${name}`));
     const update = (state) => {
       const story = now();
-      const step = story ? story.steps[state.story.step] : null;
+      const step = story && Number.isInteger(state.story.step) ? story.steps[state.story.step] : null;
       bar.hidden = !step;
       app.element.classList.toggle("touring", Boolean(step));
       list.querySelectorAll("button").forEach((button) => button.setAttribute("aria-pressed", String(Boolean(step && button.dataset.story === story.name))));
