@@ -310,3 +310,27 @@ fn what_cannot_be_answered_has_the_sentence_and_its_place() {
         assert!(of(&answer["error"]).starts_with("question: "), "{text}: {answer}");
     }
 }
+
+/// What each step of the guided tours says, as the command has it. Commands with VALVE or DANGEROUS are of the model of that tour.
+#[test]
+#[ignore = "slow"]
+fn tours_say_what_the_commands_find() {
+    let folder = tempfile::TempDir::new().unwrap();
+    let models = corner_impact_explore::tour_models();
+    for (name, text) in &models {
+        std::fs::write(folder.path().join(name), text).unwrap();
+    }
+    let file = |name: &str| folder.path().join(name).display().to_string();
+    let facts: Vec<Value> = serde_json::from_str(include_str!("tours.json")).unwrap();
+    let tours = include_str!("../../crates/explore/src/page/stories.js");
+    for fact in &facts {
+        assert!(tours.contains(&format!("name: \"{}\"", fact["story"].as_str().unwrap())), "{fact}");
+        let command = format!("corner-impact {}", fact["command"].as_str().unwrap());
+        let command = command.replace("VALVE", &file("valve.toml")).replace("DANGEROUS", &file("dangerous.toml"));
+        let output = corner_impact(words(&command));
+        let page = text(output.stdout);
+        for has in fact["has"].as_array().unwrap() {
+            assert!(page.contains(has.as_str().unwrap()), "{fact}: {has} is not in\n{page}");
+        }
+    }
+}

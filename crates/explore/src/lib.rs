@@ -22,7 +22,7 @@ mod question;
 mod refusal;
 
 pub use answer::{Answer, answer};
-pub use page::{PageModel, PageWords, SCRIPTS, STYLE, Transport, mounting, page};
+pub use page::{PageModel, PageWords, SCRIPTS, STYLE, Transport, mounting, page, tour_models};
 pub use question::{ChangedModel, Question};
 pub use refusal::Refusal;
 

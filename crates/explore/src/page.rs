@@ -89,7 +89,7 @@ fn in_script(value: &impl Serialize) -> String {
 }
 
 /// Texts of the models that the guided tours go through besides the paper's, by file name.
-fn tour_models() -> BTreeMap<&'static str, String> {
+pub fn tour_models() -> BTreeMap<&'static str, String> {
     let valve = ModelTemplate::of("table").map(|template| template.whole().replace(TEMPLATE_NAME, "valve"));
     BTreeMap::from([
         ("valve.toml", valve.unwrap_or_default()),
