@@ -39,6 +39,7 @@ fn answers_are_those_of_the_command_line() {
     let model = json!({ "file": "my.toml", "text": text, "set": { "follower.restitution": 0.75 } });
     let printed = |answer: &Value| {
         let command = answer["command"].as_str().unwrap().strip_prefix("corner-impact ").unwrap();
+        assert!(command.contains(" my.toml --set follower.restitution=0.75"), "{command}");
         let run = common::program(command.split(' ')).current_dir(folder.path()).output().unwrap();
         assert_eq!(run.status.code(), Some(0), "{command}: {}", common::text(run.stderr));
         common::text(run.stdout)
@@ -189,7 +190,7 @@ fn it_ends_with_the_page() {
 #[test]
 fn ctrl_c_ends_it_at_once() {
     for is_working in [false, true] {
-        let served = Served::start(&[]);
+        let served = Served::start(&["--hurried", "60"]);
         let path = format!("{}answer?lane=a&sequence=1", served.page);
         let _asked = is_working.then(|| served.begin("POST", &path, endless().as_bytes()));
         std::thread::sleep(Duration::from_millis(200));
@@ -216,7 +217,7 @@ fn two_servers_are_two() {
 fn a_port_may_be_chosen_if_it_is_free() {
     let taken = TcpListener::bind("127.0.0.1:0").unwrap();
     let port = taken.local_addr().unwrap().port().to_string();
-    let refused = common::corner_impact(["explore", "--no-open", "--port", &port]);
+    let refused = common::corner_impact(["explore", "--no-open", "--hurried", "600", "--port", &port]);
     let said = common::text(refused.stderr);
     assert_eq!((refused.status.code(), refused.stdout.as_slice()), (Some(2), &[][..]), "{said}");
     assert!(said.contains(&format!("error: --port {port}: no page can be served: Address already in use")), "{said}");

@@ -77,7 +77,7 @@ struct Arguments {
     /// Whether pages, complaints and help are coloured.
     #[arg(long, global = true, value_enum, value_name = "WHEN", default_value = "auto")]
     color: ColorChoice,
-    /// Print results and errors alone: no notes, no progress, and no `next:`.
+    /// Print results and errors alone: no notes, progress or `next:`.
     #[arg(long, short, global = true)]
     quiet: bool,
     /// Threads that share the work [default: RAYON_NUM_THREADS, or one for each core].
