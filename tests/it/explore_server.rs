@@ -147,7 +147,7 @@ fn work_has_an_end() {
     drop(served);
 
     let served = Served::start(&["--threads", "1"]);
-    let idle = served.threads();
+    let idle = served.idle();
     let left = served.begin("POST", &format!("{}answer?lane=a&sequence=1", served.page), endless().as_bytes());
     // Its connection, the question, and as many threads as were asked for, twice where the question starts its own.
     common::until("the work begins", || served.threads() >= idle + 3);

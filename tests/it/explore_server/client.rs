@@ -98,6 +98,15 @@ impl Served {
         self.status("Threads").parse().unwrap()
     }
 
+    /// Waits until it accepts connections and has none, and returns the number of its threads then.
+    pub fn idle(&self) -> usize {
+        self.get("/");
+        let tasks = || std::fs::read_dir(format!("/proc/{}/task", self.child.id())).unwrap();
+        let name = |task: io::Result<std::fs::DirEntry>| std::fs::read_to_string(task.ok()?.path().join("comm")).ok();
+        common::until("no connection is left", || !tasks().filter_map(name).any(|name| name.trim() == "connection"));
+        self.threads()
+    }
+
     /// Sockets that the process has open.
     pub fn sockets(&self) -> usize {
         let open = std::fs::read_dir(format!("/proc/{}/fd", self.child.id())).unwrap();

@@ -2,16 +2,23 @@
 
 use std::collections::VecDeque;
 use std::net::{Shutdown, TcpStream};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
 
 /// Most connections at once. A browser has six to one server.
 const MOST_CONNECTIONS: usize = 64;
 /// Most threads for connections: those that were just closed to make room may take a moment to end.
 const MOST_THREADS: usize = 2 * MOST_CONNECTIONS;
+/// Longest wait for one of these threads to end. Meanwhile, the system holds new connections.
+const MOMENT: Duration = Duration::from_secs(2);
 
 /// Connections that are open.
 #[derive(Default)]
-pub(super) struct Crowd(Mutex<Places>);
+pub(super) struct Crowd {
+    places: Mutex<Places>,
+    /// A thread of a connection has ended.
+    ended: Condvar,
+}
 
 #[derive(Default)]
 struct Places {
@@ -33,7 +40,7 @@ impl Places {
 
 impl Crowd {
     fn places(&self) -> MutexGuard<'_, Places> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+        self.places.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
@@ -48,14 +55,17 @@ impl Guest {
     /// Gives a place to a connection; the connection is handed back if there is none. If all places are taken, the oldest stranger loses its
     /// own, so that connections that say nothing keep no page from its answers.
     pub(super) fn enter(crowd: &Arc<Crowd>, connection: TcpStream) -> Result<Self, TcpStream> {
-        let mut places = crowd.places();
-        let is_full = places.admitted + places.strangers.len() >= MOST_CONNECTIONS;
-        let oldest = if is_full && places.threads < MOST_THREADS { places.strangers.pop_front() } else { None };
-        match oldest {
-            // Its thread notices, and ends.
-            Some(oldest) => drop(oldest.shutdown(Shutdown::Both)),
-            None if is_full => return Err(connection),
-            None => {}
+        let waited = crowd.ended.wait_timeout_while(crowd.places(), MOMENT, |places| places.threads >= MOST_THREADS);
+        let (mut places, timeout) = waited.unwrap_or_else(PoisonError::into_inner);
+        if timeout.timed_out() {
+            return Err(connection);
+        }
+        if places.admitted + places.strangers.len() >= MOST_CONNECTIONS {
+            match places.strangers.pop_front() {
+                // Its thread notices, and ends.
+                Some(oldest) => drop(oldest.shutdown(Shutdown::Both)),
+                None => return Err(connection),
+            }
         }
         let connection = Arc::new(connection);
         places.threads += 1;
@@ -91,5 +101,6 @@ impl Drop for Guest {
         } else {
             places.forget(&self.connection);
         }
+        self.crowd.ended.notify_one();
     }
 }
