@@ -23,7 +23,7 @@ use crate::diagram::{Diagram, GridBasins};
 use crate::machine::CamShape;
 use crate::model::{ModelPage, Template};
 use crate::motion::{LongRunFound, MotionFound};
-use crate::question::{AxisRequest, BasinsRequest, BudgetName, Question, View};
+use crate::question::{AxisRequest, BasinsRequest, BudgetName, PageQuestion, View};
 use crate::{ChangedModel, Refusal};
 
 /// An answer: what was found and how it is known, or the reason why there is nothing.
@@ -72,7 +72,7 @@ impl Answer {
 }
 
 /// Answers a question; the units are those in which the answer is to be written.
-pub fn answer(question: &Question) -> (Answer, Units) {
+pub fn answer(question: &PageQuestion) -> (Answer, Units) {
     let view = question.view.name();
     if let View::Template { law } = &question.view {
         return match Template::of(law) {

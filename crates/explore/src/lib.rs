@@ -23,7 +23,7 @@ mod refusal;
 
 pub use answer::{Answer, answer};
 pub use page::{PageModel, PageWords, SCRIPTS, STYLE, Transport, mounting, page, tour_models};
-pub use question::{ChangedModel, Question};
+pub use question::{ChangedModel, PageQuestion};
 pub use refusal::Refusal;
 
 use corner_impact::json;
@@ -31,7 +31,7 @@ use corner_impact::model::Units;
 
 /// Answers a question, both as JSON. A question that cannot be read has an answer with the reason.
 pub fn respond(question: &str) -> String {
-    let (answer, units) = match serde_json::from_str::<Question>(question) {
+    let (answer, units) = match serde_json::from_str::<PageQuestion>(question) {
         Ok(question) => answer(&question),
         Err(error) => (Answer::refused("", Refusal::of_words(format!("question: {error}"))), Units::default()),
     };

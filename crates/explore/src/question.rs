@@ -12,7 +12,7 @@ use crate::Refusal;
 
 /// A question of the page.
 #[derive(Clone, Debug, Deserialize)]
-pub struct Question {
+pub struct PageQuestion {
     /// The model.
     #[serde(default)]
     pub model: ChangedModel,

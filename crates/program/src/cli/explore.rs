@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use super::report::page;
 use super::{CommandError, Exit, ModelArgument, Session};
-use crate::explore::{End, Patience, Server};
+use crate::explore::{End, Server, Timeouts};
 use crate::live;
 use corner_impact::file::Output;
 use corner_impact_explore::Transport;
@@ -52,7 +52,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         return Ok(Exit::Agrees);
     }
     let page = move |base: &str, nonce: &str| live::page_by(Transport::Server { base, nonce }, &model);
-    let server = Server::listen(arguments.port, session.threads, Patience::hurried(arguments.hurried), Box::new(page));
+    let server = Server::listen(arguments.port, session.threads, Timeouts::hurried(arguments.hurried), Box::new(page));
     let server = server.map_err(|error| {
         let port = arguments.port.map_or(String::new(), |port| format!("--port {port}: "));
         CommandError::Words(format!("{port}no page can be served: {error}"))

@@ -1,38 +1,37 @@
 //! Server of the live page: HTTP on the loopback interface, for one browser on the same machine.
 //!
 //! ```text
-//!  server      accepts connections, and ends when the page has been closed
+//!  server        accepts connections, and ends when the page has been closed
 //!    ▲
-//!  errand      carries out one request: the page, its long poll, an answer
-//!  house       state that all connections share
+//!  handler       carries out one request: the page, its long poll, an answer
+//!  state         what all connections share
 //!    ▲
-//!  crowd       limits the connections that are open
-//!  door        decides which requests may come in: token, Host, Origin, method
-//!  work        answers a question on threads of its own, until it is stopped
-//!  lanes       keeps the newest question of each lane, and stops older ones
-//!  presence    knows whether a page is open
+//!  connections   limits the connections that are open
+//!  access        decides which requests are answered: token, Host, Origin, method
+//!  work          answers a question on threads of its own, until it is stopped
+//!  lanes         keeps the newest question of each lane, and stops older ones
+//!  presence      knows whether a page is open
 //!    ▲
-//!  request     reads a head within limits of size and time
-//!  reply       writes a response with the headers that every response has
+//!  request       reads a head within limits of size and time
+//!  reply         writes a response with the headers that every response has
 //! ```
 //!
 //! The requests are parsed by `httparse`, hyper's own parser, and the sockets are those of the standard library. `tiny_http` would be the
 //! usual choice for a server without an asynchronous runtime. Its last release, 0.12, has no limit for the size of a head (its issue 56),
 //! no time limit for a slow client (issue 143), and a thread for each connection, however many there are. It accepts the connections
-//! itself, so that no limit can be put in front. `hyper` has these limits, and needs an asynchronous runtime for them: fifteen packages
-//! for one page.
+//! itself, so that no limit can be put in front. `hyper` has these limits, and needs an asynchronous runtime for them.
 //!
 //! Each connection carries one request and is then closed: there is no second request to be confused with the body of the first.
 
-mod crowd;
-mod door;
-mod errand;
-mod house;
+mod access;
+mod connections;
+mod handler;
 mod lanes;
 mod presence;
 mod reply;
 mod request;
 mod server;
+mod state;
 mod work;
 
 use std::time::Duration;
@@ -42,7 +41,7 @@ pub(crate) use server::Server;
 
 /// Waiting times of the server.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Patience {
+pub(crate) struct Timeouts {
     /// For the head of a request, from the beginning of its connection.
     head: Duration,
     /// For the body of a request, and for the other side to take a response.
@@ -59,7 +58,7 @@ pub(crate) struct Patience {
     unopened: Duration,
 }
 
-impl Patience {
+impl Timeouts {
     /// Returns the waiting times divided by a number; tests cannot wait for a minute.
     pub(crate) fn hurried(by: u32) -> Self {
         let seconds = |count| Duration::from_secs(count) / by.max(1);

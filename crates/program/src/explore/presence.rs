@@ -3,7 +3,7 @@
 use std::sync::{Condvar, Mutex, PoisonError};
 use std::time::Instant;
 
-use super::Patience;
+use super::Timeouts;
 
 /// Reason why the server ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,17 +54,17 @@ impl Presence {
     }
 
     /// Waits until no page has been open for long enough.
-    pub(super) fn wait(&self, patience: &Patience) -> End {
+    pub(super) fn wait(&self, timeouts: &Timeouts) -> End {
         let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
         loop {
-            let (end, patience) = match state.is_opened {
-                true => (End::Closed, patience.closed),
-                false => (End::Unopened, patience.unopened),
+            let (end, timeouts) = match state.is_opened {
+                true => (End::Closed, timeouts.closed),
+                false => (End::Unopened, timeouts.unopened),
             };
             let left = match state.polls {
-                0 => (state.last + patience).saturating_duration_since(Instant::now()),
+                0 => (state.last + timeouts).saturating_duration_since(Instant::now()),
                 // Until something changes.
-                _ => patience,
+                _ => timeouts,
             };
             if left.is_zero() {
                 return end;

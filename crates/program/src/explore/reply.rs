@@ -84,8 +84,8 @@ pub(super) struct Timed<'a> {
 }
 
 impl<'a> Timed<'a> {
-    pub(super) fn new(stream: &'a TcpStream, patience: Duration) -> Self {
-        Self { stream, until: Instant::now() + patience }
+    pub(super) fn new(stream: &'a TcpStream, timeouts: Duration) -> Self {
+        Self { stream, until: Instant::now() + timeouts }
     }
 
     fn left(&self) -> io::Result<Option<Duration>> {
@@ -114,9 +114,9 @@ impl Write for Timed<'_> {
 
 /// Ends a connection so that the other side gets the response: what it still sends is dropped unread, for a while. A socket that is closed
 /// with unread bytes resets the connection, and the response may be lost.
-pub(super) fn part(stream: &TcpStream, patience: Duration) {
+pub(super) fn part(stream: &TcpStream, timeouts: Duration) {
     let mut dropped = [0; 65536];
-    let mut timed = Timed::new(stream, patience);
+    let mut timed = Timed::new(stream, timeouts);
     // Whoever has gone already needs no farewell.
     if stream.shutdown(Shutdown::Write).is_ok() {
         while timed.read(&mut dropped).is_ok_and(|count| count > 0) {}

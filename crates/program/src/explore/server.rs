@@ -6,13 +6,13 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::time::Duration;
 
-use super::crowd::Guest;
-use super::door::Door;
-use super::house::{House, PageSource};
+use super::access::Access;
+use super::connections::Admission;
 use super::presence::End;
 use super::reply::{self, Reply, Timed, part};
 use super::request::Head;
-use super::{Patience, errand};
+use super::state::{PageSource, ServerState};
+use super::{Timeouts, handler};
 
 /// Pause after the system could not accept a connection, for example because too many files are open.
 const PAUSE: Duration = Duration::from_millis(50);
@@ -21,7 +21,7 @@ const PAUSE: Duration = Duration::from_millis(50);
 pub(crate) struct Server {
     listener: TcpListener,
     address: SocketAddr,
-    house: Arc<House>,
+    state: Arc<ServerState>,
 }
 
 impl Server {
@@ -29,34 +29,34 @@ impl Server {
     pub(crate) fn listen(
         port: Option<u16>,
         threads: Option<usize>,
-        patience: Patience,
+        timeouts: Timeouts,
         page: PageSource,
     ) -> io::Result<Self> {
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port.unwrap_or(0)))?;
         let address = listener.local_addr()?;
-        let door = Door::new(address.port()).map_err(io::Error::other)?;
-        Ok(Self { listener, address, house: Arc::new(House::new(door, threads, patience, page)) })
+        let access = Access::new(address.port()).map_err(io::Error::other)?;
+        Ok(Self { listener, address, state: Arc::new(ServerState::new(access, threads, timeouts, page)) })
     }
 
     /// Address of the page.
     pub(crate) fn address(&self) -> String {
-        format!("http://{}{}", self.address, self.house.door.page())
+        format!("http://{}{}", self.address, self.state.access.page())
     }
 
     /// Address that leads to the page once, for the command line of a browser.
     pub(crate) fn first_visit(&self) -> String {
-        format!("http://{}{}", self.address, self.house.door.first_visit())
+        format!("http://{}{}", self.address, self.state.access.first_visit())
     }
 
     /// Serves until no page is open any more.
     pub(crate) fn serve(self) -> io::Result<End> {
-        let Self { listener, address, house } = self;
-        let accepting = Arc::clone(&house);
+        let Self { listener, address, state } = self;
+        let accepting = Arc::clone(&state);
         let accepts = move || accept(&listener, &accepting);
         let acceptor = std::thread::Builder::new().name("acceptor".into()).spawn(accepts)?;
-        let end = house.presence.wait(&house.patience);
-        house.is_over.store(true, Ordering::Relaxed);
-        house.lanes.stop_all();
+        let end = state.presence.wait(&state.timeouts);
+        state.is_over.store(true, Ordering::Relaxed);
+        state.lanes.stop_all();
         // The acceptor waits for a connection, and gets one. Otherwise it ends with the program.
         if TcpStream::connect(address).is_ok() {
             let _ = acceptor.join();
@@ -66,20 +66,20 @@ impl Server {
 }
 
 /// Accepts connections, each on a thread of its own.
-fn accept(listener: &TcpListener, house: &Arc<House>) {
+fn accept(listener: &TcpListener, state: &Arc<ServerState>) {
     for connection in listener.incoming() {
-        if house.is_over.load(Ordering::Relaxed) {
+        if state.is_over.load(Ordering::Relaxed) {
             return;
         }
         let Ok(connection) = connection else {
             std::thread::sleep(PAUSE);
             continue;
         };
-        match Guest::enter(&house.crowd, connection) {
-            Ok(guest) => {
-                let house = Arc::clone(house);
+        match Admission::enter(&state.connections, connection) {
+            Ok(admission) => {
+                let state = Arc::clone(state);
                 // Where no thread can be started, the connection is closed.
-                let _ = std::thread::Builder::new().name("connection".into()).spawn(move || attend(guest, &house));
+                let _ = std::thread::Builder::new().name("connection".into()).spawn(move || attend(admission, &state));
             }
             Err(connection) => {
                 // A few bytes fit into any socket. Nothing is waited for.
@@ -91,21 +91,21 @@ fn accept(listener: &TcpListener, house: &Arc<House>) {
 }
 
 /// Reads the request of a connection, responds, and closes it.
-fn attend(mut guest: Guest, house: &House) {
-    let connection = Arc::clone(&guest.connection);
+fn attend(mut admission: Admission, state: &ServerState) {
+    let connection = Arc::clone(&admission.connection);
     let _ = connection.set_nodelay(true);
-    let admitted = Head::read(&mut Timed::new(&connection, house.patience.head))
-        .and_then(|head| house.door.judge(&head).map(|errand| (errand, head)));
+    let admitted = Head::read(&mut Timed::new(&connection, state.timeouts.head))
+        .and_then(|head| state.access.judge(&head).map(|purpose| (purpose, head)));
     let reply = match admitted {
-        Ok((errand, head)) => {
-            guest.admit();
-            errand::run(errand, &head, &connection, house)
+        Ok((purpose, head)) => {
+            admission.admit();
+            handler::run(purpose, &head, &connection, state)
         }
         Err(refused) => refused,
     };
     let Some(reply) = reply else { return };
-    if reply.write(Timed::new(&connection, house.patience.transfer)).is_ok() {
-        guest.dismiss();
-        part(&connection, house.patience.parting);
+    if reply.write(Timed::new(&connection, state.timeouts.transfer)).is_ok() {
+        admission.dismiss();
+        part(&connection, state.timeouts.parting);
     }
 }

@@ -22,7 +22,7 @@ pub(super) fn answer(
     question: &str,
     stop: &Arc<Stop>,
     connection: &TcpStream,
-    patience: Duration,
+    timeouts: Duration,
     count: Option<usize>,
 ) -> Result<Option<String>, String> {
     std::thread::scope(|scope| {
@@ -37,7 +37,7 @@ pub(super) fn answer(
         };
         let worker = std::thread::Builder::new().name("question".into()).spawn_scoped(scope, work);
         let worker = worker.map_err(|error| format!("threads cannot be started: {error}"))?;
-        let until = Instant::now() + patience;
+        let until = Instant::now() + timeouts;
         while receiver.recv_timeout(LOOK) == Err(RecvTimeoutError::Timeout) {
             if Instant::now() >= until {
                 stop.set(Why::Late);

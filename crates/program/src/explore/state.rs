@@ -3,9 +3,9 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64};
 
-use super::Patience;
-use super::crowd::Crowd;
-use super::door::Door;
+use super::Timeouts;
+use super::access::Access;
+use super::connections::Connections;
 use super::lanes::Lanes;
 use super::presence::Presence;
 
@@ -13,12 +13,12 @@ use super::presence::Presence;
 pub(super) type PageSource = Box<dyn Fn(&str, &str) -> String + Send + Sync>;
 
 /// State that all connections share.
-pub(super) struct House {
-    pub(super) door: Door,
-    pub(super) crowd: Arc<Crowd>,
+pub(super) struct ServerState {
+    pub(super) access: Access,
+    pub(super) connections: Arc<Connections>,
     pub(super) lanes: Lanes,
     pub(super) presence: Presence,
-    pub(super) patience: Patience,
+    pub(super) timeouts: Timeouts,
     pub(super) page: PageSource,
     /// Pages that were served so far.
     pub(super) loads: AtomicU64,
@@ -27,10 +27,10 @@ pub(super) struct House {
     pub(super) is_over: AtomicBool,
 }
 
-impl House {
-    pub(super) fn new(door: Door, threads: Option<usize>, patience: Patience, page: PageSource) -> Self {
-        let (crowd, lanes, presence) = (Arc::default(), Lanes::default(), Presence::new());
+impl ServerState {
+    pub(super) fn new(access: Access, threads: Option<usize>, timeouts: Timeouts, page: PageSource) -> Self {
+        let (connections, lanes, presence) = (Arc::default(), Lanes::default(), Presence::new());
         let (loads, is_over) = (AtomicU64::new(0), AtomicBool::new(false));
-        Self { door, crowd, lanes, presence, patience, page, loads, threads, is_over }
+        Self { access, connections, lanes, presence, timeouts, page, loads, threads, is_over }
     }
 }

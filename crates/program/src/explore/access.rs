@@ -18,7 +18,7 @@ pub(super) fn secret() -> Result<String, getrandom::Error> {
 
 /// Purpose of a request that may come in.
 #[derive(Debug)]
-pub(super) enum Errand {
+pub(super) enum Purpose {
     /// The browser that the program opened asks where the page is.
     Ticket,
     Page,
@@ -31,16 +31,16 @@ pub(super) enum Errand {
 }
 
 /// Addresses that the server answers to, and the secrets in them.
-pub(super) struct Door {
+pub(super) struct Access {
     /// Values of `Host` for this server.
     hosts: Vec<String>,
     token: String,
-    /// Secret of the first visit, which opens the door once. The command line of a browser can be read by other users of the machine, and
+    /// Secret of the first visit, which opens the access once. The command line of a browser can be read by other users of the machine, and
     /// the token should not be there.
     ticket: Mutex<Option<String>>,
 }
 
-impl Door {
+impl Access {
     pub(super) fn new(port: u16) -> Result<Self, getrandom::Error> {
         let names = ["127.0.0.1", "localhost"];
         let mut hosts: Vec<String> = names.iter().map(|name| format!("{name}:{port}")).collect();
@@ -66,7 +66,7 @@ impl Door {
     }
 
     /// Decides what a request is for. Without the token, every request is answered alike.
-    pub(super) fn judge(&self, head: &Head) -> Result<Errand, Refused> {
+    pub(super) fn judge(&self, head: &Head) -> Result<Purpose, Refused> {
         let nothing = || Some(Reply::empty(reply::NOT_FOUND));
         let path = head.path.strip_prefix('/').ok_or_else(nothing)?;
         let (secret, rest) = path.split_once('/').unwrap_or((path, ""));
@@ -74,17 +74,17 @@ impl Door {
         if !has_ticket && !same(secret, &self.token) {
             return Err(nothing());
         }
-        let errand = match rest.split('/').collect::<Vec<_>>().as_slice() {
-            _ if has_ticket => Errand::Ticket,
-            [""] => Errand::Page,
-            ["alive"] | [_, "alive"] => Errand::Alive,
-            ["answer"] => Errand::Answer { page: String::new() },
-            [page, "answer"] => Errand::Answer { page: (*page).to_owned() },
+        let purpose = match rest.split('/').collect::<Vec<_>>().as_slice() {
+            _ if has_ticket => Purpose::Ticket,
+            [""] => Purpose::Page,
+            ["alive"] | [_, "alive"] => Purpose::Alive,
+            ["answer"] => Purpose::Answer { page: String::new() },
+            [page, "answer"] => Purpose::Answer { page: (*page).to_owned() },
             _ => return Err(nothing()),
         };
-        let opens_page = matches!(errand, Errand::Ticket | Errand::Page);
+        let opens_page = matches!(purpose, Purpose::Ticket | Purpose::Page);
         self.is_own(head, opens_page)?;
-        let method = if matches!(errand, Errand::Answer { .. }) { "POST" } else { "GET" };
+        let method = if matches!(purpose, Purpose::Answer { .. }) { "POST" } else { "GET" };
         if head.method != method {
             return Err(Some(Reply::empty(reply::METHOD_NOT_ALLOWED).with("Allow", method)));
         }
@@ -92,7 +92,7 @@ impl Door {
             // Of two that come at once, one is the first.
             self.ticket().take().ok_or_else(nothing)?;
         }
-        Ok(errand)
+        Ok(purpose)
     }
 
     /// Refuses requests that another page makes. `Host` is a name that somebody else's page has where that name leads here (DNS rebinding).

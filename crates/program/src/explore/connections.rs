@@ -14,7 +14,7 @@ const MOMENT: Duration = Duration::from_secs(2);
 
 /// Connections that are open.
 #[derive(Default)]
-pub(super) struct Crowd {
+pub(super) struct Connections {
     places: Mutex<Places>,
     /// A thread of a connection has ended.
     ended: Condvar,
@@ -27,41 +27,42 @@ struct Places {
     /// Connections with a request that may come in.
     admitted: usize,
     /// Connections without such a request, oldest first.
-    strangers: VecDeque<Arc<TcpStream>>,
+    unadmitted: VecDeque<Arc<TcpStream>>,
 }
 
 impl Places {
-    /// Takes a connection from the strangers; whether it was one.
+    /// Takes a connection out of the unadmitted ones. Returns whether it was one of them.
     fn forget(&mut self, connection: &Arc<TcpStream>) -> bool {
-        let place = self.strangers.iter().position(|other| Arc::ptr_eq(other, connection));
-        place.and_then(|place| self.strangers.remove(place)).is_some()
+        let place = self.unadmitted.iter().position(|other| Arc::ptr_eq(other, connection));
+        place.and_then(|place| self.unadmitted.remove(place)).is_some()
     }
 }
 
-impl Crowd {
+impl Connections {
     fn places(&self) -> MutexGuard<'_, Places> {
         self.places.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
-/// Place of a connection in the crowd, until it is dropped.
-pub(super) struct Guest {
-    crowd: Arc<Crowd>,
+/// Place of a connection among those that are open, until it is dropped.
+pub(super) struct Admission {
+    connections: Arc<Connections>,
     pub(super) connection: Arc<TcpStream>,
     is_admitted: bool,
 }
 
-impl Guest {
-    /// Gives a place to a connection; the connection is handed back if there is none. If all places are taken, the oldest stranger loses its
-    /// own, so that connections that say nothing keep no page from its answers.
-    pub(super) fn enter(crowd: &Arc<Crowd>, connection: TcpStream) -> Result<Self, TcpStream> {
-        let waited = crowd.ended.wait_timeout_while(crowd.places(), MOMENT, |places| places.threads >= MOST_THREADS);
+impl Admission {
+    /// Gives a place to a connection, or hands it back if there is none. If all places are taken, the oldest unadmitted connection loses its
+    /// place, so that connections that send nothing cannot keep a page from its answers.
+    pub(super) fn enter(connections: &Arc<Connections>, connection: TcpStream) -> Result<Self, TcpStream> {
+        let waited =
+            connections.ended.wait_timeout_while(connections.places(), MOMENT, |places| places.threads >= MOST_THREADS);
         let (mut places, timeout) = waited.unwrap_or_else(PoisonError::into_inner);
         if timeout.timed_out() {
             return Err(connection);
         }
-        if places.admitted + places.strangers.len() >= MOST_CONNECTIONS {
-            match places.strangers.pop_front() {
+        if places.admitted + places.unadmitted.len() >= MOST_CONNECTIONS {
+            match places.unadmitted.pop_front() {
                 // Its thread notices, and ends.
                 Some(oldest) => drop(oldest.shutdown(Shutdown::Both)),
                 None => return Err(connection),
@@ -69,38 +70,38 @@ impl Guest {
         }
         let connection = Arc::new(connection);
         places.threads += 1;
-        places.strangers.push_back(Arc::clone(&connection));
-        Ok(Self { crowd: Arc::clone(crowd), connection, is_admitted: false })
+        places.unadmitted.push_back(Arc::clone(&connection));
+        Ok(Self { connections: Arc::clone(connections), connection, is_admitted: false })
     }
 
     /// Notes that the connection has a request that may come in. It keeps its place then.
     pub(super) fn admit(&mut self) {
-        let mut places = self.crowd.places();
+        let mut places = self.connections.places();
         if places.forget(&self.connection) {
             places.admitted += 1;
             self.is_admitted = true;
         }
     }
 
-    /// Notes that the request has its response. The connection is a stranger again, until the other side closes it.
+    /// Notes that the request has its response. The connection counts as unadmitted again, until the other side closes it.
     pub(super) fn dismiss(&mut self) {
-        let mut places = self.crowd.places();
+        let mut places = self.connections.places();
         if std::mem::take(&mut self.is_admitted) {
             places.admitted -= 1;
-            places.strangers.push_back(Arc::clone(&self.connection));
+            places.unadmitted.push_back(Arc::clone(&self.connection));
         }
     }
 }
 
-impl Drop for Guest {
+impl Drop for Admission {
     fn drop(&mut self) {
-        let mut places = self.crowd.places();
+        let mut places = self.connections.places();
         places.threads -= 1;
         if self.is_admitted {
             places.admitted -= 1;
         } else {
             places.forget(&self.connection);
         }
-        self.crowd.ended.notify_one();
+        self.connections.ended.notify_one();
     }
 }
