@@ -23,7 +23,7 @@ use crate::diagram::{Diagram, GridBasins};
 use crate::machine::CamShape;
 use crate::model::{ModelPage, Template};
 use crate::motion::{LongRunFound, MotionFound};
-use crate::question::{AxisRequest, BasinsRequest, BudgetName, PageQuestion, View};
+use crate::question::{AxisRequest, BasinsRequest, PageQuestion, View};
 use crate::{ChangedModel, Refusal};
 
 /// An answer: what was found and how it is known, or the reason why there is nothing.
@@ -122,16 +122,8 @@ fn find(changed: &ChangedModel, given: &Model, model: &Model, view: &View) -> Re
         }
         View::LongRun { rpm, start, budget } => {
             let simulation = Simulation::new(model, *rpm, start.start()?)?;
-            let budget = match budget {
-                BudgetName::Whole => Budget::SURVEY,
-                BudgetName::Quick => Budget::CHART,
-            };
-            let judged = long_run(&simulation.machine, simulation.first, budget)?;
-            let Budget { transient, record, patience, .. } = budget;
-            let options = format!(
-                "--rpm {rpm}{} --transient {transient} --record {record} --patience {patience} --lyapunov --json",
-                start.options()
-            );
+            let judged = long_run(&simulation.machine, simulation.first, budget.budget())?;
+            let options = format!("--rpm {rpm}{}{} --lyapunov --json", start.options(), budget.options());
             (Found::LongRun(LongRunFound::of(judged)), again("simulate", options), Evidence::Sampled)
         }
         View::Diagram(asked) => {
@@ -145,9 +137,9 @@ fn find(changed: &ChangedModel, given: &Model, model: &Model, view: &View) -> Re
             );
             (Found::Diagram(Diagram::of(model, asked)?), again("diagram", options), Evidence::Computed)
         }
-        View::Speeds { rpm, over, starts } => {
-            let options = format!("{} --starts {starts} --json", over.options(*rpm));
-            let found = survey(model, *rpm, over, *starts)?;
+        View::Speeds { rpm, over, starts, budget } => {
+            let options = format!("{} --starts {starts}{} --json", over.options(*rpm), budget.options());
+            let found = survey(model, *rpm, over, (*starts, budget.budget()))?;
             (Found::Speeds(Box::new(found)), again("speeds", options), Evidence::Sampled)
         }
         View::Orbit { rpm, revolutions, impacts } => {
@@ -194,12 +186,17 @@ fn need(text: &str) -> impl Fn(String) -> Refusal {
 }
 
 /// Attractors over an axis, as the command `speeds` has them.
-fn survey(model: &Model, rpm: Option<f64>, over: &AxisRequest, starts: usize) -> Result<SpeedSurvey, Refusal> {
+fn survey(
+    model: &Model,
+    rpm: Option<f64>,
+    over: &AxisRequest,
+    (starts, budget): (usize, Budget),
+) -> Result<SpeedSurvey, Refusal> {
     let values = over.values()?;
     let parameter = Parameter::named(model, &over.name)?;
     let range = [values.low, values.high];
     let count = u32::try_from(values.count).unwrap_or(u32::MAX);
-    let resolution = Resolution::new(Step::for_values(range, count, values.spacing), starts);
+    let resolution = Resolution { budget, ..Resolution::new(Step::for_values(range, count, values.spacing), starts) };
     Ok(speeds(&Over::new(model, parameter, rpm)?, range, &resolution, &Unwatched)?)
 }
 

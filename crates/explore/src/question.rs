@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use corner_impact::flight::State;
 use corner_impact::model::{Model, OSORIO_2008};
 use corner_impact::orbit::Parameter;
+use corner_impact::orbit::long_run::Budget;
 use corner_impact::study::survey::{Axis, Placed, Spacing, Start, Values, limits};
 use serde::Deserialize;
 
@@ -89,6 +90,9 @@ pub enum View {
         /// Starts at each value.
         #[serde(default = "few_starts")]
         starts: usize,
+        /// How long the runs of a value are followed.
+        #[serde(default)]
+        budget: BudgetName,
     },
     /// Periodic orbits at one speed.
     Orbit {
@@ -166,8 +170,24 @@ pub enum BudgetName {
     /// That of `simulate` and `speeds`.
     #[default]
     Whole,
-    /// That of `chart`, while a number is being dragged.
+    /// That of `chart`: for what is shown while a number is being dragged, and for events of many values.
     Quick,
+}
+
+impl BudgetName {
+    /// The budget.
+    pub(crate) fn budget(self) -> Budget {
+        match self {
+            Self::Whole => Budget::SURVEY,
+            Self::Quick => Budget::CHART,
+        }
+    }
+
+    /// Options of a command for this budget, each after a blank.
+    pub(crate) fn options(self) -> String {
+        let Budget { transient, record, patience, .. } = self.budget();
+        format!(" --transient {transient} --record {record} --patience {patience}")
+    }
 }
 
 /// Start of a run: on the cam at rest without any field.

@@ -230,7 +230,7 @@
           if (coarse) return;
           if (context.option("all", false)) attractors(state, axis, question, which, x);
           if (!context.option("events", true)) return;
-          const sheet = await context.ask({ view: "speeds", ...question, over: { ...question.over, count: 16 }, count: 16, starts: 4 }, { lane: "diagram-events", slow: "last", silent: true });
+          const sheet = await context.ask({ view: "speeds", ...question, over: { ...question.over, count: 16 }, starts: 4, budget: "quick" }, { lane: "diagram-events", slow: "last", silent: true });
           if (sheet) { seen.sheet = sheet; seen.whose = asked(state); draw(context.state()); }
         },
         highlight(motion) {
