@@ -79,7 +79,6 @@ fn questions() -> Vec<Value> {
         json!({ "view": "verify", "model": changed }),
         json!({ "view": "local" }),
         json!({ "view": "design", "needs": ["no separation to 130 rpm"] }),
-        json!({ "view": "locate", "rpm": [670.0, 690.0] }),
         json!({ "view": "motion", "rpm": 0.0 }),
     ]
 }

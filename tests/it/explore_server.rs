@@ -45,7 +45,6 @@ fn answers_are_those_of_the_command_line() {
         common::text(run.stdout)
     };
     for (view, fields) in [
-        ("locate", json!({ "rpm": [600, 700] })),
         ("orbit", json!({ "rpm": 680 })),
         ("verify", json!({})),
         ("design", json!({ "count": 5 })),

@@ -11,7 +11,6 @@ use corner_impact::study::attractors::{Resolution, Step};
 use corner_impact::study::basins::{BasinSection, SectionStarts};
 use corner_impact::study::design::{Asked, Design, design};
 use corner_impact::study::local::NextToCorner;
-use corner_impact::study::locate::{Located, locate};
 use corner_impact::study::orbit::{OrbitQuery, Orbits, orbits};
 use corner_impact::study::simulate::Simulation;
 use corner_impact::study::speeds::{SpeedSurvey, speeds};
@@ -24,7 +23,7 @@ use crate::machine::CamShape;
 use crate::model::{ModelPage, Template};
 use crate::motion::{LongRunFound, MotionFound};
 use crate::question::{AxisRequest, BasinsRequest, PageQuestion, View};
-use crate::{ChangedModel, Refusal};
+use crate::{ChangedModel, PageRefusal};
 
 /// An answer: what was found and how it is known, or the reason why there is nothing.
 #[derive(Serialize)]
@@ -42,7 +41,7 @@ pub struct Answer {
     pub found: Option<Found>,
     /// Why nothing was found.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub error: Option<Refusal>,
+    pub error: Option<PageRefusal>,
 }
 
 /// What was found: the document of the command, where one has the same subject.
@@ -61,12 +60,11 @@ pub enum Found {
     Verify(Box<Verification>),
     Local(NextToCorner),
     Design(Box<Design>),
-    Locate(Box<Located>),
 }
 
 impl Answer {
     /// An answer that has a reason alone.
-    pub(crate) fn refused(view: &'static str, error: Refusal) -> Self {
+    pub(crate) fn refused(view: &'static str, error: PageRefusal) -> Self {
         Self { view, command: None, known: None, found: None, error: Some(error) }
     }
 }
@@ -102,10 +100,10 @@ fn whole(view: &'static str, command: Option<String>, known: Evidence, found: Fo
 /// What a view finds, the command with its options, and the evidence.
 type Finding = (Found, Option<(&'static str, String)>, Evidence);
 
-fn find(changed: &ChangedModel, given: &Model, model: &Model, view: &View) -> Result<Finding, Refusal> {
+fn find(changed: &ChangedModel, given: &Model, model: &Model, view: &View) -> Result<Finding, PageRefusal> {
     let again = |name, options: String| Some((name, options));
     Ok(match view {
-        View::Template { .. } => return Err(Refusal::of_words("template: needs no model")),
+        View::Template { .. } => return Err(PageRefusal::of_words("template: needs no model")),
         View::Model => (Found::Model(Box::new(ModelPage::of(changed, given, model)?)), None, Evidence::Read),
         View::Cam => {
             (Found::Cam(Box::new(CamShape::of(model)?)), again("cam", "--json".to_owned()), Evidence::Computed)
@@ -127,7 +125,8 @@ fn find(changed: &ChangedModel, given: &Model, model: &Model, view: &View) -> Re
             (Found::LongRun(LongRunFound::of(judged)), again("simulate", options), Evidence::Sampled)
         }
         View::Diagram(asked) => {
-            let attractors = if asked.attractors { " --attractors" } else { "" };
+            let attractors =
+                if asked.attractors { format!(" --attractors --patience {}", asked.patience) } else { String::new() };
             let options = format!(
                 "{} --transient {} --record {}{attractors}{} --out diagram.csv",
                 asked.over.options(asked.rpm),
@@ -162,7 +161,7 @@ fn find(changed: &ChangedModel, given: &Model, model: &Model, view: &View) -> Re
         }
         View::Design { rpm, count, needs } => {
             let needs = needs.iter().map(|text| Ok((text.clone(), text.parse().map_err(need(text))?)));
-            let needs = needs.collect::<Result<Vec<_>, Refusal>>()?;
+            let needs = needs.collect::<Result<Vec<_>, PageRefusal>>()?;
             let asked = Asked { rpm: *rpm, speeds: *count, needs, ..Asked::default() };
             let found = design(model, &asked, &Unwatched)?;
             let range = rpm.map_or(String::new(), |[low, high]| format!("--rpm {low}:{high} "));
@@ -173,16 +172,11 @@ fn find(changed: &ChangedModel, given: &Model, model: &Model, view: &View) -> Re
                 Evidence::Computed,
             )
         }
-        View::Locate { rpm: [low, high] } => {
-            let range = corner_impact::model::Study { rpm_min: *low, rpm_max: *high };
-            let found = locate(model, range, 1, &Unwatched)?;
-            (Found::Locate(Box::new(found)), again("locate", format!("--rpm {low}:{high} --json")), Evidence::Computed)
-        }
     })
 }
 
-fn need(text: &str) -> impl Fn(String) -> Refusal {
-    move |words| Refusal::of_words(format!("need \"{text}\": {words}"))
+fn need(text: &str) -> impl Fn(String) -> PageRefusal {
+    move |words| PageRefusal::of_words(format!("need \"{text}\": {words}"))
 }
 
 /// Attractors over an axis, as the command `speeds` has them.
@@ -191,7 +185,7 @@ fn survey(
     rpm: Option<f64>,
     over: &AxisRequest,
     (starts, budget): (usize, Budget),
-) -> Result<SpeedSurvey, Refusal> {
+) -> Result<SpeedSurvey, PageRefusal> {
     let values = over.values()?;
     let parameter = Parameter::named(model, &over.name)?;
     let range = [values.low, values.high];
@@ -204,9 +198,9 @@ fn survey(
 const MOST_CELLS: usize = 100_000;
 
 /// Basins of a grid, as the command `basins` has them.
-fn basins(model: &Model, asked: &BasinsRequest) -> Result<GridBasins, Refusal> {
+fn basins(model: &Model, asked: &BasinsRequest) -> Result<GridBasins, PageRefusal> {
     if asked.grid[0].saturating_mul(asked.grid[1]) > MOST_CELLS || asked.grid.contains(&0) {
-        return Err(Refusal::of_words(format!("basins: grid: at least one cell, and at most {MOST_CELLS}")));
+        return Err(PageRefusal::of_words(format!("basins: grid: at least one cell, and at most {MOST_CELLS}")));
     }
     let section = BasinSection::new(model, asked.rpm, asked.cam_angle_rad)?;
     let grid = section.grid(asked.grid, asked.position, asked.velocity)?;

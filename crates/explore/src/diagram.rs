@@ -13,7 +13,7 @@ use corner_impact::study::survey::{
 };
 use serde::Serialize;
 
-use crate::Refusal;
+use crate::PageRefusal;
 use crate::question::DiagramRequest;
 
 /// Impacts at each value, as columns: those of `diagram --out` for impacts.
@@ -42,20 +42,22 @@ const MOST_REVOLUTIONS: u64 = 100_000_000;
 
 impl Diagram {
     /// Runs each value.
-    pub(crate) fn of(model: &Model, asked: &DiagramRequest) -> Result<Self, Refusal> {
+    pub(crate) fn of(model: &Model, asked: &DiagramRequest) -> Result<Self, PageRefusal> {
         let axis = asked.over.axis(model)?;
         let (over, values) = (axis.parameter.name().to_owned(), axis.values.to_vec());
         let each = asked.transient.saturating_add(asked.record);
         if each.saturating_mul(values.len() as u64) > MOST_REVOLUTIONS {
             let words = format!("diagram: at most {MOST_REVOLUTIONS} revolutions of all values together");
-            return Err(Refusal::of_words(words));
+            return Err(PageRefusal::of_words(words));
         }
         let sweep = Sweep {
             over: Survey::new(model, asked.rpm, axis, None)?,
             starts: match asked.attractors {
-                true => Beginning::Found(Arc::new(|machine| {
-                    on_attractors(machine, &Sample::Spread(SAMPLED), Budget::SURVEY)
-                })),
+                true => {
+                    let DiagramRequest { transient, record, patience, .. } = *asked;
+                    let budget = Budget { transient, record, patience, ..Budget::SURVEY };
+                    Beginning::Found(Arc::new(move |machine| on_attractors(machine, &Sample::Spread(SAMPLED), budget)))
+                }
                 false => Beginning::One(asked.start.start()?),
             },
             following: SweepStart::Nothing,

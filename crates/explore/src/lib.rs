@@ -24,7 +24,7 @@ mod refusal;
 pub use answer::{Answer, answer};
 pub use page::{PageModel, PageWords, SCRIPTS, STYLE, Transport, mounting, page, tour_models};
 pub use question::{ChangedModel, PageQuestion};
-pub use refusal::Refusal;
+pub use refusal::PageRefusal;
 
 use corner_impact::json;
 use corner_impact::model::Units;
@@ -33,7 +33,7 @@ use corner_impact::model::Units;
 pub fn respond(question: &str) -> String {
     let (answer, units) = match serde_json::from_str::<PageQuestion>(question) {
         Ok(question) => answer(&question),
-        Err(error) => (Answer::refused("", Refusal::of_words(format!("question: {error}"))), Units::default()),
+        Err(error) => (Answer::refused("", PageRefusal::of_words(format!("question: {error}"))), Units::default()),
     };
     // Answers hold nothing that JSON cannot write.
     json::compact(&answer, &units).unwrap_or_default()

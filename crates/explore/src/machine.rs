@@ -7,7 +7,7 @@ use corner_impact::model::Model;
 use corner_impact::study::cam::CamSheet;
 use serde::Serialize;
 
-use crate::Refusal;
+use crate::PageRefusal;
 
 /// Lift and shape of a cam, with the document of `cam --json`.
 #[derive(Serialize)]
@@ -25,7 +25,7 @@ const ANGLES: usize = 721;
 
 impl CamShape {
     /// Computes the lift at evenly spaced angles, and the shape.
-    pub(crate) fn of(model: &Model) -> Result<Self, Refusal> {
+    pub(crate) fn of(model: &Model) -> Result<Self, PageRefusal> {
         let cam = Cam::new(model)?;
         let angles: Vec<f64> = (0..ANGLES).map(|index| TAU * index as f64 / (ANGLES - 1) as f64).collect();
         let lifts: Vec<_> = angles.iter().map(|angle| cam.lift(if *angle < TAU { *angle } else { 0.0 })).collect();

@@ -9,7 +9,7 @@ use corner_impact::study::speeds::usual_range;
 use corner_impact::uncertainty::PlausibleMachines;
 use serde::Serialize;
 
-use crate::{ChangedModel, Refusal};
+use crate::{ChangedModel, PageRefusal};
 
 /// A model with its numbers.
 #[derive(Serialize)]
@@ -83,7 +83,7 @@ struct CornerFound {
 
 impl ModelPage {
     /// Lists a model; `given` is the same without changes.
-    pub(crate) fn of(changed: &ChangedModel, given: &Model, model: &Model) -> Result<Self, Refusal> {
+    pub(crate) fn of(changed: &ChangedModel, given: &Model, model: &Model) -> Result<Self, PageRefusal> {
         let cam = Cam::new(model)?;
         let machines = PlausibleMachines::of(model, &cam)?;
         let (separation, errors) = known(Contact::new(&cam, model.follower).separation(), &machines);
@@ -214,11 +214,11 @@ pub struct Template {
 
 impl Template {
     /// The file of a law.
-    pub(crate) fn of(law: &str) -> Result<Self, Refusal> {
+    pub(crate) fn of(law: &str) -> Result<Self, PageRefusal> {
         let laws = || TEMPLATES.iter().map(|template| template.law).collect::<Vec<_>>().join(", ");
         let template = ModelTemplate::of(law);
         let template =
-            template.ok_or_else(|| Refusal::of_words(format!("law \"{law}\": must be one of {}", laws())))?;
+            template.ok_or_else(|| PageRefusal::of_words(format!("law \"{law}\": must be one of {}", laws())))?;
         Ok(Self { text: template.whole() })
     }
 }

@@ -8,7 +8,7 @@ use corner_impact::study::simulate::Simulation;
 use corner_impact::study::survey::Judged;
 use serde::Serialize;
 
-use crate::Refusal;
+use crate::PageRefusal;
 use crate::question::MotionRequest;
 
 /// Moments and events of a run, as columns: those of `simulate --out` and of `simulate --events`.
@@ -46,13 +46,13 @@ const MOST_MOMENTS: u64 = 200_000;
 
 impl MotionFound {
     /// Runs the transient and then records.
-    pub(crate) fn of(model: &Model, asked: &MotionRequest) -> Result<Self, Refusal> {
+    pub(crate) fn of(model: &Model, asked: &MotionRequest) -> Result<Self, PageRefusal> {
         let moments = asked.revolutions.saturating_mul(u64::from(asked.samples));
         if asked.revolutions.max(asked.transient) > MOST_REVOLUTIONS || moments > MOST_MOMENTS {
             let words = format!(
                 "motion: at most {MOST_REVOLUTIONS} revolutions, and at most {MOST_MOMENTS} moments of those that are shown"
             );
-            return Err(Refusal::of_words(words));
+            return Err(PageRefusal::of_words(words));
         }
         let Simulation { machine, first, .. } = Simulation::new(model, asked.rpm, asked.start.start()?)?;
         let (omega, mut motion) = (machine.angular_velocity(), first);

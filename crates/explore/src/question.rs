@@ -9,7 +9,7 @@ use corner_impact::orbit::long_run::Budget;
 use corner_impact::study::survey::{Axis, Placed, Spacing, Start, Values, limits};
 use serde::Deserialize;
 
-use crate::Refusal;
+use crate::PageRefusal;
 
 /// A question of the page.
 #[derive(Clone, Debug, Deserialize)]
@@ -39,7 +39,7 @@ pub struct ChangedModel {
 
 impl ChangedModel {
     /// The model as its file has it, and with its changes.
-    pub(crate) fn read(&self) -> Result<[Model; 2], Refusal> {
+    pub(crate) fn read(&self) -> Result<[Model; 2], PageRefusal> {
         let given = match (&self.file, &self.text) {
             (Some(file), Some(text)) => Model::parse(file, text)?,
             (None, Some(text)) => Model::parse("model.toml", text)?,
@@ -123,11 +123,6 @@ pub enum View {
         #[serde(default)]
         needs: Vec<String>,
     },
-    /// Corner impacts over a range of speeds, rpm.
-    Locate {
-        /// Lowest and highest speed.
-        rpm: [f64; 2],
-    },
 }
 
 impl View {
@@ -146,7 +141,6 @@ impl View {
             Self::Verify => "verify",
             Self::Local => "local",
             Self::Design { .. } => "design",
-            Self::Locate { .. } => "locate",
         }
     }
 }
@@ -210,17 +204,17 @@ pub struct StartRequest {
 
 impl StartRequest {
     /// The start.
-    pub(crate) fn start(self) -> Result<Start, Refusal> {
+    pub(crate) fn start(self) -> Result<Start, PageRefusal> {
         let cam_angle = self.cam_angle_rad;
         match (self.position, self.velocity, self.relative_velocity) {
             _ if !(0.0..std::f64::consts::TAU).contains(&cam_angle) => {
-                Err(Refusal::of_words(format!("start: cam angle = {cam_angle}: must be from 0 to below 2 pi")))
+                Err(PageRefusal::of_words(format!("start: cam angle = {cam_angle}: must be from 0 to below 2 pi")))
             }
             (None, None, leaving) => Ok(Start { cam_angle, follower: Placed::OnCam(leaving.unwrap_or(0.0)) }),
             (Some(position), Some(velocity), None) => {
                 Ok(Start { cam_angle, follower: Placed::At(State { position, velocity }) })
             }
-            _ => Err(Refusal::of_words("start: takes a position and a velocity, or a relative velocity")),
+            _ => Err(PageRefusal::of_words("start: takes a position and a velocity, or a relative velocity")),
         }
     }
 
@@ -285,6 +279,13 @@ pub struct DiagramRequest {
     /// Whether every attractor that 64 starts find is recorded.
     #[serde(default)]
     pub attractors: bool,
+    /// Revolutions that runs which settle on nothing are followed for before that is called chaos, where attractors are recorded.
+    #[serde(default = "usual_patience")]
+    pub patience: u64,
+}
+
+fn usual_patience() -> u64 {
+    Budget::SURVEY.patience
 }
 
 fn hundred() -> u64 {
@@ -318,21 +319,22 @@ impl AxisRequest {
     const MOST: usize = 20_000;
 
     /// The parameter and its values.
-    pub(crate) fn axis(&self, model: &Model) -> Result<Axis, Refusal> {
+    pub(crate) fn axis(&self, model: &Model) -> Result<Axis, PageRefusal> {
         Ok(Axis::new(Parameter::named(model, &self.name)?, &self.values()?))
     }
 
     /// The values.
-    pub(crate) fn values(&self) -> Result<Values, Refusal> {
+    pub(crate) fn values(&self) -> Result<Values, PageRefusal> {
         let spacing = if self.log { Spacing::Logarithmic } else { Spacing::Linear };
         let values = Values { low: self.low, high: self.high, count: self.count, spacing };
         if self.count > Self::MOST {
-            return Err(Refusal::of_words(format!("over: count = {}: must be at most {}", self.count, Self::MOST)));
+            return Err(PageRefusal::of_words(format!("over: count = {}: must be at most {}", self.count, Self::MOST)));
         }
         let what = if self.name == "rpm" { "speed" } else { "value" };
-        let values = values.checked(what).map_err(|words| Refusal::of_words(format!("over: {words}")))?;
+        let values = values.checked(what).map_err(|words| PageRefusal::of_words(format!("over: {words}")))?;
         if self.name == "rpm" {
-            limits::speed(values.low).map_err(|words| Refusal::of_words(format!("rpm = {}: {words}", values.low)))?;
+            limits::speed(values.low)
+                .map_err(|words| PageRefusal::of_words(format!("rpm = {}: {words}", values.low)))?;
         }
         Ok(values)
     }

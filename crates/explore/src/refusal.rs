@@ -5,7 +5,7 @@ use serde::Serialize;
 
 /// Reason in the program's own words, with the place in the model file if it has one.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct Refusal {
+pub struct PageRefusal {
     /// The sentence.
     pub sentence: String,
     /// File, line from 1, field and value that it is about.
@@ -19,21 +19,21 @@ pub struct Refusal {
     pub field: Option<String>,
 }
 
-impl Refusal {
+impl PageRefusal {
     /// A reason without a place.
     pub fn of_words(sentence: impl ToString) -> Self {
         Self { sentence: sentence.to_string(), ..Self::default() }
     }
 }
 
-impl From<ModelError> for Refusal {
+impl From<ModelError> for PageRefusal {
     fn from(error: ModelError) -> Self {
         let sentence = error.to_string();
         Self { sentence, file: Some(error.file.into_string()), line: error.line, field: error.field }
     }
 }
 
-impl From<String> for Refusal {
+impl From<String> for PageRefusal {
     fn from(sentence: String) -> Self {
         Self::of_words(sentence)
     }
@@ -41,7 +41,7 @@ impl From<String> for Refusal {
 
 macro_rules! in_words {
     ($($error:ty),+ $(,)?) => {$(
-        impl From<$error> for Refusal {
+        impl From<$error> for PageRefusal {
             fn from(error: $error) -> Self {
                 Self::of_words(error)
             }
@@ -56,7 +56,6 @@ in_words!(
     corner_impact::study::StudyError,
     corner_impact::study::attractors::AttractorsError,
     corner_impact::study::basins::GridError,
-    corner_impact::study::locate::LocateRangeError,
     corner_impact::study::survey::OverError,
     corner_impact::study::survey::SurveyError,
     corner_impact::study::survey::SweepError,

@@ -15,11 +15,11 @@ const MOST_POINTS: usize = 40_000;
 const MOST_STEPS: usize = 100_000_000;
 impl Host {
     /// Most occupied cells that are drawn as dots; with more, an image is embedded. In a page an image takes its place as soon as dots are
-    /// as small as the cells: it has a fourth of the bytes.
+    /// nearly as small as the cells: it has a fourth of the bytes.
     fn most_dots(self) -> usize {
         match self {
             Self::File => 25_000,
-            Self::Page => 6000,
+            Self::Page => 2500,
         }
     }
 

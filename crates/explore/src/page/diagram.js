@@ -192,7 +192,7 @@
       // All attractors cost a hundred times as much as one run each: the plain diagram stands there until they are found.
       const attractors = async (state, axis, question, which, x) => {
         panel.status("looking for all attractors\u2026");
-        const found = await context.ask({ view: "diagram", ...question, over: { ...question.over, count: 100 }, transient: 300, record: 60, attractors: true }, { lane: "diagram-attractors", slow: "last", silent: true });
+        const found = await context.ask({ view: "diagram", ...question, over: { ...question.over, count: 100 }, transient: 300, record: 60, attractors: true, patience: 10000 }, { lane: "diagram-attractors", slow: "last", silent: true });
         panel.status("");
         if (!found || !context.option("all", false)) return;
         Object.assign(seen, { found, axis, which, x, turn: (seen.turn || 0) + 1, allOf: asked(state) });
