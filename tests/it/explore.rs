@@ -196,12 +196,12 @@ fn runs_and_diagrams_are_those_of_the_tables() {
 #[test]
 fn attractors_basins_and_long_runs_are_those_of_the_commands() {
     let model = model(MACHINES[0]);
-    let over = json!({ "name": "rpm", "low": 676.0, "high": 680.0, "count": 2 });
+    let over = json!({ "name": "rpm", "low": 678.0, "high": 680.0, "count": 2 });
     let answer =
-        asked(&model, json!({ "view": "diagram", "over": over, "transient": 20, "record": 2, "attractors": true }));
+        asked(&model, json!({ "view": "diagram", "over": over, "transient": 200, "record": 2, "attractors": true }));
     let table = columns(&impacts(&printed(&answer)));
     assert_columns(&answer["found"], &table, &[("attractor", "attractor"), ("cam_angle_", "cam_angle_")]);
-    assert!(answer["found"]["attractor"].as_array().unwrap().contains(&json!(1)), "two motions coexist at 676 rpm");
+    assert!(answer["found"]["attractor"].as_array().unwrap().contains(&json!(1)), "two motions coexist at 678 rpm");
 
     let grid = json!({ "view": "basins", "rpm": 678.0, "cam_angle_rad": 0.25, "grid": [8, 6], "position": [0.5, 6.0], "velocity": [-60.0, 60.0] });
     let answer = asked(&model, grid);

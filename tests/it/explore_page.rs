@@ -92,12 +92,18 @@ fn assert_answers(page: &mut Page, questions: &[Value]) {
     }
 }
 
-/// Drops what the clock says: a browser's page has none.
-fn timeless(mut answer: Value) -> Value {
-    if let Some(found) = answer.get_mut("found").and_then(Value::as_object_mut) {
-        found.retain(|name, _| name != "wall_s");
+/// Drops what the clock says, which a browser's page has not. Numbers are doubles, as a browser has them: 90 is 90.0.
+fn timeless(answer: Value) -> Value {
+    match answer {
+        Value::Object(fields) => fields
+            .into_iter()
+            .filter(|(name, _)| name != "wall_s")
+            .map(|(name, value)| (name, timeless(value)))
+            .collect(),
+        Value::Array(values) => values.into_iter().map(timeless).collect(),
+        Value::Number(number) => json!(number.as_f64()),
+        other => other,
     }
-    answer
 }
 
 #[test]
@@ -272,7 +278,9 @@ fn tours_go_through_without_a_complaint() {
             let text = page.value("document.querySelector('.story .text').textContent");
             let ends = text.as_str().unwrap().matches(|end| ".?!".contains(end)).count();
             assert!(ends >= 2, "{name}, step {step}: {text}");
-            assert_eq!(sentences(&mut page), json!([]), "{name}, step {step}");
+            // Models without a range of speeds to search have no corner impact, and the view of the local map says so.
+            let elsewhere = "[...document.querySelectorAll('.explore .panel:not(#view-local) .sentence:not([hidden])')].map((each) => each.textContent)";
+            assert_eq!(page.value(elsewhere), json!([]), "{name}, step {step}");
             if step < steps {
                 page.value("[...document.querySelectorAll('.story button')].find((each) => each.textContent === 'Next').click()");
             }

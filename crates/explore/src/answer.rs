@@ -27,7 +27,7 @@ use crate::{ChangedModel, PageRefusal};
 
 /// An answer: what was found and how it is known, or the reason why there is nothing.
 #[derive(Serialize)]
-pub struct Answer {
+pub struct PageAnswer {
     /// The view of the question.
     pub view: &'static str,
     /// Command line that computes it again; none where no command does.
@@ -62,7 +62,7 @@ pub enum Found {
     Design(Box<Design>),
 }
 
-impl Answer {
+impl PageAnswer {
     /// An answer that has a reason alone.
     pub(crate) fn refused(view: &'static str, error: PageRefusal) -> Self {
         Self { view, command: None, known: None, found: None, error: Some(error) }
@@ -70,17 +70,17 @@ impl Answer {
 }
 
 /// Answers a question; the units are those in which the answer is to be written.
-pub fn answer(question: &PageQuestion) -> (Answer, Units) {
+pub fn answer(question: &PageQuestion) -> (PageAnswer, Units) {
     let view = question.view.name();
     if let View::Template { law } = &question.view {
         return match Template::of(law) {
             Ok(found) => (whole(view, None, Evidence::Read, Found::Template(found)), Units::default()),
-            Err(error) => (Answer::refused(view, error), Units::default()),
+            Err(error) => (PageAnswer::refused(view, error), Units::default()),
         };
     }
     let [given, model] = match question.model.read() {
         Ok(models) => models,
-        Err(error) => return (Answer::refused(view, error), Units::default()),
+        Err(error) => return (PageAnswer::refused(view, error), Units::default()),
     };
     let found = find(&question.model, &given, &model, &question.view);
     let answer = match found {
@@ -88,13 +88,13 @@ pub fn answer(question: &PageQuestion) -> (Answer, Units) {
             let command = options.map(|(name, options)| command(name, &model, &options));
             whole(view, command, known, found)
         }
-        Err(error) => Answer::refused(view, error),
+        Err(error) => PageAnswer::refused(view, error),
     };
     (answer, model.units)
 }
 
-fn whole(view: &'static str, command: Option<String>, known: Evidence, found: Found) -> Answer {
-    Answer { view, command, known: Some(known), found: Some(found), error: None }
+fn whole(view: &'static str, command: Option<String>, known: Evidence, found: Found) -> PageAnswer {
+    PageAnswer { view, command, known: Some(known), found: Some(found), error: None }
 }
 
 /// What a view finds, the command with its options, and the evidence.

@@ -21,7 +21,7 @@ mod page;
 mod question;
 mod refusal;
 
-pub use answer::{Answer, answer};
+pub use answer::{PageAnswer, answer};
 pub use page::{PageModel, PageWords, SCRIPTS, STYLE, Transport, mounting, page, tour_models};
 pub use question::{ChangedModel, PageQuestion};
 pub use refusal::PageRefusal;
@@ -33,7 +33,7 @@ use corner_impact::model::Units;
 pub fn respond(question: &str) -> String {
     let (answer, units) = match serde_json::from_str::<PageQuestion>(question) {
         Ok(question) => answer(&question),
-        Err(error) => (Answer::refused("", PageRefusal::of_words(format!("question: {error}"))), Units::default()),
+        Err(error) => (PageAnswer::refused("", PageRefusal::of_words(format!("question: {error}"))), Units::default()),
     };
     // Answers hold nothing that JSON cannot write.
     json::compact(&answer, &units).unwrap_or_default()

@@ -163,6 +163,8 @@
       if (!found) { if (app.reason) headline.refuse(app.reason); return; }
       if (key !== asked) return;
       const before = app.model;
+      // What a model that cannot be run has left in views out of sight.
+      if (app.reason) app.views.panels.forEach(({ panel }) => panel.error(null));
       [app.model, app.reason] = [found, null];
       known = key;
       app.controls.update();
