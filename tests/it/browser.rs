@@ -38,8 +38,9 @@ fn open() -> Option<Page> {
 /// Nothing was said on the console, and nothing fetched.
 fn assert_quiet(page: &Page) {
     assert_eq!(page.complaints(), Vec::<String>::new());
-    let outside: Vec<String> =
-        page.requests().into_iter().filter(|url| !url.starts_with("file://") && !url.starts_with("data:")).collect();
+    // The live page's workers are made of its own text.
+    let is_own = |url: &String| ["file://", "data:", "blob:"].iter().any(|own| url.starts_with(own));
+    let outside: Vec<String> = page.requests().into_iter().filter(|url| !is_own(url)).collect();
     assert_eq!(outside, Vec::<String>::new());
     assert!(page.requests().iter().any(|url| url.starts_with("file://")), "{:?}", page.requests());
 }
@@ -318,5 +319,30 @@ fn paper_has_no_controls_and_dark_ink() {
     let pages =
         String::from_utf8_lossy(&printed).split("/Type /Page").filter(|rest| !rest.starts_with('s')).count() - 1;
     assert!((8..=20).contains(&pages), "{pages} pages");
+    assert_quiet(&page);
+}
+
+/// The live page stands in the place of its still picture, if the program has its module.
+#[test]
+#[ignore = "slow"]
+fn a_section_of_the_report_is_live() {
+    let Some(mut page) = open() else { return };
+    if page.value("Boolean(document.getElementById('explore-module'))") != true {
+        assert_eq!(page.value("document.getElementById('explore-live').hidden"), true);
+        assert!(std::env::var_os("CORNER_IMPACT_BROWSER").is_none(), "`make explore` builds the module");
+        return;
+    }
+    page.until("typeof Explore !== 'undefined' && Explore.app && Explore.app.model !== null");
+    page.value("document.getElementById('explore-live').scrollIntoView({ behavior: 'instant' })");
+    page.until("document.querySelector('#explore-live .headline').textContent.includes(' rpm: ')");
+    assert_eq!(page.value("getComputedStyle(document.getElementById('explore-still')).display"), "none");
+    assert_eq!(page.value("Explore.app.model.name"), "osorio-2008");
+    page.value("Explore.app.assign('rpm', 183)");
+    page.until("document.querySelector('#explore-live .headline').textContent.startsWith('183 rpm: ')");
+    page.until("Explore.app.transport.pending() === 0");
+    assert_eq!(page.value("[...document.querySelectorAll('#explore-live .sentence:not([hidden])')].length"), 0);
+    page.window(390, 844, true);
+    page.until("Explore.app.transport.pending() === 0");
+    assert_eq!(page.value("document.documentElement.scrollWidth"), 390);
     assert_quiet(&page);
 }
