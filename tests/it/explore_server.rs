@@ -111,6 +111,8 @@ fn a_newer_question_stops_the_older_ones() {
         older.push(ask("answer?lane=slider", sequence, &endless()));
         std::thread::sleep(Duration::from_millis(5));
     }
+    // Where the last but one is refused, the last has come.
+    assert_eq!(status_of(&mut older.remove(98)), Some(409));
     // An older one that comes late is of no use.
     assert_eq!(status_of(&mut ask("answer?lane=slider", 99, &quick)), Some(409));
     let begun = Instant::now();
