@@ -39,8 +39,8 @@
 //! tells how far it has come, `cancel`, by which it is ended, `bracket`, which finds roots, `interval`, which proves that it has found all, `estimate`, a number with its error, `ball`, a number with the radius that is proved, `untrusted`, which shows text of somebody else, and `file`, which writes files whole or not at all and reads them up to
 //! a limit.
 //!
-//! Two packages beside this one show its results. `crates/program` is the command with its pages, reports and figures; `crates/plot` turns a
-//! figure into SVG, PNG or PDF. Modules and items that this documentation does not show serve them, the Python package
+//! Three packages beside this one show its results. `crates/program` is the command with its pages, reports and figures; `crates/plot` turns a
+//! figure into SVG, PNG or PDF; `crates/explore` is the live page. Modules and items that this documentation does not show serve them, the Python package
 //! and the tests. They may change in any release.
 //!
 //! ```
