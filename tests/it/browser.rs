@@ -339,6 +339,11 @@ fn a_section_of_the_report_is_live() {
     page.until("document.querySelector('#explore-live .headline').textContent.includes(' rpm: ')");
     assert_eq!(page.value("getComputedStyle(document.getElementById('explore-still')).display"), "none");
     assert_eq!(page.value("Explore.app.model.name"), "osorio-2008");
+    // A click into the picture of the answer is a speed.
+    page.media("screen", &[("prefers-reduced-motion", "reduce")]);
+    page.click("#answer .broad > svg");
+    page.until("Explore.app.store.state.rpm > 300 && Explore.app.store.state.rpm < 600");
+    page.until("document.querySelector('#explore-live').getBoundingClientRect().top < innerHeight");
     page.value("Explore.app.assign('rpm', 183)");
     page.until("document.querySelector('#explore-live .headline').textContent.startsWith('183 rpm: ')");
     page.until("Explore.app.transport.pending() === 0");
