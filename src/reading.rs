@@ -26,6 +26,11 @@ impl Model {
         Self::written(file, text)?.sprung()
     }
 
+    /// Checks the text of a model file that needs no other file; `file` is its name in error messages. It is refused if it names a table.
+    pub fn parse_alone(file: &str, text: &str) -> Result<Self, ModelError> {
+        Self::written_alone(file, text)?.sprung()
+    }
+
     /// Checks a document with the fields of a model file; `name` is its name in error messages.
     pub fn of_document(name: &str, document: &serde_json::Value) -> Result<Self, ModelError> {
         Self::written_as(name, document)?.sprung()

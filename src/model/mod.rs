@@ -166,6 +166,18 @@ impl Model {
         Self::from_fields(Fields::parse(file, text)?)
     }
 
+    /// Checks the text of a model file like [`Self::written`], and refuses one that names a table: no other file is read.
+    pub(crate) fn written_alone(file: &str, text: &str) -> Result<Self, ModelError> {
+        let fields = Fields::parse(file, text)?;
+        if fields.has("cam.file") {
+            return Err(fields.reject(
+                "cam.file",
+                "names another file, and the text is all there is here: write its rows as cam.rows",
+            ));
+        }
+        Self::from_fields(fields)
+    }
+
     /// Checks a document with the fields of a model file, except for what needs the cam; complaints call it `name`.
     pub(crate) fn written_as(name: &str, document: &serde_json::Value) -> Result<Self, ModelError> {
         Self::from_fields(Fields::of_document(name, document)?)

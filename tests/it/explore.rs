@@ -1,6 +1,7 @@
 //! Does the live page get the answers of the command line, digit for digit?
 
 use std::collections::BTreeMap;
+use std::path::Path;
 
 use corner_impact_explore::respond;
 use serde_json::{Value, json};
@@ -16,7 +17,7 @@ const MACHINES: [&str; 4] = [
 ];
 
 fn model(file: &str) -> Value {
-    json!({ "file": file, "text": std::fs::read_to_string(std::path::Path::new(crate::common::ROOT).join(file)).unwrap() })
+    json!({ "file": file, "text": std::fs::read_to_string(Path::new(crate::common::ROOT).join(file)).unwrap() })
 }
 
 fn asked(model: &Value, view: Value) -> Value {
@@ -44,7 +45,7 @@ fn words(command: &str) -> Vec<String> {
     words
 }
 
-/// What the command of an answer prints.
+/// Output of the command of an answer.
 fn printed(answer: &Value) -> String {
     let command = answer["command"].as_str().unwrap();
     let output = corner_impact(words(command).iter().map(String::as_str).chain(["--quiet"]));
@@ -288,6 +289,11 @@ fn what_cannot_be_answered_has_the_sentence_and_its_place() {
         (error["file"].as_str(), error["line"].as_u64(), error["field"].as_str()),
         (Some("bad.toml"), Some(2), Some("follower.mass"))
     );
+    // A text that names a table gets no file of the machine that answers.
+    let table = Path::new(crate::common::ROOT).join("models/laws/table-cubic.toml");
+    let named = json!({ "file": table, "text": std::fs::read_to_string(&table).unwrap() });
+    let error = refused(json!({ "view": "model", "model": named }));
+    assert!(of(&error).contains("write its rows as cam.rows") && error["field"] == "cam.file", "{error}");
     assert!(
         of(&refused(json!({ "view": "model", "model": { "set": { "restitution": 1.5 } } }))).contains("from 0 to 1")
     );
@@ -302,14 +308,14 @@ fn what_cannot_be_answered_has_the_sentence_and_its_place() {
     let long = json!({ "name": "rpm", "low": 600.0, "high": 700.0, "count": 1000 });
     assert!(of(&refused(json!({ "view": "diagram", "over": long, "record": 1_000_000 }))).contains("at most"));
     assert!(of(&refused(json!({ "view": "basins", "rpm": 700.0, "grid": [100_000, 100_000] }))).contains("at most"));
-    assert!(of(&refused(json!({ "view": "verify", "model": { "text": std::fs::read_to_string(std::path::Path::new(crate::common::ROOT).join("models/laws/harmonic.toml")).unwrap() } }))).contains("study"));
+    assert!(of(&refused(json!({ "view": "verify", "model": { "text": std::fs::read_to_string(Path::new(crate::common::ROOT).join("models/laws/harmonic.toml")).unwrap() } }))).contains("study"));
     for text in ["", "{", "[]", "null", "{\"view\":1}", "{\"view\":\"model\",\"model\":{\"tekst\":\"\"}}", "\u{0}"] {
         let answer: Value = serde_json::from_str(&respond(text)).unwrap();
         assert!(of(&answer["error"]).starts_with("question: "), "{text}: {answer}");
     }
 }
 
-/// What each step of the guided tours says, as the command has it. Commands with VALVE or DANGEROUS are of the model of that tour.
+/// Each step of the guided tours says what its command finds. Commands with VALVE or DANGEROUS are of the model of that tour.
 #[test]
 #[ignore = "slow"]
 fn tours_say_what_the_commands_find() {

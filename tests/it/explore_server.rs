@@ -93,7 +93,7 @@ fn answers_are_those_of_the_command_line() {
     assert_eq!((refused.status.code(), common::text(refused.stderr)), (Some(2), said));
 }
 
-/// Of a hundred questions of a moving slider, the last is answered, and the work on each other one ends.
+/// A hundred questions of a moving slider: the last is answered, and the work on each other one ends.
 #[test]
 fn a_newer_question_stops_the_older_ones() {
     let served = Served::start(&[]);

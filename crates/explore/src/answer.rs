@@ -36,7 +36,7 @@ pub struct PageAnswer {
     /// Evidence for the answer as a whole; parts may have their own.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub known: Option<Evidence>,
-    /// What was found.
+    /// Findings of the view.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub found: Option<Found>,
     /// Why nothing was found.
@@ -44,7 +44,7 @@ pub struct PageAnswer {
     pub error: Option<PageRefusal>,
 }
 
-/// What was found: the document of the command, where one has the same subject.
+/// Findings of a view: the document of the command with the same subject, if there is one.
 #[derive(Serialize)]
 #[serde(untagged)]
 pub enum Found {
@@ -97,7 +97,7 @@ fn whole(view: &'static str, command: Option<String>, known: Evidence, found: Fo
     PageAnswer { view, command, known: Some(known), found: Some(found), error: None }
 }
 
-/// What a view finds, the command with its options, and the evidence.
+/// Findings of a view, the command with its options, and the evidence.
 type Finding = (Found, Option<(&'static str, String)>, Evidence);
 
 fn find(changed: &ChangedModel, given: &Model, model: &Model, view: &View) -> Result<Finding, PageRefusal> {

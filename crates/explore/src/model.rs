@@ -59,13 +59,13 @@ struct SliderNumber {
     given: f64,
     /// One standard deviation.
     error: Option<f64>,
-    /// What the number must be, in words.
+    /// Allowed values in words.
     allowed: String,
     slider: [f64; 2],
     scale: &'static str,
 }
 
-/// Where the follower leaves the cam first.
+/// Speed and cam angle at which the follower first leaves the cam.
 #[derive(Serialize)]
 struct SeparationFound {
     rpm: f64,

@@ -17,7 +17,7 @@ pub struct PageQuestion {
     /// The model.
     #[serde(default)]
     pub model: ChangedModel,
-    /// What is asked about it.
+    /// The view that is asked for.
     #[serde(flatten)]
     pub view: View,
 }
@@ -41,8 +41,9 @@ impl ChangedModel {
     /// The model as its file has it, and with its changes.
     pub(crate) fn read(&self) -> Result<[Model; 2], PageRefusal> {
         let given = match (&self.file, &self.text) {
-            (Some(file), Some(text)) => Model::parse(file, text)?,
-            (None, Some(text)) => Model::parse("model.toml", text)?,
+            // Whoever asks gets no other file of this machine.
+            (Some(file), Some(text)) => Model::parse_alone(file, text)?,
+            (None, Some(text)) => Model::parse_alone("model.toml", text)?,
             (Some(file), None) => Model::parse(file, OSORIO_2008)?,
             (None, None) => Model::built_in()?,
         };
@@ -52,7 +53,7 @@ impl ChangedModel {
     }
 }
 
-/// What is asked about a model.
+/// A view of a model.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(tag = "view", rename_all = "snake_case")]
 pub enum View {
@@ -67,14 +68,14 @@ pub enum View {
     Cam,
     /// A run at one speed, moment by moment.
     Motion(MotionRequest),
-    /// What a run comes to.
+    /// Long-run motion of a run.
     LongRun {
         /// Speed, rpm.
         rpm: f64,
         /// Start of the run.
         #[serde(default)]
         start: StartRequest,
-        /// How long the run is followed.
+        /// Budget of the run.
         #[serde(default)]
         budget: BudgetName,
     },
@@ -90,7 +91,7 @@ pub enum View {
         /// Starts at each value.
         #[serde(default = "few_starts")]
         starts: usize,
-        /// How long the runs of a value are followed.
+        /// Budget of the runs at each value.
         #[serde(default)]
         budget: BudgetName,
     },

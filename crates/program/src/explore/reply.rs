@@ -29,7 +29,7 @@ const ALWAYS: &str = "Connection: close\r\n\
     X-Content-Type-Options: nosniff\r\n\
     X-Frame-Options: DENY\r\n";
 
-/// What a response other than the page may load: nothing.
+/// Policy of responses other than the page: they may load nothing.
 const NOTHING: &str = "default-src 'none'; frame-ancestors 'none'";
 
 /// Response to one request.

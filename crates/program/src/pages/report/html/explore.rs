@@ -1,4 +1,4 @@
-//! Where a number is changed and the motion is watched: a still picture, and in its place the live page if the program has its module.
+//! Section of the live page: a still picture, which the live page replaces if the program has its module.
 
 use corner_impact_explore::{SCRIPTS, STYLE, Transport, mounting};
 use maud::{Markup, PreEscaped, html};

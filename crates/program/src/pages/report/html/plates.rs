@@ -22,7 +22,7 @@ pub(crate) struct DrawnFigures {
     pub(crate) style: String,
 }
 
-/// What the page has of a figure.
+/// Parts of a figure on the page.
 struct DrawnFigure {
     /// SVG for a screen and for paper.
     broad: String,
