@@ -1,6 +1,8 @@
 //! A dense grid on the page: as SVG, or drawn directly into the pixels of a PNG.
 
+use std::borrow::Cow;
 use std::fmt::{self, Write};
+use std::io::Write as _;
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -140,26 +142,29 @@ impl Grid {
 fn image(shades: &Shades, colour: Colour) -> Result<(String, bool), png::EncodingError> {
     let size = [shades.columns(), shades.rows().len()];
     // Rows from above.
-    let upright = encoded(size, shades.rows().rev().flatten().copied().collect(), colour)?;
-    let turned = encoded([size[1], size[0]], turned(shades), colour)?;
+    let upright = encoded(size, shades.rows().rev().map(Cow::Borrowed), colour)?;
+    let columns = (0..size[0]).map(|column| Cow::Owned(turned(shades, column)));
+    let turned = encoded([size[1], size[0]], columns, colour)?;
     Ok(if turned.len() < upright.len() { (STANDARD.encode(turned), true) } else { (STANDARD.encode(upright), false) })
 }
 
-/// Columns of the shades from the left, each from above, two cells in a byte.
-fn turned(shades: &Shades) -> Vec<u8> {
-    let long = shades.rows().len().div_ceil(2);
-    let mut packed = vec![0; long * shades.columns()];
+/// A column of the shades from above, two cells in a byte.
+fn turned(shades: &Shades, column: usize) -> Vec<u8> {
+    let mut packed = vec![0; shades.rows().len().div_ceil(2)];
     for (row, cells) in shades.rows().rev().enumerate() {
-        let shift = if row % 2 == 0 { 4 } else { 0 };
-        for (column, shade) in shades.cells(cells).enumerate().filter(|(_, shade)| *shade > 0) {
-            packed[column * long + row / 2] |= shade << shift;
-        }
+        let pair = cells[column / 2];
+        let shade = if column % 2 == 0 { pair >> 4 } else { pair & 15 };
+        packed[row / 2] |= if row % 2 == 0 { shade << 4 } else { shade };
     }
     packed
 }
 
-/// A PNG of one colour, with an opacity for each shade; two shades in a byte.
-fn encoded([width, height]: [usize; 2], packed: Vec<u8>, colour: Colour) -> Result<Vec<u8>, png::EncodingError> {
+/// A PNG of one colour, with an opacity for each shade; two shades in a byte. Its rows are packed one by one: an image takes a megabyte.
+fn encoded<'a>(
+    [width, height]: [usize; 2],
+    rows: impl Iterator<Item = Cow<'a, [u8]>>,
+    colour: Colour,
+) -> Result<Vec<u8>, png::EncodingError> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, width as u32, height as u32);
     encoder.set_color(png::ColorType::Indexed);
@@ -171,7 +176,11 @@ fn encoded([width, height]: [usize; 2], packed: Vec<u8>, colour: Colour) -> Resu
     // Differences of shades pack worse than the shades.
     encoder.set_filter(png::Filter::NoFilter);
     let mut writer = encoder.write_header()?;
-    writer.write_image_data(&packed)?;
+    let mut stream = writer.stream_writer()?;
+    for row in rows {
+        stream.write_all(&row)?;
+    }
+    stream.finish()?;
     writer.finish()?;
     Ok(bytes)
 }
