@@ -153,8 +153,8 @@ fn turned(shades: &Shades, column: usize) -> Vec<u8> {
     let mut packed = vec![0; shades.rows().len().div_ceil(2)];
     for (row, cells) in shades.rows().rev().enumerate() {
         let pair = cells[column / 2];
-        let shade = if column % 2 == 0 { pair >> 4 } else { pair & 15 };
-        packed[row / 2] |= if row % 2 == 0 { shade << 4 } else { shade };
+        let shade = if column.is_multiple_of(2) { pair >> 4 } else { pair & 15 };
+        packed[row / 2] |= if row.is_multiple_of(2) { shade << 4 } else { shade };
     }
     packed
 }
