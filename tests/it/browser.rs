@@ -32,7 +32,12 @@ fn ledger() -> &'static corner_impact::paper::Claims {
 }
 
 fn open() -> Option<Page> {
-    Page::open(written())
+    let mut page = Page::open(written())?;
+    // What stands below the live page moves when it comes.
+    page.until(
+        "!document.getElementById('explore-module') || (typeof Explore !== 'undefined' && Boolean(Explore.app))",
+    );
+    Some(page)
 }
 
 /// Nothing was said on the console, and nothing fetched.
@@ -258,7 +263,7 @@ fn pointing_at_a_figure_shows_the_nearest_value_and_a_figure_can_be_zoomed_into(
     let line = &dossier.plates.iter().find(|plate| plate.id == "cam").unwrap().drawn.as_ref().unwrap().figure.panels[0];
     let lowest = line.series[0].data.points().unwrap().iter().map(|at| at[1]).fold(f64::INFINITY, f64::min);
     page.touch("#plate-cam .narrow svg[data-x]", [0.1, 0.935]);
-    page.until("document.querySelector('.value').hidden === false");
+    page.until("document.querySelector('.value')?.hidden === false");
     let shown = page.value("document.querySelector('.value').textContent");
     let shown = numbers_in(shown.as_str().unwrap());
     let [angle, lift] = shown[shown.len() - 2..] else { panic!("{shown:?}") };
