@@ -1,4 +1,4 @@
-//! What does the live page do in a browser, opened from disk and from its server? Skipped, and said to be, where there is no Chromium.
+//! Does the live page work in a browser, opened from disk and from its server? Without Chromium its tests say that they are skipped.
 
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};

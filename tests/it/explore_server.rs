@@ -24,7 +24,7 @@ fn endless() -> String {
     question("diagram", &json!({ "over": over, "transient": 99_000, "record": 1000 }))
 }
 
-/// What the page sees can be computed again: each answer names a command, whose document or table has the same digits.
+/// Each answer names a command whose document or table has the same digits.
 #[test]
 fn answers_are_those_of_the_command_line() {
     let served = Served::start(&["--threads", "2"]);

@@ -1,7 +1,7 @@
 //! The one function from question to answer.
 
 use corner_impact::cam::Cam;
-use corner_impact::command::command;
+use corner_impact::command::{command, shell_word};
 use corner_impact::known::Evidence;
 use corner_impact::model::{Model, Units};
 use corner_impact::orbit::long_run::Budget;
@@ -165,7 +165,7 @@ fn find(changed: &ChangedModel, given: &Model, model: &Model, view: &View) -> Re
             let asked = Asked { rpm: *rpm, speeds: *count, needs, ..Asked::default() };
             let found = design(model, &asked, &Unwatched)?;
             let range = rpm.map_or(String::new(), |[low, high]| format!("--rpm {low}:{high} "));
-            let needs: String = asked.needs.iter().map(|(text, _)| format!(" --need \"{text}\"")).collect();
+            let needs: String = asked.needs.iter().map(|(text, _)| format!(" --need {}", shell_word(text))).collect();
             (
                 Found::Design(Box::new(found)),
                 again("design", format!("{range}--speeds {count}{needs} --json")),

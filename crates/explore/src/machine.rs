@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use corner_impact::cam::{Cam, Jet, Outline};
+use corner_impact::cam::{Cam, Jet, Outline, within_a_turn};
 use corner_impact::model::Model;
 use corner_impact::study::cam::CamSheet;
 use serde::Serialize;
@@ -28,7 +28,7 @@ impl CamShape {
     pub(crate) fn of(model: &Model) -> Result<Self, PageRefusal> {
         let cam = Cam::new(model)?;
         let angles: Vec<f64> = (0..ANGLES).map(|index| TAU * index as f64 / (ANGLES - 1) as f64).collect();
-        let lifts: Vec<_> = angles.iter().map(|angle| cam.lift(if *angle < TAU { *angle } else { 0.0 })).collect();
+        let lifts: Vec<_> = angles.iter().map(|angle| cam.lift(within_a_turn(*angle))).collect();
         Ok(Self {
             angle_deg: angles.iter().map(|angle| angle.to_degrees()).collect(),
             lift_m: lifts.iter().map(|lift| lift.value).collect(),

@@ -162,10 +162,10 @@ fn some_speeds() -> u32 {
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum BudgetName {
-    /// That of `simulate` and `speeds`.
+    /// Budget of `simulate` and `speeds`.
     #[default]
     Whole,
-    /// That of `chart`: for what is shown while a number is being dragged, and for events of many values.
+    /// Budget of `chart`, for answers while a number is being dragged and for events of many values.
     Quick,
 }
 

@@ -34,7 +34,7 @@ struct SeriesValues<'a> {
     /// Place among the series of its panel.
     number: usize,
     name: &'a str,
-    /// As in the figure's table.
+    /// Kind of the row in the figure's table.
     kind: &'static str,
     #[serde(flatten)]
     values: Values,
