@@ -108,11 +108,19 @@ pub fn is_rounded(written: &str, value: &str) -> bool {
     known >= places && (written - value).abs() <= 0.5 * 10f64.powi(-(places as i32)) * (1.0 + 1e-6)
 }
 
-/// Every page: the README and all of docs/.
+/// Every page: the README and all of docs/, whose list for the book is a page as well.
 pub fn pages(root: &Path) -> Vec<Page> {
-    let docs = std::fs::read_dir(root.join("docs")).unwrap().map(|entry| entry.unwrap().path());
-    let mut paths: Vec<PathBuf> = docs.filter(|path| path.extension().is_some_and(|end| end == "md")).collect();
+    let mut paths = markdown(&root.join("docs"));
     paths.sort();
     let paths = paths.into_iter().map(|path| path.strip_prefix(root).unwrap().to_path_buf());
     [PathBuf::from("README.md")].into_iter().chain(paths).map(|path| Page::read(root, &path)).collect()
+}
+
+fn markdown(folder: &Path) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    let of_entry = |path: PathBuf| match path.is_dir() {
+        true => markdown(&path),
+        false => Some(path).into_iter().filter(|path| path.extension().is_some_and(|end| end == "md")).collect(),
+    };
+    entries.flat_map(of_entry).collect()
 }
