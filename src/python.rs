@@ -1,13 +1,22 @@
 //! Runs one script of `derivations/`: JSON in, JSON out; errors contain the command and the script's message.
 //!
 //! The scripts get a model's numbers and nothing that this program computed. They are part of the program: for each run they are written to
-//! a private temporary folder, run there, and removed, whatever signal ends the program. The current folder may contain files of others,
-//! and nothing of it is run or imported: the private folder is the script's own current folder, so that a relative entry of PATH or
-//! PYTHONPATH leads there, too. An interpreter that nobody chose starts with `-E -s`, without PYTHONPATH and without the user's own packages. The interpreter is `$CORNER_IMPACT_PYTHON`; else the one that has loaded this library, if one has; else
-//! that of the `.venv` of the folder in which this program was built, if it still exists; else `python3` of the PATH.
+//! a private temporary folder, run there, and removed, whatever signal ends the program. The current folder may contain files of others.
+//! Nothing of it is run or imported: the private folder is the script's own current folder, so that a relative entry of PATH or
+//! PYTHONPATH leads there, too.
+//!
+//! The interpreter is, in this order:
+//!
+//! 1. `$CORNER_IMPACT_PYTHON`;
+//! 2. the interpreter that has loaded this library, if one has;
+//! 3. that of the clone's `.venv`, if the program stands in the clone in which it was built;
+//! 4. `python3` of the PATH (`python` on Windows).
+//!
+//! A program that was installed or unpacked never runs an interpreter at a path of the machine that built it. An interpreter that nobody
+//! chose (3, 4) starts with `-E -s`, without PYTHONPATH and without the user's own packages.
 
 use std::io::{Read, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
@@ -43,8 +52,11 @@ const FILES: [(&str, &str); 24] = [
     ("golden/derived/corner_map.json", include_str!("../golden/derived/corner_map.json")),
 ];
 
-/// Interpreter that `make` sets up, with all packages that the scripts need.
-const OF_THE_BUILD: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/.venv/bin/python");
+/// Interpreters that `make` sets up in a clone, with all packages that the scripts need.
+const OF_A_CLONE: [&str; 2] = [".venv/bin/python", ".venv/Scripts/python.exe"];
+
+/// Interpreter that is looked for in the PATH.
+const OF_THE_PATH: &str = if cfg!(windows) { "python" } else { "python3" };
 
 /// Time after which a running script is stopped: the slowest takes seconds.
 const TIME_LIMIT: Duration = Duration::from_secs(120);
@@ -54,12 +66,9 @@ const TIME_LIMIT: Duration = Duration::from_secs(120);
 pub(crate) enum PythonError {
     #[error("the scripts could not be written to a temporary folder: {0}")]
     NotWritten(std::io::Error),
-    #[error("`{command}` did not start: {error}; {}", remedy("`make verify` sets up Python"))]
+    #[error("`{command}` did not start: {error}; {}", remedy())]
     NotStarted { command: String, error: std::io::Error },
-    #[error(
-        "`{command}` failed ({status}); if a package is missing, {}; it said:\n{stderr}",
-        remedy("`make verify` sets it up")
-    )]
+    #[error("`{command}` failed ({status}); if a package is missing, {}; it said:\n{stderr}", remedy())]
     Failed { command: String, status: String, stderr: String },
     #[error("`{command}` did not end within {} s and was stopped: a narrower range of speeds takes less", TIME_LIMIT.as_secs())]
     TooLong { command: String },
@@ -67,12 +76,15 @@ pub(crate) enum PythonError {
     Output { command: String, error: String },
 }
 
-/// Remedy if Python, or a package of it, is missing.
-fn remedy(of_the_command: &str) -> String {
-    match HOST.get() {
-        None => format!("{of_the_command}, and `verify --no-external` does without"),
-        Some(_) => {
-            "`pip install 'corner-impact[routes]'` installs them all, and `verify(external=False)` does without".into()
+/// Remedy if Python, or a package of it, is missing: for a clone, for a program that was installed, and for a script in Python.
+fn remedy() -> &'static str {
+    match (HOST.get(), is_in_its_clone()) {
+        (Some(_), _) => {
+            "`pip install 'corner-impact[routes]'` installs the packages, and `verify(external=False)` does without them"
+        }
+        (None, true) => "`make verify` sets up Python and its packages, and `verify --no-external` does without them",
+        (None, false) => {
+            "`python3 -m pip install mpmath python-flint scipy sympy` installs the packages, and `verify --no-external` does without them"
         }
     }
 }
@@ -183,6 +195,21 @@ fn interpreter() -> PathBuf {
         0 | 1 => path,
         _ => std::path::absolute(&path).unwrap_or(path),
     });
-    let of_the_build = || Some(PathBuf::from(OF_THE_BUILD)).filter(|path| path.is_file());
-    chosen.or_else(|| HOST.get().cloned()).or_else(of_the_build).unwrap_or_else(|| "python3".into())
+    chosen.or_else(|| HOST.get().cloned()).or_else(of_the_clone).unwrap_or_else(|| OF_THE_PATH.into())
+}
+
+/// Whether the program stands in the clone in which it was built.
+fn is_in_its_clone() -> bool {
+    let of = |path: std::io::Result<PathBuf>| path.and_then(|path| path.canonicalize()).ok();
+    match (of(std::env::current_exe()), of(Ok(PathBuf::from(env!("CARGO_MANIFEST_DIR"))))) {
+        (Some(program), Some(clone)) => program.starts_with(clone),
+        _ => false,
+    }
+}
+
+/// The interpreter of that clone, for a program that still stands there.
+fn of_the_clone() -> Option<PathBuf> {
+    let clone = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let interpreter = OF_A_CLONE.iter().map(|path| clone.join(path)).find(|path| path.is_file());
+    interpreter.filter(|_| is_in_its_clone())
 }

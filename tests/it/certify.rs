@@ -430,7 +430,8 @@ fn without_python_flint_it_says_so() {
     assert_eq!((output.status.code(), output.stdout.as_slice()), (Some(2), &[][..]));
     let words = text(output.stderr);
     assert!(
-        words.contains("the Python package python-flint is missing") && words.contains("`make verify` sets it up"),
+        words.contains("the Python package python-flint is missing")
+            && words.contains("`make verify` sets up Python and its packages"),
         "{words}"
     );
 }

@@ -122,14 +122,32 @@ fn executable(folder: &Path, name: &str, text: &str) -> PathBuf {
     path
 }
 
-/// An installed program in a folder that somebody else filled: with scripts and an interpreter where the project has its
+/// A program that left its clone runs the Python of the PATH, and says what to install; it knows nothing of the clone's `.venv`.
+#[cfg(unix)]
+#[test]
+fn a_program_outside_its_clone_runs_the_python_of_the_path() {
+    let installed = tempfile::tempdir().unwrap();
+    let program = installed.path().join("corner-impact");
+    common::copy_program(&program);
+    executable(&installed.path().join("bin"), "python3", "echo 'this Python has nothing' >&2; exit 3");
+    let model = Path::new(common::ROOT).join("models/osorio-2008.toml");
+    let path = format!("{}:/usr/bin:/bin", installed.path().join("bin").display());
+    let output = Command::new(&program).arg("certify").arg(model).env("PATH", path).output().unwrap();
+    let words = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{words}");
+    assert!(words.contains("this Python has nothing") && words.contains("python3 -m pip install"), "{words}");
+    assert!(!words.contains("make verify"), "{words}");
+}
+
+/// A program of the clone in a folder that somebody else filled: with scripts and an interpreter where the project has its
 /// own, with modules of the names that the scripts import, and a module that Python imports by itself where it finds one.
 #[cfg(unix)]
 #[test]
 #[ignore = "slow"]
 fn nothing_of_the_current_folder_is_run() {
-    let (home, stranger, private) =
-        (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    // In the clone, whose interpreter it finds.
+    let home = tempfile::tempdir_in(env!("CARGO_TARGET_TMPDIR")).unwrap();
+    let (stranger, private) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
     let program = home.path().join("corner-impact");
     common::copy_program(&program);
     let marks = stranger.path().join("marks");
@@ -153,7 +171,7 @@ fn nothing_of_the_current_folder_is_run() {
     executable(&stranger.path().join(".venv/bin"), "python", &touch);
     executable(stranger.path(), "python3", &touch);
     let real = interpreter();
-    // The interpreter of the build, one that is named, and one of a PATH that has the current folder in it.
+    // The interpreter of the clone, one that is named, and one of a PATH that has the current folder in it.
     let path = format!(".:{}", std::env::var("PATH").unwrap());
     for chosen in [None, Some(real.to_str().unwrap()), Some("python3")] {
         let mut command = Command::new(&program);
