@@ -30,6 +30,8 @@ def link(target, page):
     if "://" in target or target.startswith("#"):
         return target
     path = posixpath.normpath(posixpath.join("docs", posixpath.dirname(page), target))
+    if path == "docs/SUMMARY.md":
+        return posixpath.relpath("toc.html", posixpath.dirname(page) or ".")
     return target if path.startswith("docs/") else f"{REPOSITORY}/blob/main/{path}"
 
 
