@@ -80,10 +80,10 @@ archive: $(RELEASING) ## build the program for TARGET (this machine's without it
 	$(if $(TARGET),rustup target add $(TARGET))
 	PATH="$(CURDIR)/$(BIN):$$PATH" crates/program/archive.sh $(TARGET)
 
-# The packages that no registry gets say `publish = false`.
+# The packages that no registry gets say `publish = false`. The live page's module is a file that git does not have: hence --allow-dirty.
 package: ## pack the crates that are published, and compile each from its package (after `make explore`)
 	$(CARGO) package --workspace --exclude corner-impact-explore-module --exclude corner-impact-python --exclude corner-impact-tests \
-	    --locked $(PACKAGING)
+	    --locked --allow-dirty $(PACKAGING)
 
 oldest: ## check that the oldest Rust that Cargo.toml names compiles everything
 	rustup toolchain install $(OLDEST) --profile minimal
@@ -168,15 +168,12 @@ $(BOOK): $(VENV) docs/requirements.txt
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -r docs/requirements.txt
 	@touch $@
 
-# mdBook where it is not installed: once, for this clone.
-MDBOOK := $(or $(shell command -v mdbook),target/tools/bin/mdbook)
-target/tools/bin/mdbook:
-	$(CARGO) install mdbook --version 0.5.4 --locked --quiet --no-default-features --features search --root target/tools
-
-book: $(BOOK) $(MDBOOK) ## build the documentation as a site in target/book; with `make explore` before it, the live page is a part of it
+book: $(BOOK) ## build the documentation as a site in target/book; with `make explore` before it, the live page is a part of it
+	@command -v mdbook >/dev/null || $(CARGO) install mdbook --version 0.5.4 --locked --quiet --no-default-features --features search
 	$(CARGO) build $(RELEASE) --quiet
-	MDBOOK_OUTPUT__HTML__GIT_REPOSITORY_URL=$$(sed -n 's/^repository = "\(.*\)"/\1/p' Cargo.toml) $(MDBOOK) build docs
-	target/release/corner-impact explore models/osorio-2008.toml --quiet --out target/book/live.html
+	MDBOOK_OUTPUT__HTML__GIT_REPOSITORY_URL=$$(sed -n 's/^repository = "\(.*\)"/\1/p' Cargo.toml) mdbook build docs
+	@if [ -s crates/program/module/explore.wasm.gz ]; then target/release/corner-impact explore models/osorio-2008.toml --quiet --out target/book/live.html; \
+	    else echo "<p>This site was built without the live page: <code>make explore</code> comes before <code>make book</code>." > target/book/live.html; fi
 
 # In the same .venv: a grammar of Rust, to change the formulas by.
 MUTATION := .venv/.mutation

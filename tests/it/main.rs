@@ -89,6 +89,7 @@ mod orbit_commands;
 mod orbit_numbers;
 mod outside;
 mod over;
+mod packaged;
 mod page;
 mod phantoms;
 mod physics;
