@@ -61,9 +61,9 @@ pub(crate) enum PythonError {
         remedy("`make verify` sets it up")
     )]
     Failed { command: String, status: String, stderr: String },
-    #[error("`{command}` did not end within {} s and was stopped: a narrower range of speeds takes less", TIME_LIMIT.as_secs())]
+    #[error("`{command}` did not end within {} s and was stopped: give a narrower range of speeds", TIME_LIMIT.as_secs())]
     TooLong { command: String },
-    #[error("`{command}` printed something else than its result: {error}")]
+    #[error("`{command}` printed something other than its result: {error}")]
     Output { command: String, error: String },
 }
 

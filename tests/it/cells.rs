@@ -109,7 +109,7 @@ fn blanks_between_thousands_are_read_where_they_part_no_columns() {
         // Alone they part the columns.
         is_the_lobe(&rows(0..360, |angle, lift| format!("{angle}{by}{lift:.4}")), "", 1.0);
     }
-    let says = "; if blanks part thousands as well, part the columns by semicolons, or write nothing between thousands";
+    let says = "; if blanks separate thousands as well, separate the columns by semicolons, or write nothing between thousands";
     assert!(refused(&of(" ", " ", "angle lift\n"), "").contains(says));
     assert!(refused(&of(" ", " ", ""), "").contains(says));
     let three = "angle lift\n0 1.5 2.5\n1 2.5 3.5\n";

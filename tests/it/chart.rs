@@ -291,7 +291,7 @@ fn a_store_without_room_counts_nothing_as_done() {
 #[test]
 fn what_is_no_chart_is_refused_with_a_reason() {
     let (x, y) = ("rpm=600:760:3", "restitution=0.5:0.95:3");
-    assert!(refused(&["--x", x, "--y", x]).contains("a chart is over two numbers"));
+    assert!(refused(&["--x", x, "--y", x]).contains("a chart needs two different numbers"));
     assert!(refused(&["--x", "mass=1:2:2", "--y", y]).contains("neither axis is rpm"));
     assert!(refused(&["--x", x, "--y", y, "--rpm", "700"]).contains("leave it out where rpm is an axis"));
     assert!(refused(&["--x", x, "--y", "restitutoin=0:1:2"]).contains("did you mean restitution?"));

@@ -266,12 +266,12 @@ fn what_is_done_already_has_its_ends() {
     let hung = OWN.model(true, false).with_number("follower.gravity", 0.0).unwrap();
     let found = answers(&hung, "no separation to 500 rpm");
     let preload = found.iter().find(|it| it.lever == Lever::Preload).unwrap();
-    assert_eq!((preload.value, preload.note.as_str()), (Some(0.0), "as little as there can be will do"));
+    assert_eq!((preload.value, preload.note.as_str()), (Some(0.0), "the least possible value suffices"));
     // Gravity of its own presses a mass however little the spring does.
     let light = Eccentric { stiffness: 100.0, rest: 0.08, damping: 0.0, ..OWN };
     let found = answers(&light.model(true, false), "no separation to 50 rpm");
     let preload = found.iter().find(|it| it.lever == Lever::Preload).unwrap();
-    assert_eq!((preload.value, preload.note.as_str()), (Some(0.0), "as little as there can be will do"));
+    assert_eq!((preload.value, preload.note.as_str()), (Some(0.0), "the least possible value suffices"));
 }
 
 /// A damper that holds the follower on the rise lets it go on the return: of a speed between what it does without and with the best one, what

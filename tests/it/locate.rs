@@ -231,7 +231,9 @@ fn an_orbit_out_of_the_other_side_is_refused_with_the_reason() {
     let through = |angle: f64| {
         let near = |speed: f64| (speed - 4.207501).abs() < 1e-6;
         found.looked_at.rejected.iter().any(|at| {
-            near(at.speed_rpm) && (at.cam_angle - angle).abs() < 1e-9 && at.why.contains("out of the cam's other side")
+            near(at.speed_rpm)
+                && (at.cam_angle - angle).abs() < 1e-9
+                && at.why.contains("from inside the cam on its other side")
         })
     };
     assert!(through(0.0) && through(std::f64::consts::PI), "{:?}", found.looked_at.rejected);

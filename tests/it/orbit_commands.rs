@@ -321,7 +321,7 @@ fn what_cannot_be_followed_is_refused_with_a_reason() {
     assert!(followed("spring=1:2").contains("spring is not a number of this model; there are: rpm, cam.base_radius"));
     assert!(followed("restitution=0.9:0.95").contains("outside of 0.9:0.95"));
     assert!(followed("restitution=0.9").contains("must be NAME=LO:HI"));
-    assert!(followed("restitution=0.9:0.95:3").contains("takes a range alone"));
+    assert!(followed("restitution=0.9:0.95:3").contains("takes only a range"));
     assert!(followed("restitution=0.9:0.1").contains("is not below"));
     let none = refused(&["continue", MODEL, "--from-rpm", "700", "--parameter", "rpm=600:800", "--impacts", "9"]);
     assert!(none.contains("no periodic orbit of 1 revolution(s) found at 700 rpm"), "{none}");

@@ -332,7 +332,7 @@ fn what_is_not_read_is_refused_with_what_makes_it_read() {
     let slip = |at: &str, by: &str| all("angle [deg],lift [mm]").replacen(at, by, 1);
     let wide = |head: &str| format!("{head}\n{}", rows(0..360, |angle, lift| format!("{angle},{lift:.4},{lift:.4}")));
     for (csv, fields, says) in [
-        (all("angle [deg],radius [mm]"), "", "names a radius, the cam's own, which is no follower's lift"),
+        (all("angle [deg],radius [mm]"), "", "names a radius of the cam, which is not the follower's lift"),
         (all("angle [deg],lift [furlong]"), "", "the unit of the lift must be one of: m, cm, mm, um, in, ft, thou;"),
         (all("angle [deg],lift in furlongs"), "", "say it in [cam], by unit"),
         (all("angle [deg],lift yards"), "", "the unit of the lift must be one of"),
@@ -520,7 +520,7 @@ fn angles_in_any_unit_are_read() {
     ] {
         let csv = of(head, turn);
         let said = model(&TempDir::new().unwrap(), &csv, "").unwrap_err();
-        assert!(said.contains(&format!("say in [cam] {}", fields.join(" and "))), "{said}");
+        assert!(said.contains(&format!("set in [cam] {}", fields.join(" and "))), "{said}");
         is_the_lobe(&csv, &fields.join("\n"), 1.0);
     }
 }

@@ -120,7 +120,7 @@ fn without_its_description_a_store_takes_no_chart() {
     let before = files(at);
     for chart in [own, chart(&osorio(), 9)] {
         let refused = Store::open(at, &chart, [2, 3]).map(|_| ()).unwrap_err().to_string();
-        assert!(refused.contains("arrays and no zarr.json"), "{refused}");
+        assert!(refused.contains("arrays but no zarr.json"), "{refused}");
     }
     assert!(status(at).is_err());
     assert_eq!(files(at), before);

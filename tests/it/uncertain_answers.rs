@@ -65,7 +65,7 @@ fn a_difference_has_less_of_an_error_that_both_machines_share() {
         document["changes"].as_array().unwrap().iter().find(|it| it["quantity"] == "separation_speed_rpm").unwrap();
     near(speed["error_parts"]["mass"].as_f64().unwrap(), part(&open, "mass"), 1e-12);
     let page = common::in_one_line(&found.text().unwrap());
-    for words in ["separation_speed_rpm: moved by ", "from the numbers (stiffness ", "moves both alike"] {
+    for words in ["separation_speed_rpm: moved by ", "from the numbers (stiffness ", "acts on both alike"] {
         assert!(page.contains(words), "{words}: {page}");
     }
     // The same machine twice differs in nothing, whatever its errors.

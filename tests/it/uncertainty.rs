@@ -428,7 +428,7 @@ fn pages_say_where_the_uncertainty_comes_from() {
         common::in_one_line(&page)
     };
     run(&["new", "valve.toml", "--law", "table"]);
-    let of_cam = "± is of the cam alone: the model gives no error of the follower's numbers";
+    let of_cam = "± is from the cam alone: the model gives no error of the follower's numbers";
     let both = "± is the root of the sum of two squares: the part of the cam, and two standard deviations by the errors of mass";
     let numbers = "± is two standard deviations, by the errors of mass";
     let design = ["design", "--rpm", "2400:3400", "--speeds", "3"];

@@ -19,11 +19,11 @@ const STYLES: Styles = Styles::styled()
 
 /// Commands for a first try, at the end of the help.
 const EXAMPLES: &str = "Examples:
-  corner-impact new my-machine.toml        begin a model file of your own
-  corner-impact models/osorio-2008.toml    what can be done with a model
+  corner-impact new my-machine.toml        write a model file to start from
+  corner-impact models/osorio-2008.toml    list what you can do with a model
   corner-impact verify --no-external       check the paper's model, which is built in
 
-`corner-impact COMMAND --help` has examples for each; where they name models/, they are run from the project's folder.";
+`corner-impact COMMAND --help` has examples of each command. Examples that name models/ run in the project's folder.";
 
 /// The command line as it is, in letters alone.
 pub(super) fn plain() -> Command {
@@ -94,7 +94,7 @@ pub(super) fn is_short(words: &[OsString]) -> bool {
     words.iter().skip(1).take_while(|word| *word != "--").any(|word| word == "-h")
 }
 
-const MORE: &str = "`corner-impact MODEL` says what can be done with a model; `corner-impact COMMAND --help` has all options and more examples.";
+const MORE: &str = "`corner-impact MODEL` lists what you can do with a model. `corner-impact COMMAND --help` has all options and more examples.";
 
 /// A command as `-h` shows it: the options that most people need, each in a few words, and two examples.
 fn shortened(sub: Command, name: &str, after: &str) -> Command {
