@@ -169,7 +169,7 @@ fn rows_are_coarse_by_how_many_a_lobe_has() {
     let wave = |lobes: f64| move |angle: f64| 5.0 - 5.0 * (lobes * angle).to_radians().cos();
     for (step, few) in [(5, None), (6, None), (8, Some(12)), (10, Some(11)), (15, Some(7))] {
         let told = every(step, &lift);
-        let says = few.map(|few| format!("{few} rows on a lobe are too few to know its accelerations"));
+        let says = few.map(|few| format!("{few} rows on a lobe are too few for its accelerations"));
         assert_eq!(told.len(), usize::from(few.is_some()), "{step}: {told:?}");
         assert!(says.is_none_or(|says| told[0].contains(&says)), "{step}: {told:?}");
         // A hollow in a circle is as coarse as a lobe.

@@ -591,7 +591,7 @@ fn a_document_has_the_hypotheses_of_its_proofs() {
             says("the machine's numbers are the decimals of its model file");
             says("free flight follows the equation of motion");
             if !assumed.is_null() {
-                says("the steps of up to 2.5e-9 m and 7.5e-8 m/rad");
+                says("up to 2.5e-9 m and 7.5e-8 m/rad");
             }
             if index == 3 {
                 says("impacts that follow each other without end put the follower to rest");

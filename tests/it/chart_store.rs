@@ -170,7 +170,7 @@ fn another_chart_is_told_by_what_is_another() {
         &|class: &mut Value| *class = json!({}),
     ] as [&dyn Fn(&mut Value); 4]
     {
-        assert_eq!(document(broken), Err(format!("{}: no store of a chart: it has no classes", at.display())));
+        assert_eq!(document(broken), Err(format!("{}: holds no store of a chart: it has no classes", at.display())));
     }
     std::fs::write(&group, "{").unwrap();
     for said in [refused(&own, [2, 3]), blocks_of(at).unwrap_err().to_string(), status(at).unwrap_err().to_string()] {

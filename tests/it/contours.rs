@@ -408,5 +408,5 @@ fn the_page_says_what_was_read_and_proofs_are_refused_with_a_sentence() {
         assert!(page.contains(says), "{says}: {page}");
     }
     let refused = said(&["certify", &file, "--orbits", "--rpm", "500"]);
-    assert!(refused.contains("cam.law = \"contour\": gives a contour; proofs are of lifts"), "{refused}");
+    assert!(refused.contains("cam.law = \"contour\": gives a contour; proofs are for lifts"), "{refused}");
 }

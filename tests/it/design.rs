@@ -71,7 +71,7 @@ fn a_need_is_met_at_its_value_and_not_beyond() {
         let Some(value) = answer.value else {
             // The return is what leaves first, and damping lets it go sooner.
             assert_eq!(answer.lever, Lever::Damping, "{answer:?}");
-            assert!(answer.note.contains("does it"), "{}", answer.note);
+            assert!(answer.note.contains("suffices"), "{}", answer.note);
             continue;
         };
         let with =

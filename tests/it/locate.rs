@@ -247,9 +247,9 @@ fn the_page_says_what_was_looked_at() {
     assert!(page.contains("673.234445004") && page.contains("nonsmooth-fold") && page.contains("agree"), "{page}");
     assert!(page.contains("634.331399 rpm") && page.contains("would come out of the cam"), "{page}");
     let words = crate::common::in_one_line(&page);
-    assert!(words.contains("Orbits of one impact: all, which is proved."), "{page}");
+    assert!(words.contains("Orbits of one impact: the list is proved to be complete."), "{page}");
     assert!(
-        words.contains("each 2 % faster than the one before")
+        words.contains("each 2 % above the one before")
             && words.contains("too few for an estimate of how many both missed"),
         "{page}"
     );

@@ -184,7 +184,7 @@ fn a_dwell_that_the_rows_contradict_is_told() {
         std::fs::write(&file, given).unwrap();
         let output = crate::common::program(["cam", "valve.toml"]).current_dir(folder.path()).output().unwrap();
         let notes = crate::common::text(output.stderr);
-        assert_eq!(notes.contains("cam.dwells_deg: the rows are otherwise: at "), is_told, "{notes}");
+        assert_eq!(notes.contains("cam.dwells_deg: the rows contradict it: at "), is_told, "{notes}");
         assert_eq!(notes.contains(" deg the cam is ") && notes.contains(" mm from them"), is_told, "{notes}");
     }
 }
@@ -757,12 +757,12 @@ fn a_measured_corner_impact() {
         let page = crate::common::text(crate::common::program(words).output().unwrap().stdout);
         let page = crate::common::in_one_line(&page);
         assert_eq!(
-            page.contains("not known: of 18 cams that are as likely (lift rounded to 0.0001 m) "),
+            page.contains("not known: of 18 equally likely cams (lift rounded to 0.0001 m), "),
             is_open,
             "{page}"
         );
         assert_eq!(page.contains(" say nonsmooth-fold"), is_open, "{page}");
-        assert_eq!(page.contains("the same of 18 cams that are as likely"), !is_open, "{page}");
+        assert_eq!(page.contains("the same verdict for all 18 equally likely cams"), !is_open, "{page}");
     }
     let document = serde_json::to_value(&found).unwrap();
     assert_eq!(document["uncertainty"]["speed_rpm"], json!(speed));
@@ -998,10 +998,10 @@ fn a_new_measured_machine() {
     run(&["new", "valve.toml", "--law", "table"]);
     let page = run(&["cam", "valve.toml"]);
     for says in [
-        "table: 180 rows; columns parted by commas; the header is \"angle [deg],lift [mm]\"; 1 comment",
+        "table: 180 rows; columns separated by commas; the header is \"angle [deg],lift [mm]\"; 1 comment",
         "angles: column 1, in deg",
         "lifts: column 2, in mm",
-        "accuracy: lift rounded to 0.001 mm; about a smooth motion the rows spread by 0.000",
+        "accuracy: lift rounded to 0.001 mm; the rows scatter about a smooth motion by 0.000",
         "corners found: none; dwells found: 19",
         "Corners (2)",
     ] {
@@ -1014,7 +1014,7 @@ fn a_new_measured_machine() {
         std::fs::write(folder.path().join("loose.toml"), loose).unwrap();
         let output = crate::common::program(["cam", "loose.toml"]).current_dir(folder.path()).output().unwrap();
         let notes = String::from_utf8_lossy(&output.stderr);
-        assert_eq!(notes.contains("mm is far more than the rows spread by, some 0.00"), is_loose, "{notes}");
+        assert_eq!(notes.contains("mm is far more than the spread of the rows, about 0.00"), is_loose, "{notes}");
         assert_eq!(notes.contains("cam.tolerance: 0.50 mm"), is_loose, "{notes}");
     }
     let page = run(&["design", "valve.toml", "--speeds", "3"]);
@@ -1022,7 +1022,7 @@ fn a_new_measured_machine() {
     let speeds = ["speeds", "valve.toml", "--rpm", "2700:4500", "--speeds", "10", "--starts", "8"];
     let page = run(&speeds);
     assert!(page.contains("leaves the cam first at 29") && page.contains("rpm: lift rounded to 0.001 mm"), "{page}");
-    assert!(page.contains("± is what the cam leaves open, lift rounded to 0.001 mm"), "{page}");
+    assert!(page.contains("± is the uncertainty from the cam, lift rounded to 0.001 mm"), "{page}");
     // No speed has more digits than the cam leaves it, whether how far it is open is known or not.
     let decimals =
         page.split_whitespace().filter_map(|word| word.split_once('.')).map(|(_, decimals)| decimals.len()).max();
@@ -1041,10 +1041,10 @@ fn a_new_measured_machine() {
     let report = std::fs::read_to_string(folder.path().join("report.html")).unwrap();
     for says in [
         "id=\"loads\"",
-        "table: 180 rows; columns parted by commas",
+        "table: 180 rows; columns separated by commas",
         ">impact speed</text>",
         ">(mm/s)<",
-        "± is what the cam leaves open, lift rounded to 0.001 mm",
+        "± is the uncertainty from the cam, lift rounded to 0.001 mm",
         "of the cam as it is drawn (lift rounded to 0.001 mm); the loads below have their ±.",
         "design valve.toml --rpm 2700:3500 --out loads.svg",
         "speeds valve.toml --rpm 2700:3500 --out attractors.svg",
@@ -1175,7 +1175,10 @@ fn a_slip_is_told_with_its_line() {
     std::fs::write(&rows, written.join("\n")).unwrap();
     let told = lines(&crate::common::text(run(&["cam", "valve.toml"]).stderr));
     assert_eq!(told.len(), 4, "{told:?}");
-    assert!(told[0].starts_with("note: valve.csv, line 60: lift 6.514 at 114 deg is 3.0 mm below what"), "{told:?}");
+    assert!(
+        told[0].starts_with("note: valve.csv, line 60: lift 6.514 at 114 deg is 3.0 mm below the trend"),
+        "{told:?}"
+    );
     assert!(told[2].starts_with("note: valve.csv, line 120: lift 0.05 at 234 deg is 0.05"), "{told:?}");
     assert_eq!(told[3], "note: 2 more rows are off as well: `cam --json` lists them");
     let of_run =

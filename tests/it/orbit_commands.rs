@@ -196,7 +196,7 @@ fn a_branch_in_another_number_ends_at_the_edge_with_a_plain_word() {
     assert!(table.rows.iter().all(|row| table.number(row, "rpm") == 700.0));
     let most = table.rows.iter().map(|row| table.number(row, "value")).fold(0.0, f64::max);
     assert!(179.0 < most && most <= 180.0, "{most}");
-    let edge = "the largest there is: cam.nose_end_deg must";
+    let edge = "the largest possible value: cam.nose_end_deg must";
     assert!(account.contains(edge) && account.contains("the end of the range"), "{account}");
 }
 

@@ -27,7 +27,18 @@ const EXAMPLES: &str = "Examples:
 
 /// The command line as it is, in letters alone.
 pub(super) fn plain() -> Command {
-    Arguments::command().after_help(EXAMPLES)
+    whole().after_help(EXAMPLES)
+}
+
+/// The command line, with a full stop behind texts of several sentences, which clap takes away.
+fn whole() -> Command {
+    let stopped = |argument: Arg| {
+        let help = argument.get_help().map(ToString::to_string).unwrap_or_default();
+        if help.contains(". ") && !help.ends_with('.') { argument.help(format!("{help}.")) } else { argument }
+    };
+    let command = Arguments::command();
+    let names: Vec<String> = command.get_subcommands().map(|sub| sub.get_name().to_owned()).collect();
+    names.into_iter().fold(command, |command, name| command.mut_subcommand(name, |sub| sub.mut_args(stopped)))
 }
 
 /// The options that `-h` has, by their fields; `--help` has all.
@@ -67,7 +78,7 @@ const ESSENTIAL: &[&str] = &[
 
 /// The command line, laid out for so many columns: all of it, or what `-h` shows.
 pub(super) fn command(width: usize, is_short: bool) -> Command {
-    let mut command = Arguments::command().styles(STYLES).term_width(width).max_term_width(width);
+    let mut command = whole().styles(STYLES).term_width(width).max_term_width(width);
     let template = if is_short { brief(&command, width) } else { template(&command, width) };
     if is_short {
         command = ["color", "threads"]

@@ -68,7 +68,7 @@ pub enum Exit {
     BadInput = 2,
 }
 
-/// Computes how a cam follower moves: separation, impacts and chaos. Verifies the corner-impact bifurcation by independent routes.
+/// Computes separation, impacts and chaos of cam followers, and verifies the corner-impact bifurcation by independent routes.
 #[derive(Parser)]
 #[command(name = "corner-impact", bin_name = "corner-impact", version)]
 struct Arguments {
@@ -77,7 +77,7 @@ struct Arguments {
     /// When to colour pages, errors and help.
     #[arg(long, global = true, value_enum, value_name = "WHEN", default_value = "auto")]
     color: ColorChoice,
-    /// Print only results and errors: no notes, no progress, no `next:` line.
+    /// Print only results and errors: no notes, progress or `next:`.
     #[arg(long, short, global = true)]
     quiet: bool,
     /// Number of threads that share the work [default: RAYON_NUM_THREADS, or one per core].

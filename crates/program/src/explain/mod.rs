@@ -418,7 +418,7 @@ impl Links {
         let wrong = self.claims.iter().find(|claim| label.as_ref().is_some_and(|label| claim.id.starts_with(label)));
         let slip = wrong.and_then(|claim| {
             let right = claim.correct.as_ref()?;
-            Some(format!("; {} in print, correct is: {right}", claim.verdict))
+            Some(format!("; {} in print; correct: {right}", claim.verdict))
         });
         link.paper.as_ref().map(|place| format!("{place}{}", slip.unwrap_or_default()))
     }

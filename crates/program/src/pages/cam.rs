@@ -209,8 +209,8 @@ fn corners(sheet: &CamSheet) -> Vec<Block> {
         return blocks;
     }
     blocks.push(Block::paragraph(words![
-        "order: order of the lowest derivative of the lift that jumps (1 velocity, 2 acceleration, 3 jerk); jump: jump of that \
-         derivative, after minus before, in ",
+        "order: order of the lowest derivative of the lift that jumps (1 velocity, 2 acceleration, 3 jerk); jump: its jump, \
+         after minus before, in ",
         Span::Unit("m/rad^order"),
         "; slopes in ",
         Span::Unit("m/rad"),

@@ -90,8 +90,8 @@ fn meanings(found: &[LocatedImpact]) -> Vec<Block> {
             Happens::BorderCollision(Ok(Classification { minus, plus, .. })) => {
                 let scenario = words::verdict_with(&scenario, impact.danger.as_ref());
                 meanings.push(Block::paragraph(format!(
-                    "{}: {scenario}. The fixed point with its impact before the corner exists at speeds {} and is {}. The one with its impact \
-                     after the corner exists at speeds {} and is {}.",
+                    "{}: {scenario}. The fixed point with its impact before the corner exists at {} speeds and is {}. The one with its impact \
+                     after the corner exists at {} speeds and is {}.",
                     index + 1,
                     minus.exists_for,
                     words::stability(minus.stability),
