@@ -33,7 +33,7 @@ pub(super) struct Changes {
 }
 
 /// The heading of these options in `--help`.
-const FOLLOWER: &str = "Follower (a table of lifts needs mass, stiffness and preload)";
+const FOLLOWER: &str = "Follower (a table needs mass, stiffness and preload)";
 
 /// A number of the follower that has an option of its own.
 struct FollowerOption {
