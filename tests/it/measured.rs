@@ -1045,7 +1045,7 @@ fn a_new_measured_machine() {
         ">impact speed</text>",
         ">(mm/s)<",
         "± is the uncertainty from the cam, lift rounded to 0.001 mm",
-        "of the cam as it is drawn (lift rounded to 0.001 mm). The loads below have their ±",
+        "for the cam as it is drawn (lift rounded to 0.001 mm). The loads below have their ±",
         "design valve.toml --rpm 2700:3500 --out loads.svg",
         "speeds valve.toml --rpm 2700:3500 --out attractors.svg",
     ] {
