@@ -1,14 +1,12 @@
 //! Are the sentences of `--help` short enough to be read at first sight?
 
-#[path = "../documents/page.rs"]
-#[allow(dead_code, reason = "the documents need more of it than a help text does")]
-mod page;
 #[path = "../documents/prose.rs"]
 #[allow(dead_code, reason = "the documents need more of it than a help text does")]
 mod prose;
 
 use crate::command_line::COMMANDS;
 use crate::common::{program, text};
+use crate::model_file::page;
 use prose::{LONGEST, MEAN, of_text, words};
 
 /// Indent of an option's text, in columns.
