@@ -86,8 +86,8 @@ document!(PrintedNumber as number {
 });
 
 /// The paper says of its estimates that they share five decimals with the matrices.
-const ESTIMATE: &str = "holds as an estimate, to 4.3e-7 of each entry or better; that it shares five decimals, as the paper says, is \
-                        a statement of its own, and is refuted";
+const ESTIMATE: &str = "it holds as an estimate, to 4.3e-7 of each entry or better. The paper also says that it shares five decimals; \
+                        this is a separate statement, and is refuted";
 
 /// Printed numbers with a remark: the quantity, the finding, and the error, or how it holds if that is not obvious. All other numbers hold.
 static REMARKS: [(Quantity, Verdict, &str); 6] = [
@@ -96,12 +96,12 @@ static REMARKS: [(Quantity, Verdict, &str); 6] = [
     (
         Quantity::BTilde,
         Verdict::Refuted,
-        "the shift of coordinates was applied to the point but not to its image: B - (A - I) e1 D/c1 is right, B - A e1 D/c1 is printed",
+        "the shift of coordinates was applied to the point but not to its image. B - A e1 D/c1 is printed, and B - (A - I) e1 D/c1 is correct",
     ),
     (
         Quantity::BBar,
         Verdict::Refuted,
-        "it is the wrong B tilde in the W that is built on -C, so the sign went too; the right second entry is 0 because the paper's follower is undamped",
+        "it is the wrong B tilde, transformed by the W built on -C, so its sign is wrong too. The correct second entry is 0 because the paper's follower is undamped",
     ),
     (Quantity::Eigenvalues(Minus), Verdict::Misprint, "1.005147 rounds to 1.0051, printed 1.0052"),
     (Quantity::Eigenvalues(Plus), Verdict::Misprint, "0.41207 rounds to 0.4121, printed 0.4120"),

@@ -70,9 +70,9 @@ pub(crate) enum PythonError {
     NotStarted { command: String, error: std::io::Error },
     #[error("`{command}` failed ({status}); if a package is missing, {}; it said:\n{stderr}", remedy())]
     Failed { command: String, status: String, stderr: String },
-    #[error("`{command}` did not end within {} s and was stopped: a narrower range of speeds takes less", TIME_LIMIT.as_secs())]
+    #[error("`{command}` did not end within {} s and was stopped: give a narrower range of speeds", TIME_LIMIT.as_secs())]
     TooLong { command: String },
-    #[error("`{command}` printed something else than its result: {error}")]
+    #[error("`{command}` printed something other than its result: {error}")]
     Output { command: String, error: String },
 }
 

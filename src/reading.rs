@@ -118,7 +118,7 @@ impl Model {
         } else {
             return Ok(None);
         };
-        Ok(Some(format!("{meant} [units] says what numbers are in")))
+        Ok(Some(format!("{meant} [units] sets the units of the numbers")))
     }
 
     /// Moves the follower's numbers by multiples of their standard deviations. The cam is the same, and `lowest` is its lowest lift.

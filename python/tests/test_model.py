@@ -63,7 +63,7 @@ def test_what_is_odd_about_a_model_is_told() -> None:
     angle = np.arange(0.0, 360.0, 2.0)
     lift = (0.05 - 0.01 * np.cos(np.radians(angle))).round(6)
     (known,) = Model.from_dict(table(np.column_stack([angle, lift]), spline="smoothing")).notes()
-    assert "leaves the cam's second derivative open to" in known
+    assert "so the cam's second derivative is uncertain by" in known
     with pytest.warns(UserWarning, match="did you mean mm"):
         Model.from_dict(table(np.column_stack([angle, 1000.0 * lift]), spline="cubic"))
     lift[40] += 0.001

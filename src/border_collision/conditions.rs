@@ -74,9 +74,9 @@ pub fn conditions(map: &LocalMap) -> Vec<Condition> {
     let zero = tolerance::DEGENERATE;
     let circle = tolerance::UNIT_EIGENVALUE;
     let (verdict, stability, form) = (Decides::Classification, Decides::Stability, Decides::NormalForm);
-    let neutral = "a multiplier on the unit circle: the linear part does not decide stability";
-    let vanishing = "a multiplier 1: the fixed point is not alone, or not there";
-    let flipping = "a multiplier -1: the smooth map flips at the same speed";
+    let neutral = "a multiplier is on the unit circle: the linear part does not decide stability";
+    let vanishing = "a multiplier is 1: the fixed point is not isolated, or does not exist";
+    let flipping = "a multiplier is -1: the smooth map flips at the same speed";
     let mut all = vec![
         one("A+ - A-", "both sides are one map: there is no border", jump(map), zero, verdict),
         one(
@@ -100,7 +100,13 @@ pub fn conditions(map: &LocalMap) -> Vec<Condition> {
     ];
     if let Some(both) = Word::read("LR").map(|word| map.along(&word).a) {
         let pair = determinant(&both, 1.0);
-        all.push(one("det(I - A+ A-)", "the orbit of period two is not alone, or not there", pair, zero, verdict));
+        all.push(one(
+            "det(I - A+ A-)",
+            "the orbit of period two is not isolated, or does not exist",
+            pair,
+            zero,
+            verdict,
+        ));
     }
     all.push(one("|eigenvalue| - 1 of A-", neutral, modulus(minus), circle, stability));
     all.push(one("|eigenvalue| - 1 of A+", neutral, modulus(plus), circle, stability));

@@ -78,8 +78,8 @@ pub enum Refusal {
     Degenerate(#[from] Degenerate),
     /// The follower stays on the cam, so that a revolution forgets where it began and the map has no such sides.
     #[error(
-        "sticking: next to the corner, on its {side} side, a simulated revolution stays on the cam after the impact and \
-         forgets where it began: A of that side is the zero matrix, and no formula for a flight after the impact gives it"
+        "sticking: next to the corner, on its {side} side, the follower stays on the cam after the impact and \
+         forgets its start. A of that side is the zero matrix, which no formula for a flight after the impact gives"
     )]
     Sticking { side: Side },
 }

@@ -134,14 +134,14 @@ impl LocalLongRun {
                 let largest =
                     orbit.multipliers.iter().map(|value| elementary::hypot(value.re, value.im)).fold(0.0, f64::max);
                 format!(
-                    "the motion repeats {}, whose orbit lies on its own sides and has multipliers up to {largest:.6}",
+                    "the motion repeats {}; this orbit lies on its own sides and has multipliers up to {largest:.6}",
                     orbit.word
                 )
             }
             Self::Chaotic(LocalChaos { region: TrappingRegion { polygons, corners }, least_exponent, .. }) => {
                 let above = match least_exponent {
                     Some(least) => {
-                        format!("of no motion is the Lyapunov exponent below {least:.6}, by an invariant cone")
+                        format!("every motion has a Lyapunov exponent of at least {least:.6}, by an invariant cone")
                     }
                     None => format!(
                         "its Lyapunov exponent, a mean over {MEASURED} steps, is above 0 by {:.0} standard errors or more",
@@ -149,17 +149,17 @@ impl LocalLongRun {
                     ),
                 };
                 format!(
-                    "the map sends a region around the motion into itself, {polygons} convex polygon(s) with {corners} corners, so \
-                     the motion stays; {above}"
+                    "the map sends a region around the motion, {polygons} convex polygon(s) with {corners} corners, into itself, so \
+                     the motion stays there; {above}"
                 )
             }
             Self::Undecided(_) => format!(
-                "bounded and without a stable word over the run of {STEPS} steps; but either its Lyapunov exponent, a mean over \
-                 {MEASURED} of them, is not known to be above 0, or no region is found that it stays in, and it may leave later"
+                "bounded and without a stable word over the run of {STEPS} steps. But either its Lyapunov exponent, a mean over \
+                 {MEASURED} of them, is not known to be above 0, or no region was found that it stays in. Then it may leave later"
             ),
             Self::Corner => "the motion shrinks below any size".into(),
             Self::Escapes(EscapeReason::Follows { word, multiplier }) => {
-                format!("the motion follows {word} for ever and grows by {multiplier:.6} each time")
+                format!("the motion diverges along the sequence {word}, by a factor of {multiplier:.6} per period")
             }
             Self::Escapes(EscapeReason::Grown) => {
                 format!("the motion grew past {:.0e} times its scale", 1.0 / tolerance::ESCAPED.value)

@@ -76,8 +76,8 @@ fn hypotheses<N: Number>([tau_l, tau_r]: [N; 2], [delta_l, delta_r]: [N; 2]) -> 
 
 /// Name of each, and the consequence of its failure.
 const NAMES: [[&str; 2]; 5] = [
-    ["delta_L", "the map does not keep the sense of turning"],
-    ["delta_R", "the map does not keep the sense of turning"],
+    ["delta_L", "the map does not keep the orientation"],
+    ["delta_R", "the map does not keep the orientation"],
     ["tau_L - (1 + delta_L)", "L has no saddle with an eigenvalue above 1"],
     ["-tau_R - (1 + delta_R)", "R has no saddle with an eigenvalue below -1"],
     ["phi", "the saddle's unstable manifold leaves"],

@@ -108,9 +108,8 @@ pub(crate) fn fit(model: &Model, profile: &TableProfile, smoothing: &Smoothing) 
     // A dwell that the model gives has been checked with the model.
     let in_dwell = |corner: &&f64| features.dwells.iter().any(|dwell| features::is_inside(corner.to_radians(), dwell));
     if let Some(corner) = smoothing.corners_deg.iter().flatten().find(in_dwell) {
-        let words = format!(
-            "has {corner}, which is inside of a dwell: dwells_deg says where those are that the rows seem to have"
-        );
+        let words =
+            format!("has {corner}, which is inside of a dwell that the rows show: dwells_deg sets other dwells");
         return Err(model.reject("cam.corners_deg", words));
     }
     let are_found = smoothing.corners_deg.is_none();
@@ -194,7 +193,7 @@ fn weight(
         SmoothingTolerance::Within(limit) => match within(at, limit).ok_or_else(overflow)? {
             Kept::At(weight) => Ok(weight),
             Kept::Always => {
-                let words = "is so large that nothing of the lift would be left: every row is as near to a circle";
+                let words = "is so large that no lift would be left: every row is as near to a circle";
                 Err(model.reject("cam.tolerance", words))
             }
             Kept::Never(least) => {

@@ -18,7 +18,7 @@ use crate::tolerance;
 
 /// eq:fixedp has no solution, or none that the secants settle on.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("eq:fixedp and the contact condition settle on no period near {period} s")]
+#[error("closed form: eq:fixedp and the contact condition converge to no period near {period} s")]
 pub struct NoFixedPoint {
     /// Last period tried, s.
     pub period: f64,

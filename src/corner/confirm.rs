@@ -54,7 +54,7 @@ impl Candidate {
         // Where the velocity jumps, an impact on one side may press the follower into the other.
         let [before, after] = [corner.minus, corner.plus].map(|lift| angular_velocity * lift.slope);
         if corner.jump_order == 1 && !(velocity_before < before.min(after)) {
-            return Err("the flight would come to the corner out of the cam's other side".into());
+            return Err("the flight would reach the corner from inside the cam on its other side".into());
         }
         if corner.jump_order == 1 && !(velocity_after > before.max(after)) {
             return Err("the cam's other side hits the follower again at once".into());
@@ -69,7 +69,7 @@ impl Candidate {
             ));
         }
         if cycle.repeats_sooner() {
-            return Err("it repeats sooner".into());
+            return Err("the orbit has a shorter period".into());
         }
         match cycle.departure(&machine) {
             Err(error) => return Err(error.to_string()),
@@ -108,7 +108,7 @@ fn words(cycle: &Cycle, departure: Departure) -> String {
             format!("the flight meets the cam elsewhere, at {:.4} deg", event.cam_angle.to_degrees())
         }
         Departure::Elsewhere { impact } => {
-            format!("the flight from {:.4} deg does not come to the next impact", angle(impact))
+            format!("the flight from {:.4} deg does not reach the next impact", angle(impact))
         }
     }
 }

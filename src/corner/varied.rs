@@ -32,7 +32,7 @@ pub enum NoChange {
     #[error("the laws of flight and impact have no derivative by {name}")]
     OfNoLaw { name: String },
     /// The cam has other segments with every number close by.
-    #[error("the cam has other segments as soon as {name} moves from {value}")]
+    #[error("the segments of the cam change as soon as {name} moves from {value}")]
     OtherSegments { name: String, value: f64 },
 }
 

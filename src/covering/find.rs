@@ -85,7 +85,7 @@ pub fn find(
         let ready = sized.into_par_iter().filter_map(|set| ready(&machine, HSet { rpm, ..set }));
         ready.min_by(promising)
     };
-    watch.at("strips that come back across h-sets about saddles", 0, 0);
+    watch.at("strips that return across h-sets about saddles", 0, 0);
     let everywhere = [lengths(SHORTER), lengths(SHORTER)];
     let mut sets: Vec<HSet> = bases.par_iter().filter_map(|base| made_ready(base, &everywhere)).collect();
     // One strip more may lie between an end of the best and the next.

@@ -92,7 +92,7 @@ impl<'a> Table<'a> {
                 }
             };
             match (one(0, Kind::Abscissa), one(1, Kind::Ordinate)) {
-                (Some(x), Some(y)) if x == y => return Err("is asked for x and for y in one column".into()),
+                (Some(x), Some(y)) if x == y => return Err("gives x and y the same column".into()),
                 (Some(x), Some(y)) => return Ok(Some([x, y])),
                 _ if self.holds == Holds::Points => return Ok(None),
                 _ => {}
@@ -106,7 +106,7 @@ impl<'a> Table<'a> {
                 match (&all[..], &of_cam[..]) {
                     ([], _) => None,
                     ([one], _) | (_, [one]) => Some(*one),
-                    _ => return Err("names several angles: say which in [cam], by angle_column".into()),
+                    _ => return Err("names several angles: choose one in [cam], by angle_column".into()),
                 }
             }
         };
@@ -126,7 +126,7 @@ impl<'a> Table<'a> {
                     ([one], _) | ([], [one]) => Some(*one),
                     ([], []) => None,
                     _ => {
-                        return Err(format!("leaves open which column is the {value}: say which in [cam], by {field}"));
+                        return Err(format!("does not tell which column is the {value}: name it in [cam], by {field}"));
                     }
                 }
             }
@@ -135,18 +135,18 @@ impl<'a> Table<'a> {
         if headings[lift].kind == foreign && chosen[1].is_none() {
             let words = match self.holds {
                 Holds::Lifts => {
-                    "names a radius, the cam's own, which is no follower's lift: law = \"contour\" takes it; or say lift_column in [cam], if it \
+                    "names a radius of the cam, which is not the follower's lift: use law = \"contour\", or set lift_column in [cam] if it \
                      is a lift"
                 }
                 _ => {
-                    "names a lift, which is no radius of the cam's own contour: law = \"table\" takes it; or say radius_column in [cam], if it \
+                    "names a lift, which is not a radius of the cam's contour: use law = \"table\", or set radius_column in [cam] if it \
                      is a radius"
                 }
             };
             return Err(words.into());
         }
         if lift == angle {
-            return Err(format!("is asked for the angle and for the {value} in one column"));
+            return Err(format!("gives the angle and the {value} the same column"));
         }
         Ok(Some([angle, lift]))
     }
@@ -278,17 +278,17 @@ impl<'a> Table<'a> {
         };
         let words = match meant {
             [] => format!(
-                "the unit of the {name} must be one of: {}; or say it in [cam], by {field} = \"{example}\"{}",
+                "the unit of the {name} must be one of: {}; or set it in [cam], by {field} = \"{example}\"{}",
                 units.join(", "),
                 if column == 0 { "" } else { ", or by a decimal part such as unit = \"0.01 mm\"" }
             ),
-            [fields] if fields.contains('=') => format!("names a part of a unit: say in [cam] {fields}"),
+            [fields] if fields.contains('=') => format!("names a part of a unit: set in [cam] {fields}"),
             [one] => {
-                format!("names a multiple of a unit: say in [cam] what the numbers are in, as {field} = \"{one}\" does")
+                format!("names a multiple of a unit: set the unit of the numbers in [cam], as {field} = \"{one}\" does")
             }
             [one, other, ..] => {
                 format!(
-                    "the lines above the rows name {one} and {other}: say which in [cam], by {field} = \"{one}\" or {field} = \"{other}\""
+                    "the lines above the rows name {one} and {other}: choose one in [cam], by {field} = \"{one}\" or {field} = \"{other}\""
                 )
             }
         };

@@ -18,7 +18,7 @@ impl TableProfile {
         let lowest = self.rows.iter().map(|row| row.lift).fold(f64::INFINITY, f64::min);
         if lowest < -BELOW * self.rise() {
             doubts.push(format!(
-                "{}: the lowest lift is {} {}; lifts below 0 are read as they are written: does the gauge count the other way round, or from the \
+                "{}: the lowest lift is {} {}; lifts below 0 are taken as written: does the gauge count the other way round, or from the \
                  nose?",
                 self.place(),
                 reading.in_model.told(lowest),
@@ -51,7 +51,7 @@ impl TableProfile {
         let fewest = tolerance::LOBE_ROWS.value.recip();
         (rows < fewest).then(|| {
             format!(
-                "{}: {rows:.0} rows on a {what} are too few to know its accelerations, on which separation and impacts depend; give {fewest} or more",
+                "{}: {rows:.0} rows on a {what} are too few for its accelerations, on which separation and impacts depend; give {fewest} or more",
                 self.place(),
             )
         })
@@ -103,7 +103,7 @@ impl TableProfile {
         let reading = &self.reading;
         let size = reading.in_model.told(step(index));
         Some(format!(
-            "{}: the lift steps by {} {} at {} deg between two level stretches: has the gauge slipped? Then the lift does not come back, and the step \
+            "{}: the lift steps by {} {} at {} deg between two level stretches: has the gauge slipped? The lift does not return, so the step \
              counts as a motion",
             self.row_place(&row),
             (size * 1e6).round() / 1e6,
@@ -153,7 +153,7 @@ impl TableProfile {
             false => format!("the {value} turns"),
         };
         Some(format!(
-            "{}: no row between {} and {} deg, where {what}: are rows missing? The spline makes up what lies between",
+            "{}: no row between {} and {} deg, where {what}: are rows missing? The spline fills the gap",
             self.row_place(&row),
             row.angle_deg,
             ((row.angle_deg + gaps[index]) % 360.0 * 1e9).round() / 1e9,

@@ -372,9 +372,9 @@ fn slip(cell: &str, decimal_comma: bool) -> Option<&'static str> {
     if cell.is_empty() {
         Some("has an empty cell")
     } else if is_word(&["nan", "inf", "infinity", "n/a", "na", "#n/a", "null"]) {
-        Some("this stands for a number that is not known; leave the row out")
+        Some("this marks a missing number; leave the row out")
     } else if begins(cell).is_some() {
-        Some("there is more than a number in its cell; a unit stands in the header")
+        Some("the cell has more than a number; write a unit in the header")
     } else {
         None
     }
@@ -385,10 +385,10 @@ fn twofold<'a>(separator: Separator, mut rows: impl Iterator<Item = &'a str>) ->
     let has_thousands = |row: &str| separator.cells(row).skip(1).any(|cell| is_three(cell.split(['.', ',']).next()));
     match separator {
         Separator::Comma if rows.all(|row| !row.contains('.')) => {
-            "; if commas are decimal as well, part the columns by semicolons, or write decimal points"
+            "; if commas are decimal as well, separate the columns by semicolons, or write decimal points"
         }
         Separator::Blanks if rows.any(has_thousands) => {
-            "; if blanks part thousands as well, part the columns by semicolons, or write nothing between thousands"
+            "; if blanks separate thousands as well, separate the columns by semicolons, or write nothing between thousands"
         }
         _ => "",
     }

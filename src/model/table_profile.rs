@@ -116,7 +116,7 @@ impl Table<'_> {
                 ProseUnit::Length(unit) => ("length", self.holds.values(), "unit", unit.name()),
             };
             let words = format!(
-                "is a unit of {what} that no column is said to be in: say which the {of} are in, by {field} in [cam], such as {field} = \"{meant}\""
+                "is a unit of {what} that no column has: set the unit of the {of} by {field} in [cam], such as {field} = \"{meant}\""
             );
             return Err(self.reject(*line, "unit", word, words));
         }

@@ -22,7 +22,7 @@ impl Table<'_> {
         let slack = tolerance::TURN_CLOSED.value * 360.0 / rows.len() as f64;
         if last.angle_deg - first.angle_deg > 180.0 + slack {
             let words = format!(
-                "is asked of rows over {} degrees: half a lobe has 180 at most",
+                "is set for rows over {} degrees: half a lobe has 180 at most",
                 last.angle_deg - first.angle_deg
             );
             return Err(fields.reject("cam.mirrored", words));
@@ -90,12 +90,12 @@ impl Table<'_> {
                 format!("is {} above the lowest", row.lift - base)
             } else {
                 format!(
-                    "is the lowest, and the next one is {} from it at once: the flank is cut off",
+                    "is the lowest, but the next one already differs by {}: the flank is cut off",
                     (lifts[1] - lifts[0]).abs()
                 )
             };
             let words = format!(
-                "is asked of rows that do not begin and end on the base circle: the {} on {} {found}",
+                "is set for rows that do not begin and end on the base circle: the {} on {} {found}",
                 self.holds.value(),
                 self.place(&row)
             );
@@ -228,7 +228,7 @@ impl Table<'_> {
         if (last.lift - first.lift).abs() > tolerance::CAM_CLOSURE.value * largest {
             let value = self.holds.value();
             let words = format!(
-                "must be {}, the {value} at {} on {}: a turn later it is the same again, and the row may be left out",
+                "must be {}, the {value} at {} on {}: it repeats after a turn, and the row may be left out",
                 first.lift,
                 self.shown(first.angle_deg),
                 self.place(first)

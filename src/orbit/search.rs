@@ -64,7 +64,7 @@ pub fn search_all(machine: &Machine, wanted: &Search, watch: &dyn Watch) -> Resu
     if wanted.revolutions == 1 && wanted.impacts.is_none_or(|impacts| impacts == 2) {
         found.all(2, of_two_impacts(machine, watch));
     }
-    watch.at("orbits that runs settle on, or lead near to", 0, 0);
+    watch.at("orbits that runs settle on or pass near", 0, 0);
     found.search()
 }
 

@@ -11,22 +11,23 @@ use crate::agreement::Quantity;
 use crate::known::Evidence::{self, Computed, Sampled};
 use crate::published::Verdict;
 
-const MODEL: &str = "it says what is computed with; that flights and impacts of this program obey it is for its tests";
+const MODEL: &str =
+    "it defines the model of the computations; the tests check that flights and impacts of this program obey it";
 
-const LIMITS: &str = "both are typeset as t -> 0-: two limits that are said to differ would be one";
+const LIMITS: &str = "both are typeset as t -> 0-, so two limits that should differ would be one";
 
-const LABELLED: &str = "in the drawing's coordinates the impact is at t = -0.5, left of the section at 0, and labelled t_i there; by eq:H \
+const LABELLED: &str = "in the drawing's coordinates the impact is at t = -0.5, left of the section at 0, and is labelled t_i. By eq:H \
     it is at -t_i";
 
-const LITERATURE: &str = "about other papers, none of which was read for this";
+const LITERATURE: &str = "it is about other papers, none of which was read for this check";
 
 /// Hypotheses of the piecewise-linear map, whatever the cam.
 const HYPOTHESES: &str = "for one follower with a linear spring, of any damping and stiffness, any cam whose c and c' are continuous and \
     whose c'' jumps, and an orbit of one impact a revolution; given r > 0, v < c' at the impact and phi12(T/2) != 0";
 
-const NO_APPENDIX: &str = "the paper ends with Appendix A; eq:gff is proved without it";
+const NO_APPENDIX: &str = "the paper ends with Appendix A; eq:gff is proved here without Appendix B";
 
-const WORDING: &str = "the formulas around it mean what is right";
+const WORDING: &str = "the formulas around it have the correct quantity";
 
 /// Method that decides a statement.
 #[derive(Clone, Copy)]
@@ -107,8 +108,8 @@ pub static CHECKS: &[(&str, Check<'_>)] = &[
         Check::Proofs(
             Verdict::Holds,
             &RANK_ONE,
-            "with kappa = -(1+r)(c''+ - c''-)/(v - c') and F = phi_{T/2}, which is invertible: A jumps wherever c'' does, and B where \
-             v != 0 as well; given r > 0 and v < c' at the impact",
+            "with kappa = -(1+r)(c''+ - c''-)/(v - c') and the invertible F = phi_{T/2}. A jumps wherever c'' does, and B does if \
+             also v != 0; given r > 0 and v < c' at the impact",
         ),
     ),
     ("validation", Check::Any(Computed, validation)),
@@ -161,7 +162,7 @@ impl Check<'_> {
     pub fn run(self, context: &Context<'_>) -> CheckResult {
         let (known, decision) = match self {
             _ if self.is_about_the_papers_model() && !context.is_paper => {
-                (Evidence::Read, Err("about the paper's follower and cam; this model has others".into()))
+                (Evidence::Read, Err("it is about the paper's follower and cam; this model has others".into()))
             }
             Self::Read(verdict, why) => (Evidence::Read, Ok((verdict, why.into()))),
             Self::Equation(label) => (Evidence::Proved, equation(context, label)),
@@ -199,7 +200,11 @@ fn equation(context: &Context<'_>, label: &str) -> Decision {
         0 => String::new(),
         count => format!("; none of {count} smaller repairs suffices"),
     };
-    decide(false, wrong, format!("as printed, residual {printed} at a rational point; repaired, residual 0{parts}"))
+    decide(
+        false,
+        wrong,
+        format!("residual as printed: {printed} at a rational point; residual when repaired: 0{parts}"),
+    )
 }
 
 fn is_zero(residual: &serde_json::Value) -> bool {
@@ -240,6 +245,6 @@ fn number(context: &Context<'_>, quantity: &str) -> Decision {
     decide(
         agrees,
         wrong,
-        format!("computed ({}), {relation} {bound:.1e} of the print{part}{note}", computed.join(", ")),
+        format!("computed: ({}), {relation} {bound:.1e} of the print{part}{note}", computed.join(", ")),
     )
 }

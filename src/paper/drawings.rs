@@ -119,8 +119,8 @@ pub(super) fn drawn_profile(context: &Context<'_>) -> Decision {
     let computed = (theta1 - theta2).to_degrees();
     let names: Vec<_> = otherwise.iter().map(|index| LETTERS[*index]).collect();
     let evidence = format!(
-        "its {} over {SCALE} are {}, computed with are {}; from R to P it turns {marked:.4} deg as it is marked, {:.4} by its arcs, computed with {computed:.4}; \
-         otherwise than computed with: {}",
+        "its {} divided by {SCALE} are {}; the model has {}. The angle from R to P is {marked:.4} deg as marked, {:.4} deg by the arcs, and {computed:.4} deg in \
+         the model. Lengths that differ from the model: {}",
         LETTERS.join(", "),
         with_places(&drawn, 5),
         with_places(&lengths, 5),
@@ -142,8 +142,8 @@ pub(super) fn drawn_valve_train(_: &Context<'_>) -> Decision {
     });
     let off = off.fold(0.0, worse);
     let evidence = format!(
-        "the cam in it has the arcs of Fig. camprofile (a), moved by ({}, {}), but for {}; of lifter, rod, rocker and valve the \
-         drawing says nothing that a computation could contradict",
+        "its cam has the arcs of Fig. camprofile (a), moved by ({}, {}), to within {}. The drawing of lifter, rod, rocker and valve \
+         has nothing that a computation could contradict",
         Shown(moved[0]),
         Shown(moved[1]),
         Shown(off)
@@ -157,9 +157,9 @@ pub(super) fn drawn_construction(_: &Context<'_>) -> Decision {
         [Drawing::of("camprofileeq (a)")?.misses(), Drawing::of("camprofileeq (b)")?.misses()];
     let [rho0, _, rho1, _, rho2, _] = Drawing::of("camprofileeq (a)")?.lengths();
     let evidence = format!(
-        "the circles, by the coordinates that they are drawn with, miss touching by at most {:.3} of a base radius of {rho0}; in \
-         panel (a) arcs end where the next begin, in panel (b) the nose arcs run {past_b:.1} deg past P; and the drawing is of \
-         another cam (flank from 70 deg, radii {rho0}, {rho1}, {rho2}) than the one computed with",
+        "by their drawn coordinates, the circles miss touching by at most {:.3}, with a base radius of {rho0}. In \
+         panel (a) each arc ends where the next begins; in panel (b) the nose arcs run {past_b:.1} deg past P. The drawing is of \
+         another cam (flank from 70 deg, radii {rho0}, {rho1}, {rho2}) than the paper's computations",
         worse(gap_a, gap_b)
     );
     let touch = worse(gap_a, gap_b) <= tolerance::DRAWN_LENGTH.value * rho0;
@@ -175,8 +175,8 @@ pub(super) fn lengths_defined(_: &Context<'_>) -> Decision {
     let apart = (flank.centre() - nose.centre()).norm();
     let off = [kappa1 - (rho1 - rho0), apart - (rho1 - rho2), rho3 - (kappa2 + rho2)];
     let evidence = format!(
-        "of Fig. camprofileeq (a), as drawn, {} are {}; that arcs meet without a kink makes kappa1 = rho1 - rho0, |O1 O2| = rho1 - \
-         rho2 and rho3 = kappa2 + rho2, which the drawing has within {:.3}",
+        "in Fig. camprofileeq (a), as drawn, {} are {}. Arcs that meet without a kink need kappa1 = rho1 - rho0, |O1 O2| = rho1 - \
+         rho2 and rho3 = kappa2 + rho2; the drawing has this within {:.3}",
         LETTERS.join(", "),
         with_places(&drawing.lengths(), 4),
         off.iter().fold(0.0_f64, |worst, off| worse(worst, off.abs()))
@@ -192,8 +192,8 @@ pub(super) fn angles_defined(_: &Context<'_>) -> Decision {
     let rises = |ends: [f64; 3]| ends[0] < ends[1] && ends[1] < ends[2];
     let unsigned = signed.map(f64::abs);
     let evidence = format!(
-        "R, P and Q of Fig. camprofileeq (a) are drawn {} deg from S: with these the pieces end at {} deg; an angle between two rays \
-         has no sign, so that they are {}, and the pieces would end at {} deg, each before the one that it follows",
+        "R, P and Q of Fig. camprofileeq (a) are drawn {} deg from S, so the pieces end at {} deg. But an angle between two rays \
+         has no sign. As defined, the angles are {}, and the pieces would end at {} deg, each before the piece that it follows",
         with_places(&signed, 2),
         with_places(&ends(signed), 2),
         with_places(&unsigned, 2),
@@ -236,8 +236,8 @@ pub(super) fn pieces_of_the_lift(context: &Context<'_>) -> Decision {
     };
     let (with_signs, without) = (furthest(signed), furthest(signed.map(f64::abs)));
     let evidence = format!(
-        "at {ANGLES} angles up to pi: with signed angles ({} deg) the pieces, as printed, are the cam within {} m; with angles that \
-         have no sign, {} of the angles have no piece or two, and others a lift that is off by up to {:.3} m",
+        "at {ANGLES} angles up to pi: with signed theta_i ({} deg), the pieces as printed are the cam within {} m. Without \
+         signs, {} of the angles have no piece or two pieces, and the lift at others is wrong by up to {:.3} m",
         with_places(&signed.map(f64::to_degrees), 4),
         Shown(with_signs.0),
         without.1,
@@ -261,9 +261,9 @@ pub(super) fn label_of_the_lift(context: &Context<'_>) -> Decision {
     let gravity = |from: f64| omega0_squared * (first - (lift - from));
     let [labelled, from_axis] = [context.cam.lift(0.0).value, 0.0].map(gravity);
     let evidence = format!(
-        "the printed x* is {first:.6} m above the equilibrium at the corner, where c(tau) - c(0) is {:.6} m: with a spring slack at \
-         0, as in eq:fb1, that needs g = {labelled:.2} m/s^2; with c from the axis, as in Appendix A, {from_axis:.2} m/s^2; with c from \
-         {} m, where the authors' example has its spring slack, {:.2} m/s^2",
+        "by the printed x*, the follower is {first:.6} m above the equilibrium at the corner, where c(tau) - c(0) is {:.6} m. With a spring \
+         slack at 0, as in eq:fb1, that needs g = {labelled:.2} m/s^2. With c measured from the axis, as in Appendix A, it needs {from_axis:.2} \
+         m/s^2. With c measured from {} m, where the spring of the authors' example is slack, it needs {:.2} m/s^2",
         lift - context.cam.lift(0.0).value,
         follower.rest_position,
         // Rounding decides the sign of a zero, and adding 0 takes it off.

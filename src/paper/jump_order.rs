@@ -112,9 +112,9 @@ pub(super) fn order_of_the_jump(_: &Context<'_>) -> Decision {
     let complete = (1..=4).all(|order| of_order(order).next().is_some())
         && ways.iter().all(|way| of_order(1).any(|one| one.hits == *way));
     let evidence = format!(
-        "the velocities after an impact s before or after the corner differ by (1+r) J s^(j-1)/(j-1)!, J the jump of the j-th \
-         derivative: by simulation exponents of {}; {agree} of {} corners have all exponents and coefficients ({rows}) \
-         of the formulas: order 1 a gap, 2 a jump of the derivative, 3 of the second (docs/jump-order.md)",
+        "the velocities after an impact s before or after the corner differ by (1+r) J s^(j-1)/(j-1)!, with J the jump of the j-th \
+         derivative. Simulation gives exponents of {}. At {agree} of {} corners, all exponents and coefficients ({rows}) agree with \
+         the formulas. Order 1 gives a gap, order 2 a jump of the derivative, order 3 a jump of the second derivative (docs/jump-order.md)",
         parts.join(", "),
         compared.len()
     );

@@ -61,7 +61,7 @@ pub(super) fn side_of_the_impact(context: &Context<'_>) -> Decision {
         let [same, other] = [gap(time), gap(-time)];
         opposite &= other < same;
         told.push(format!(
-            "of an impact at {time:.6} s, {} of t = 0, H is {same:.5} m at t_i = {time:.6} s and {} m at t_i = {:.6} s",
+            "for an impact at {time:.6} s, {} of t = 0, H is {same:.5} m at t_i = {time:.6} s and {} m at t_i = {:.6} s",
             if time < 0.0 { "left" } else { "right" },
             Shown(other),
             -time
@@ -80,8 +80,8 @@ pub(super) fn sign_of_the_deviation(context: &Context<'_>) -> Decision {
         }
     }
     let evidence = format!(
-        "least squares of deviations with the other sign are the other matrices; the printed estimates are within {:.1e} of the printed \
-         A- and A+, and up to {:.1} from -A- and -A+",
+        "a fit to deviations with the printed sign would give -A- and -A+. The printed estimates are within {:.1e} of the printed \
+         A- and A+, but up to {:.1} from -A- and -A+",
         distances[0], distances[1]
     );
     decide(distances[1] < distances[0], Verdict::Misprint, evidence)
@@ -108,8 +108,8 @@ pub(super) fn fixed_point_as_printed(context: &Context<'_>) -> Decision {
     };
     let printed = context.printed_entry("x_star", 0)?;
     let evidence = format!(
-        "at T* the printed equation gives x1 = {:.6} m, with a minus before F R F it gives {:.6} m, and {printed:.6} m is printed; T* \
-         itself is a root of h (F x* - y0) = 0, found in numbers",
+        "at T* the equation as printed gives x1 = {:.6} m. With a minus before F R F it gives {:.6} m, and {printed:.6} m is printed. T* \
+         itself is a root of h (F x* - y0) = 0, found numerically",
         as_printed[0], repaired[0]
     );
     let near = |x: Vector2<f64>| (x[0] - printed).abs() <= tolerance::IDENTITY.value * 10.0 * printed.abs();
@@ -128,7 +128,7 @@ pub(super) fn plastic_impact(context: &Context<'_>) -> Decision {
         Err(refusal) => return Err(refusal.to_string().into()),
         Ok(kind) => (false, format!("it is a {}", kind.scenario)),
     };
-    let evidence = format!("with r = 0 the orbit of one impact has it on P at {speed:.6} rpm: {says}");
+    let evidence = format!("with r = 0, the orbit of one impact has its impact on P at {speed:.6} rpm: {says}");
     decide(!fails, Verdict::InPart, evidence)
 }
 
@@ -146,7 +146,11 @@ pub(super) fn profile_is_continuous(context: &Context<'_>) -> Decision {
     let corners = context.cam.corners();
     let continuous = corners.iter().all(|corner| corner.jump_order > 1);
     let orders: Vec<_> = corners.iter().map(|corner| corner.jump_order.to_string()).collect();
-    let evidence = format!("first derivative to jump at each of the {} corners: {}", corners.len(), orders.join(", "));
+    let evidence = format!(
+        "order of the first derivative that jumps at each of the {} corners: {}",
+        corners.len(),
+        orders.join(", ")
+    );
     decide(!continuous, Verdict::Misprint, evidence)
 }
 
@@ -163,7 +167,8 @@ pub(super) fn at_rest(context: &Context<'_>) -> Decision {
     let velocity = context.findings.at.x_star()[1];
     let beside = damped(context, |_, at| at.x_star()[1])
         .map_or_else(|error| error.to_string(), |velocity| format!("{velocity:.4} m/s"));
-    let evidence = format!("{} m/s, because the follower is undamped; with zeta = 1/s it is {beside}", Shown(velocity));
+    let evidence =
+        format!("it is {} m/s, because the follower is undamped; with zeta = 1/s it is {beside}", Shown(velocity));
     decide(velocity.abs() <= tolerance::DISPLAYED_ZERO.value, Verdict::Refuted, evidence)
 }
 
@@ -172,7 +177,9 @@ pub(super) fn one_impact(context: &Context<'_>) -> Decision {
     let estimates = context.findings.routes.iter().filter(|route| route.uncertainty.is_some());
     let ran: Vec<_> = estimates.map(|route| route.name).collect();
     let names = ran.iter().map(RouteName::to_string).collect::<Vec<_>>().join(" and ");
-    let evidence = format!("so has the located orbit in simulation, and each perturbed revolution of {names}");
+    let evidence = format!(
+        "in simulation, the located orbit and each perturbed revolution of {names} have one impact a revolution"
+    );
     let both = [RouteName::LeastSquares, RouteName::FiniteDifference].iter().all(|name| ran.contains(name));
     decide(both, Verdict::Refuted, evidence)
 }
@@ -191,8 +198,8 @@ pub(super) fn positive_constants(context: &Context<'_>) -> Decision {
     let [minus, plus] = [bound("A_minus")?, bound("A_plus")?];
     let follower = &context.model.follower;
     let evidence = format!(
-        "A11 - A22 = 2 zeta A12, by computer algebra: the printed A- gives |zeta| <= {:.0e}/s and the printed A+ |zeta| <= {:.0e}/s, and \
-         nothing in the formulas needs more than b >= 0; the authors' example has b = {} and g = {}",
+        "A11 - A22 = 2 zeta A12, by computer algebra. So the printed A- gives |zeta| <= {:.0e}/s, and the printed A+ |zeta| <= {:.0e}/s. \
+         The formulas need only b >= 0. The authors' example has b = {} and g = {}",
         minus[1], plus[1], follower.damping, follower.gravity
     );
     decide(minus[0] > 0.0 || plus[0] > 0.0, Verdict::Misprint, evidence)
@@ -258,8 +265,8 @@ pub(super) fn figure_of_the_local_map(context: &Context<'_>) -> Decision {
     // The region as printed, with A+ where C dx + D dT > 0.
     let as_printed = classify(map, (map.c(), map.d())).map_err(|error| error.to_string())?;
     let evidence = format!(
-        "minus side's fixed point at speeds {minus} than omega*, plus side's {plus}: faster is dT < 0. With A+ where C dx + D dT > 0, as \
-         eq:pwlf has it, they would be at speeds {} and {}, as the caption says",
+        "the fixed point of the minus side exists at speeds {minus} than omega*, that of the plus side at {plus} ones; faster means dT < 0. \
+         With A+ where C dx + D dT > 0, as in eq:pwlf, they would exist at {} and {} speeds, as the caption says",
         as_printed.minus.exists_for, as_printed.plus.exists_for
     );
     decide(minus == Speeds::Slower && plus == Speeds::Slower, Verdict::Refuted, evidence)
@@ -270,7 +277,7 @@ pub(super) fn fixed_points_above(context: &Context<'_>) -> Decision {
     let (minus, plus) = (&verdict.minus, &verdict.plus);
     let above = minus.exists_for == Speeds::Faster && plus.exists_for == Speeds::Faster;
     let evidence = format!(
-        "plus: stable {}, exists at speeds {} than omega*; minus: stable {}, {}",
+        "fixed point plus: stable {}, exists at speeds {} than omega*; fixed point minus: stable {}, exists at {} ones",
         plus.stable, plus.exists_for, minus.stable, minus.exists_for
     );
     decide(above && plus.stable && !minus.stable, Verdict::Refuted, evidence)
@@ -288,7 +295,7 @@ pub(super) fn continuity(context: &Context<'_>) -> Decision {
     };
     let largest = directions.iter().map(jump).fold(0.0_f64, worse);
     let evidence = format!(
-        "on C dx + D dT = 0 the two sides differ by {} of their jump elsewhere, with C and D of this model",
+        "on C dx + D dT = 0, the two sides differ by {} of their difference elsewhere, with C and D of this model",
         Shown(largest)
     );
     decide(largest <= tolerance::IDENTITY.value && jump_a.norm() > 0.0, Verdict::Refuted, evidence)

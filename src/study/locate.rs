@@ -171,10 +171,10 @@ impl Happens {
     pub fn meaning(&self) -> String {
         match self {
             Self::BorderCollision(Ok(_)) => "two matrices meet on a border".into(),
-            Self::BorderCollision(Err(refusal)) => format!("Feigin's classification says nothing: {refusal}"),
+            Self::BorderCollision(Err(refusal)) => format!("Feigin's classification does not apply: {refusal}"),
             Self::Gap => {
-                "the cam's velocity jumps, and what an impact leaves the follower with jumps with it: this side's \
-                          orbit ends here, and across the corner the map has a gap, not a second matrix"
+                "the cam's velocity jumps, and the velocity after an impact jumps with it. The orbit of this side \
+                          ends here. Across the corner the map has a gap instead of a second matrix"
                     .into()
             }
             Self::Smooth => {

@@ -82,13 +82,13 @@ pub enum StudyError {
     )]
     Lengths { a: String, b: String },
     /// The value at which a search begins is outside the range to be followed.
-    #[error("{file}: {name} = {value}, where orbits are looked for, is outside of {}:{}: --set {name}=VALUE, or --rpm R where the speed varies, looks for them elsewhere", range[0], range[1])]
+    #[error("{file}: {name} = {value}, where the search for orbits starts, is outside of {}:{}: start elsewhere by --set {name}=VALUE, or by --rpm R if the speed varies", range[0], range[1])]
     Outside { file: String, name: String, value: f64, range: [f64; 2] },
     /// A search found no orbit.
     #[error("{file}: no periodic orbit of {revolutions} revolution(s) found at {rpm} rpm to follow")]
     NothingToFollow { file: String, revolutions: u64, rpm: f64 },
     /// The speed was to be followed, but a curve of events gives their speed.
-    #[error("--over must be a number of the model: the speed is what the events are at")]
+    #[error("--over must be a number of the model: the speed of each event is the result")]
     SpeedFollowed,
     /// A run up to a number of impacts met no further impact.
     #[error(
@@ -100,7 +100,9 @@ pub enum StudyError {
     #[error(transparent)]
     Over(#[from] survey::OverError),
     /// A range of speeds was given together with another number that varies.
-    #[error("--rpm {low}:{high} and --over are two ranges: with --over, --rpm is one speed; `chart` goes over two")]
+    #[error(
+        "--rpm {low}:{high} and --over are two ranges: with --over, --rpm is one speed; `chart` varies two numbers"
+    )]
     RangeAndNumber {
         /// Lowest speed, rpm.
         low: f64,

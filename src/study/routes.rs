@@ -144,7 +144,7 @@ pub fn split_by_knowledge(mut comparisons: Vec<Agreement>, routes: &[Route], log
         if let Some(item) = unknown.first() {
             let (quantity, known_to, asked) =
                 (item.quantity, known_to(route, uncertainty, item.quantity), item.bound.value);
-            let why = format!("knows {quantity} to {known_to:.1e} by its own errors, and {asked:.1e} is asked for");
+            let why = format!("knows {quantity} to {known_to:.1e} by its own errors, but {asked:.1e} is required");
             log.leave_out(route.name, why);
         }
     }

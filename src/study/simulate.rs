@@ -277,7 +277,7 @@ impl Simulation {
             }
         }
         let follow = |budget: Budget| -> Result<Lyapunov, StudyError> {
-            watch.at("what it comes to in the long run", 0, 0);
+            watch.at("motion in the long run", 0, 0);
             Ok(Lyapunov::of(long_run(machine, *first, budget)?, budget))
         };
         let long_run = wanted.long_run.map(follow).transpose()?;

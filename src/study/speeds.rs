@@ -382,7 +382,7 @@ pub fn speeds(
     watch: &dyn Watch,
 ) -> Result<SpeedSurvey, AttractorsError> {
     let Attractors { grid, mut families, coexistence, separation, .. } = attractors(over, range, resolution, watch)?;
-    watch.at("what the uncertainty of the machine leaves open", 0, 0);
+    watch.at("uncertainty of the results", 0, 0);
     let lowest = machine(over.model, if over.is_speed() { range[0] } else { over.rpm })?;
     let machines = PlausibleMachines::of(over.model, lowest.cam())?;
     let known = separation.map(|separation| known(separation, &machines));

@@ -413,7 +413,7 @@ pub fn verify_watched(model: &Model, external: External, watch: &dyn Watch) -> R
     let normal_form = normal_form(&map);
     log.refused("normal_form", &normal_form);
     log.refused("classification", &classification);
-    watch.at("what the map does by itself", 0, 0);
+    watch.at("motions of the local map", 0, 0);
     let local = LocalMap::new(&map, border);
     let (mut outcomes, mut danger, mut ranges) = (Vec::new(), None, Vec::new());
     let rounded_corner = classification.as_ref().ok().and_then(|kind| rounded(kind, &at));
@@ -477,8 +477,7 @@ fn certificate(
 ) -> Option<Certificate> {
     let name = RouteName::Certificate;
     let Some(proving) = proving else {
-        let beyond =
-            "knows splines through the rows of a table, not near them, and of a thousand rows at most; no contour";
+        let beyond = "takes only splines through the rows of a table, not near them, with a thousand rows at most, and no contour";
         log.leave_out(name, if is_beyond { beyond } else { "left out by --no-external" });
         return None;
     };

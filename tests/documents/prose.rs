@@ -33,8 +33,13 @@ pub fn sentences(page: &Page) -> Vec<(usize, String)> {
         }
     }
     let of_paragraph =
-        |(number, text): (usize, String)| split(&bare(&text)).into_iter().map(move |sentence| (number, sentence));
+        |(number, text): (usize, String)| of_text(&text).into_iter().map(move |sentence| (number, sentence));
     paragraphs.into_iter().flat_map(of_paragraph).collect()
+}
+
+/// The sentences of one paragraph.
+pub fn of_text(text: &str) -> Vec<String> {
+    split(&bare(text))
 }
 
 fn is_item(text: &str) -> bool {

@@ -141,7 +141,7 @@ fn arguments_that_exclude_or_need_each_other() {
         ("--phase-plane x", ["--phase-plane <FILE>", ".svg, .png or .pdf"]),
         ("--phase-plane -", ["--phase-plane <FILE>", ".svg, .png or .pdf"]),
         ("--phase-plane x.csv", ["--phase-plane <FILE>", ".svg, .png or .pdf"]),
-        ("--drawn 5", ["--drawn", "--out and --phase-plane"]),
+        ("--drawn 5", ["--drawn", "--out or --phase-plane"]),
     ] {
         place.refuses(&format!("simulate MODEL --rpm 700 {line}"), &says);
     }
@@ -186,7 +186,7 @@ fn looks_that_cannot_be() {
         ("--font nosuch.ttf", ["nosuch.ttf", "cannot be read as a font"]),
         ("--font NoSuchLetters", ["NoSuchLetters", "is installed"]),
         ("--height 5pt", ["1.8 mm high", "10.6 mm"]),
-        ("--height 40mm", ["cannot be 40.0 mm high", "it takes"]),
+        ("--height 40mm", ["cannot be 40.0 mm high", "it needs"]),
         ("--legend left", ["--legend <PLACE>", "none, above, below or right"]),
         ("--title --no-title", ["--title", "cannot be used with"]),
         ("--script out.txt", ["--script <FILE>", "must end in .py"]),

@@ -251,7 +251,12 @@ fn an_impact_on_one_side_of_a_kink_needs_room_on_the_other() {
         ([0.01, 0.04], 0.04, Side::Minus, None),
         ([0.01, 0.025], 0.01, Side::Plus, None),
         ([0.04, 0.01], 0.01, Side::Minus, Some("the cam's other side hits the follower again at once")),
-        ([0.01, -0.04], 0.01, Side::Plus, Some("the flight would come to the corner out of the cam's other side")),
+        (
+            [0.01, -0.04],
+            0.01,
+            Side::Plus,
+            Some("the flight would reach the corner from inside the cam on its other side"),
+        ),
     ] {
         let rpm = 60.0 / (2.0 * (1.0 + RESTITUTION) * TAU * slope / ((1.0 - RESTITUTION) * GRAVITY)).sqrt();
         let all = at_kink(&kinked(0.0, [plus, minus]), [rpm - 0.01, rpm + 0.01], 1);
@@ -319,7 +324,11 @@ fn what_is_refused_at_one_corner_is_told_at_each_speed() {
     let all = at_kink(&kinked(0.0, [0.01, 0.04]), [183.0, 190.0], 1);
     let speeds: Vec<f64> = all.rejected.iter().map(|it| it.speed_rpm).collect();
     assert!(speeds.len() > 3 && speeds.windows(2).all(|pair| pair[1] > pair[0] * (1.0 + 1e-9)), "{speeds:?}");
-    assert!(all.rejected.iter().all(|it| it.why == "the flight would come to the corner out of the cam's other side"));
+    assert!(
+        all.rejected
+            .iter()
+            .all(|it| it.why == "the flight would reach the corner from inside the cam on its other side")
+    );
 }
 
 /// A ball that loses all leaves a corner with the cam's velocity, `g T/2` for a flight of a turn. Where the cam is bent upwards there it does not

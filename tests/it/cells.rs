@@ -109,7 +109,7 @@ fn blanks_between_thousands_are_read_where_they_part_no_columns() {
         // Alone they part the columns.
         is_the_lobe(&rows(0..360, |angle, lift| format!("{angle}{by}{lift:.4}")), "", 1.0);
     }
-    let says = "; if blanks part thousands as well, part the columns by semicolons, or write nothing between thousands";
+    let says = "; if blanks separate thousands as well, separate the columns by semicolons, or write nothing between thousands";
     assert!(refused(&of(" ", " ", "angle lift\n"), "").contains(says));
     assert!(refused(&of(" ", " ", ""), "").contains(says));
     let three = "angle lift\n0 1.5 2.5\n1 2.5 3.5\n";
@@ -169,7 +169,7 @@ fn rows_are_coarse_by_how_many_a_lobe_has() {
     let wave = |lobes: f64| move |angle: f64| 5.0 - 5.0 * (lobes * angle).to_radians().cos();
     for (step, few) in [(5, None), (6, None), (8, Some(12)), (10, Some(11)), (15, Some(7))] {
         let told = every(step, &lift);
-        let says = few.map(|few| format!("{few} rows on a lobe are too few to know its accelerations"));
+        let says = few.map(|few| format!("{few} rows on a lobe are too few for its accelerations"));
         assert_eq!(told.len(), usize::from(few.is_some()), "{step}: {told:?}");
         assert!(says.is_none_or(|says| told[0].contains(&says)), "{step}: {told:?}");
         // A hollow in a circle is as coarse as a lobe.

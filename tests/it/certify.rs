@@ -335,11 +335,11 @@ fn a_cam_that_is_typed_is_certified_as_it_is_joined_and_says_so() {
         let of = |model: &'static str| [vec![model], arguments.clone()].concat();
         assert_eq!(&certified(&of("models/laws/polynomial.toml"))["assumed"], assumed, "{arguments:?}");
         let page = text(corner_impact([vec!["certify"], of("models/laws/polynomial.toml")].concat()).stdout);
-        assert!(in_one_line(&page).contains("as they are typed"), "{page}");
+        assert!(in_one_line(&page).contains("as typed"), "{page}");
         assert!(certified(&of("models/osorio-2008.toml"))["assumed"].is_null(), "{arguments:?}");
     }
     let page = corner_impact(["certify", "models/laws/polynomial.toml", "--rpm", "443:444"]);
-    assert!(in_one_line(&text(page.stdout)).contains("its pieces miss each other, as they are typed"));
+    assert!(in_one_line(&text(page.stdout)).contains("the steps between them as typed"));
 }
 
 /// Every document with a proof has what that takes for granted; so have `verify`, which repeats one, and `explain`, of a number of it.
@@ -447,7 +447,10 @@ fn splines_near_the_rows_are_not_proved() {
         let output = common::corner_impact(["certify", file].iter().chain(&asked));
         let says = common::text(output.stderr);
         assert_eq!(output.status.code(), Some(2), "{says}");
-        assert!(says.contains("cam.spline = \"smoothing\": proofs are of splines through the rows"), "{says}");
+        assert!(
+            says.contains("cam.spline = \"smoothing\": proofs are for cubic or quintic splines through the rows"),
+            "{says}"
+        );
     }
 }
 
@@ -455,7 +458,9 @@ fn splines_near_the_rows_are_not_proved() {
 #[test]
 fn splines_through_a_thousand_rows_are_proved_and_of_more_are_not() {
     let folder = tempfile::tempdir().unwrap();
-    for (rows, says) in [(1000, "/nonexistent/python"), (1001, "proofs are of splines through the rows")] {
+    for (rows, says) in
+        [(1000, "/nonexistent/python"), (1001, "proofs are for cubic or quintic splines through the rows")]
+    {
         let lift = |row: u32| 0.1 + 0.02 * (std::f64::consts::TAU * f64::from(row) / f64::from(rows)).cos();
         let row = |row: u32| format!("[{:?}, {:?}]", 360.0 * f64::from(row) / f64::from(rows), lift(row));
         let rows = (0..rows).map(row).collect::<Vec<_>>().join(", ");
@@ -587,7 +592,7 @@ fn a_document_has_the_hypotheses_of_its_proofs() {
             says("the machine's numbers are the decimals of its model file");
             says("free flight follows the equation of motion");
             if !assumed.is_null() {
-                says("the steps of up to 2.5e-9 m and 7.5e-8 m/rad");
+                says("up to 2.5e-9 m and 7.5e-8 m/rad");
             }
             if index == 3 {
                 says("impacts that follow each other without end put the follower to rest");

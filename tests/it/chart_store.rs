@@ -145,7 +145,7 @@ fn another_chart_is_told_by_what_is_another() {
     says(&elsewhere, [2, 3], start);
     let mut heavier = paper.with_number("follower.mass", 2.0).unwrap();
     heavier.name.clone_from(&paper.name);
-    says(&chart(&heavier, 8), [2, 3], "numbers of its model are others");
+    says(&chart(&heavier, 8), [2, 3], "numbers of its model differ");
     let mut other = own.clone();
     other.y.values = [0.1, 0.3, 0.5, 0.8].into();
     says(&other, [2, 3], "other values of follower.restitution");
@@ -155,7 +155,7 @@ fn another_chart_is_told_by_what_is_another() {
     let group = at.join("zarr.json");
     let text = std::fs::read_to_string(&group).unwrap();
     std::fs::write(&group, text.replace("kind of motion", "kind of rest")).unwrap();
-    says(&own, [2, 3], "what is said of its arrays is something else");
+    says(&own, [2, 3], "the description of its arrays differs");
     let document = |change: &dyn Fn(&mut Value)| {
         let mut document: Value = serde_json::from_str(&text).unwrap();
         change(&mut document["consolidated_metadata"]["metadata"]["class"]);
@@ -170,7 +170,7 @@ fn another_chart_is_told_by_what_is_another() {
         &|class: &mut Value| *class = json!({}),
     ] as [&dyn Fn(&mut Value); 4]
     {
-        assert_eq!(document(broken), Err(format!("{}: no store of a chart: it has no classes", at.display())));
+        assert_eq!(document(broken), Err(format!("{}: holds no store of a chart: it has no classes", at.display())));
     }
     std::fs::write(&group, "{").unwrap();
     for said in [refused(&own, [2, 3]), blocks_of(at).unwrap_err().to_string(), status(at).unwrap_err().to_string()] {

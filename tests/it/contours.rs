@@ -331,7 +331,7 @@ fn what_the_geometry_forbids_is_refused_with_its_place() {
         (&twice, cubic(""), "goes round the cam's axis 2.0 times"),
         (&open, cubic(""), "a whole turn is needed"),
         (&head(&round, "26.0\n", "-26.0\n"), cubic(""), "contour.csv:2: radius"),
-        (&head(&round, "radius", "lift"), cubic(""), "law = \"table\" takes it"),
+        (&head(&round, "radius", "lift"), cubic(""), "use law = \"table\""),
         (&head(&round, "radius", "velocity"), cubic(""), "must name the angle, then the radius"),
         (&round, cubic("radius_column = 2\nx_column = 1"), "belongs to the other coordinates"),
         (&aside.replace("x [mm];y [mm]\n", ""), cubic(""), "then say coordinates = \"xy\" in [cam]"),
@@ -372,7 +372,7 @@ fn a_radius_under_the_law_of_tables_names_the_law_of_contours() {
     let answer = corner_impact(["cam", file.to_str().unwrap(), "--out", out.to_str().unwrap()]);
     let said = text(answer.stderr).split_whitespace().collect::<Vec<_>>().join(" ");
     assert_eq!((answer.status.code(), out.exists()), (Some(2), false));
-    assert!(said.contains("law = \"contour\" takes it"), "{said}");
+    assert!(said.contains("use law = \"contour\""), "{said}");
 }
 
 /// A model that stands alone has its contour as polar rows; it is the same cam.
@@ -408,5 +408,5 @@ fn the_page_says_what_was_read_and_proofs_are_refused_with_a_sentence() {
         assert!(page.contains(says), "{says}: {page}");
     }
     let refused = said(&["certify", &file, "--orbits", "--rpm", "500"]);
-    assert!(refused.contains("cam.law = \"contour\": gives a contour; proofs are of lifts"), "{refused}");
+    assert!(refused.contains("cam.law = \"contour\": gives a contour; proofs are for lifts"), "{refused}");
 }

@@ -300,7 +300,11 @@ fn every_command_tells_of_the_danger() {
     assert!(diverges["share_of_directions"].as_f64().unwrap() > 0.99, "{diverges}");
     let page = |paged: &dyn Paged| paged.text().unwrap();
     let text = page(&verified);
-    assert!(text.contains("persistence, dangerous") && !text.contains("lives on"), "{text}");
+    assert!(
+        text.contains("persistence, dangerous")
+            && crate::common::in_one_line(&text).contains("but its basin shrinks to nothing at omega*"),
+        "{text}"
+    );
 
     let range = Study { rpm_min: 59.0, rpm_max: 61.0 };
     let located = locate(&model, range, 1, &Unwatched).unwrap();

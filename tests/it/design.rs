@@ -71,7 +71,7 @@ fn a_need_is_met_at_its_value_and_not_beyond() {
         let Some(value) = answer.value else {
             // The return is what leaves first, and damping lets it go sooner.
             assert_eq!(answer.lever, Lever::Damping, "{answer:?}");
-            assert!(answer.note.contains("does it"), "{}", answer.note);
+            assert!(answer.note.contains("suffices"), "{}", answer.note);
             continue;
         };
         let with =
@@ -271,7 +271,7 @@ fn what_cannot_be_answered_is_told() {
     for (words, says) in [
         (vec!["--need", "no separation"], "must be like"),
         (vec!["--need", "impact speed below 3 kg to 200 rpm"], "\"kg\": impact speed is in one of: m/s"),
-        (vec!["--need", "force below 3 N to 200 rpm"], "a force is no need"),
+        (vec!["--need", "force below 3 N to 200 rpm"], "a force cannot be a need"),
         (vec!["--need", "no separation to -3 rpm"], "is not a number above 0"),
         (vec!["--limit", "noise=3"], "must be one of: impact-speed, gap, energy, force"),
         (
@@ -316,7 +316,7 @@ fn any_preload_above_none_is_an_answer() {
         of(found.needs.iter().find(|answer| answer.lever == Lever::Preload).unwrap());
     };
     preload("no separation to 3000 rpm", &|found| {
-        assert_eq!((found.value, found.note.as_str()), (Some(0.0), "as little as there can be will do"), "{found:?}");
+        assert_eq!((found.value, found.note.as_str()), (Some(0.0), "the least possible value suffices"), "{found:?}");
     });
     preload("energy below 0.1 J to 5500 rpm", &|found| {
         assert!(found.value.is_some_and(|value| (400.0..480.0).contains(&value)), "{found:?}");

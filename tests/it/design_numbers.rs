@@ -212,7 +212,8 @@ fn what_must_be_changed_of_an_eccentric_is_a_root() {
         let damper = one(Lever::Damping);
         assert_eq!((damper.value, damper.is_upper_bound), (None, false));
         assert!(
-            damper.note.starts_with("no damping below ") && damper.note.ends_with(" N s/m does it, the others kept")
+            damper.note.starts_with("no damping below ")
+                && damper.note.ends_with(" N s/m suffices, with the others unchanged")
         );
         // (k (0.1 - rest) + m g)^2 = a^2 ((k - m w^2)^2 + b^2 w^2)
         let spring = stiffness * (0.1 - rest);
@@ -253,7 +254,7 @@ fn what_is_done_already_has_its_ends() {
     let one = |lever: Lever| found.iter().find(|it| it.lever == lever).unwrap();
     assert_eq!([Lever::Preload, Lever::Stiffness].map(|lever| one(lever).note.as_str()), ["there is no spring"; 2]);
     assert_eq!(one(Lever::Mass).value, Some(2.0 * 2.0_f64.powi(20)));
-    assert_eq!(one(Lever::Mass).note, "as far as 2.097e6 kg is looked at, any will do");
+    assert_eq!(one(Lever::Mass).note, "any value suffices, as far as 2.097e6 kg was tried");
     // a w sqrt((m w)^2 + b^2) = m g
     let omega = angular_velocity(900.0);
     let most = 2.0 * ((GRAVITY / (0.001 * omega)).powi(2) - omega * omega).sqrt();
@@ -261,17 +262,17 @@ fn what_is_done_already_has_its_ends() {
     assert!(one(Lever::Damping).is_upper_bound);
     let found = answers(&table, "no separation to 950 rpm");
     let mass = found.iter().find(|it| it.lever == Lever::Mass).unwrap();
-    assert_eq!((mass.value, mass.note.as_str()), (None, "no mass above 1.9e-6 kg does it, the others kept"));
+    assert_eq!((mass.value, mass.note.as_str()), (None, "no mass above 1.9e-6 kg suffices, with the others unchanged"));
     // Without gravity and preload nothing presses at the lowest lift, which is no separation: it stays up to `m^2 w^2 = 2 k m - b^2`.
     let hung = OWN.model(true, false).with_number("follower.gravity", 0.0).unwrap();
     let found = answers(&hung, "no separation to 500 rpm");
     let preload = found.iter().find(|it| it.lever == Lever::Preload).unwrap();
-    assert_eq!((preload.value, preload.note.as_str()), (Some(0.0), "as little as there can be will do"));
+    assert_eq!((preload.value, preload.note.as_str()), (Some(0.0), "the least possible value suffices"));
     // Gravity of its own presses a mass however little the spring does.
     let light = Eccentric { stiffness: 100.0, rest: 0.08, damping: 0.0, ..OWN };
     let found = answers(&light.model(true, false), "no separation to 50 rpm");
     let preload = found.iter().find(|it| it.lever == Lever::Preload).unwrap();
-    assert_eq!((preload.value, preload.note.as_str()), (Some(0.0), "as little as there can be will do"));
+    assert_eq!((preload.value, preload.note.as_str()), (Some(0.0), "the least possible value suffices"));
 }
 
 /// A damper that holds the follower on the rise lets it go on the return: of a speed between what it does without and with the best one, what

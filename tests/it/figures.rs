@@ -596,8 +596,8 @@ fn what_cannot_be_drawn_is_said() {
     let cases: [(&[&str], &str); 4] = [
         (&["chaos"], "no figure called \"chaos\"; there are: cam-shape, cam,"),
         (&[&file("laws/harmonic.toml"), "composition", "--out", &out], "[study]"),
-        (&[&file("laws/rectified-sine.toml"), "slow-trace", "--out", &out], "begins to leave the cam"),
-        (&["--out", &out], "--out is for one figure"),
+        (&[&file("laws/rectified-sine.toml"), "slow-trace", "--out", &out], "does not begin to leave the cam"),
+        (&["--out", &out], "--out writes one figure"),
     ];
     for (words, wanted) in cases {
         let (exit, _, err) = command(words);

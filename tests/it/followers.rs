@@ -339,7 +339,7 @@ fn the_page_and_the_document_say_which_follower() {
     );
     page(&paper(ROLLERS[1]), &["a roller of radius 0.1 m, whose centre moves on a line 0.05 m beside the cam's axis"]);
     let harmonic = text(corner_impact(["cam", "models/laws/harmonic.toml"]).stdout);
-    assert!(harmonic.contains("follower: the lift is the follower's own"), "{harmonic}");
+    assert!(harmonic.contains("follower: the lift is that of the follower"), "{harmonic}");
 }
 
 /// The model as a file.

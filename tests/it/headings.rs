@@ -249,7 +249,7 @@ fn a_unit_that_is_not_understood_is_refused_with_the_line_that_says_it() {
     is_the_lobe(&table("angle,lift", COMMA).replace("4,0.0000\n", "4,0.0000 # 0.1 in\n"), "", 1.0);
     let cases = [
         ("# angle [deg], radius [mm]", "A,L", "", "names a radius"),
-        ("# angle [deg], lift [mm], lift [in]", "A,L,L", "", "say which in [cam], by lift_column"),
+        ("# angle [deg], lift [mm], lift [in]", "A,L,L", "", "name it in [cam], by lift_column"),
         ("angle [deg],lift [mm]", "A,L", "unit = \"in\"", "is not what the header of the table says: mm"),
         ("angle [deg],lift [mm]", "A,L", "unit = \"0.01 mm\"", "is not what the header of the table says: mm"),
         ("angle,lift", "A,L", "unit = \"0.5 mm\"", "must be one of: \"m\", \"cm\", \"mm\""),

@@ -124,13 +124,10 @@ fn the_drawn_cams_are_as_the_ledger_says() {
         }
     };
     // |(1.8114, 3.4764) - (3.25, 4)| = 1.53091 for 3.5310 - 2, and so on; 147.1976 - 143.4024 and 36.5976 - 32.8367.
-    says("figure: camprofileeq", &["at most 0.005 of", "3.8 deg past P"]);
+    says("figure: camprofileeq", &["at most 0.005, with", "3.8 deg past P"]);
     // |(5.2021, 2.8811) - (3.25, 4)| = 2.25004, |(3.5945, 5.9901) - (3.25, 4)| = 2.01970, radii 2, 4.25, 0.745, 2.77.
     let lengths = "0.40000, 0.45001, 0.85000, 0.40394, 0.14900, 0.55400";
-    says(
-        "figure: camprofile (a)",
-        &[lengths, "from R to P it turns 60.1794 deg", "otherwise than computed with: rho2"],
-    );
+    says("figure: camprofile (a)", &[lengths, "The angle from R to P is 60.1794 deg", "differ from the model: rho2"]);
     says("equation: theta_i", &["20.00, -62.03, -70.00 deg", "70.00, 152.03, 160.00 deg"]);
     says("figure: cam-shaft", &["g = 117.18 m/s^2"]);
 }

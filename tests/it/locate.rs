@@ -231,7 +231,9 @@ fn an_orbit_out_of_the_other_side_is_refused_with_the_reason() {
     let through = |angle: f64| {
         let near = |speed: f64| (speed - 4.207501).abs() < 1e-6;
         found.looked_at.rejected.iter().any(|at| {
-            near(at.speed_rpm) && (at.cam_angle - angle).abs() < 1e-9 && at.why.contains("out of the cam's other side")
+            near(at.speed_rpm)
+                && (at.cam_angle - angle).abs() < 1e-9
+                && at.why.contains("from inside the cam on its other side")
         })
     };
     assert!(through(0.0) && through(std::f64::consts::PI), "{:?}", found.looked_at.rejected);
@@ -245,9 +247,9 @@ fn the_page_says_what_was_looked_at() {
     assert!(page.contains("673.234445004") && page.contains("nonsmooth-fold") && page.contains("agree"), "{page}");
     assert!(page.contains("634.331399 rpm") && page.contains("would come out of the cam"), "{page}");
     let words = crate::common::in_one_line(&page);
-    assert!(words.contains("Orbits of one impact: all, which is proved."), "{page}");
+    assert!(words.contains("Orbits of one impact: the list is proved to be complete."), "{page}");
     assert!(
-        words.contains("each 2 % faster than the one before")
+        words.contains("each 2 % above the one before")
             && words.contains("too few for an estimate of how many both missed"),
         "{page}"
     );

@@ -64,6 +64,7 @@ mod fuzz;
 mod global;
 mod growth_numbers;
 mod headings;
+mod help_prose;
 mod hostile;
 mod impact_map;
 mod inner;

@@ -184,7 +184,7 @@ fn a_dwell_that_the_rows_contradict_is_told() {
         std::fs::write(&file, given).unwrap();
         let output = crate::common::program(["cam", "valve.toml"]).current_dir(folder.path()).output().unwrap();
         let notes = crate::common::text(output.stderr);
-        assert_eq!(notes.contains("cam.dwells_deg: the rows are otherwise: at "), is_told, "{notes}");
+        assert_eq!(notes.contains("cam.dwells_deg: the rows contradict it: at "), is_told, "{notes}");
         assert_eq!(notes.contains(" deg the cam is ") && notes.contains(" mm from them"), is_told, "{notes}");
     }
 }
@@ -568,7 +568,7 @@ fn tolerances() {
         (json!({ "tolerance": 0.0004 }), "cam.tolerance = 0.0004: must be at least 0.0005, half of the step 0.001"),
         (json!({ "tolerance": 0 }), "must be a finite number above 0"),
         (json!({ "tolerance": "none" }), "must be one of: \"auto\""),
-        (json!({ "tolerance": 20 }), "is so large that nothing of the lift would be left"),
+        (json!({ "tolerance": 20 }), "is so large that no lift would be left"),
         (
             json!({ "tolerance": 0.001, "dwells_deg": [[60, 110]] }),
             "cannot be kept: with corners and dwells as they are a row is",
@@ -757,12 +757,12 @@ fn a_measured_corner_impact() {
         let page = crate::common::text(crate::common::program(words).output().unwrap().stdout);
         let page = crate::common::in_one_line(&page);
         assert_eq!(
-            page.contains("not known: of 18 cams that are as likely (lift rounded to 0.0001 m) "),
+            page.contains("not known: of 18 equally likely cams (lift rounded to 0.0001 m), "),
             is_open,
             "{page}"
         );
         assert_eq!(page.contains(" say nonsmooth-fold"), is_open, "{page}");
-        assert_eq!(page.contains("the same of 18 cams that are as likely"), !is_open, "{page}");
+        assert_eq!(page.contains("the same verdict for 18 equally likely cams"), !is_open, "{page}");
     }
     let document = serde_json::to_value(&found).unwrap();
     assert_eq!(document["uncertainty"]["speed_rpm"], json!(speed));
@@ -888,7 +888,7 @@ fn an_answer_without_an_error_says_how_well_its_cam_is_known() {
     let notes = |line: &str| String::from_utf8(run(line).stderr).unwrap();
     run("new valve.toml --law table");
     let rounded =
-        "note: lift rounded to 0.001 mm, which leaves the cam's second derivative open to 1.4 % of its largest value; ";
+        "note: lift rounded to 0.001 mm, so the cam's second derivative is uncertain by 1.4 % of its largest value; ";
     for (command, is_without) in [
         ("simulate valve.toml --rpm 3000 --revolutions 2", true),
         ("diagram valve.toml --rpm 3000:3100:100 --transient 0 --record 1", true),
@@ -911,12 +911,12 @@ fn an_answer_without_an_error_says_how_well_its_cam_is_known() {
     assert!(crate::common::in_one_line(&page).contains("for the cam as drawn, with the ± above"), "{page}");
     let page = crate::common::text(run("orbit valve.toml --rpm 8000").stdout);
     let ends = crate::common::in_one_line(&page);
-    assert!(ends.contains("± 0.0") && ends.contains("of a multiplier") && ends.contains("lift rounded to 0.001 mm."));
+    assert!(ends.contains("± 0.0") && ends.contains("in a multiplier") && ends.contains("lift rounded to 0.001 mm."));
     assert!(page.contains("     multipliers   1.776   0.003"), "{page}");
     // It loses its stability within what the cam leaves open of where this speed is.
     for (rpm, is_open) in [(12009, true), (11900, false)] {
         let page = crate::common::text(run(&format!("orbit valve.toml --rpm {rpm}")).stdout);
-        assert_eq!(page.contains("stable or unstable, which its ± leaves open"), is_open, "{page}");
+        assert_eq!(page.contains("stable or unstable: its ± does not decide"), is_open, "{page}");
     }
     // The same cam with all digits, and with more rows than are looked at in a blink.
     let (model, rows) = (folder.path().join("valve.toml"), folder.path().join("valve.csv"));
@@ -924,9 +924,11 @@ fn an_answer_without_an_error_says_how_well_its_cam_is_known() {
     let quintic = text.replace("\"smoothing\"", "\"quintic\"").replace("tolerance = \"auto\"", "");
     std::fs::write(&model, quintic).unwrap();
     let lift = |angle: f64| 5.0 * (1.0 - angle.cos()) + 0.3 * (1.0 - (2.0 * angle).cos());
-    for (count, digits, says) in
-        [(360, 17, None), (360, 4, Some("lift rounded to 0.0001 mm")), (5000, 3, Some("as far as `cam` tells"))]
-    {
+    for (count, digits, says) in [
+        (360, 17, None),
+        (360, 4, Some("lift rounded to 0.0001 mm")),
+        (5000, 3, Some("by an amount that `cam` prints")),
+    ] {
         let row = |index: u32| {
             let angle = 360.0 * f64::from(index) / f64::from(count);
             format!("{angle},{:.digits$}\n", lift(angle.to_radians()))
@@ -934,7 +936,7 @@ fn an_answer_without_an_error_says_how_well_its_cam_is_known() {
         std::fs::write(&rows, format!("angle [deg],lift [mm]\n{}", (0..count).map(row).collect::<String>())).unwrap();
         let told = notes("simulate valve.toml --rpm 3000 --revolutions 2");
         match says {
-            Some(says) => assert!(told.contains(says) && told.contains("second derivative open"), "{told}"),
+            Some(says) => assert!(told.contains(says) && told.contains("second derivative is uncertain by"), "{told}"),
             None => {
                 assert!(!told.contains("second derivative"), "{told}");
                 assert!(!crate::common::text(run("orbit valve.toml --rpm 3000").stdout).contains('±'));
@@ -996,10 +998,10 @@ fn a_new_measured_machine() {
     run(&["new", "valve.toml", "--law", "table"]);
     let page = run(&["cam", "valve.toml"]);
     for says in [
-        "table: 180 rows; columns parted by commas; the header is \"angle [deg],lift [mm]\"; 1 comment",
+        "table: 180 rows; columns separated by commas; the header is \"angle [deg],lift [mm]\"; 1 comment",
         "angles: column 1, in deg",
         "lifts: column 2, in mm",
-        "accuracy: lift rounded to 0.001 mm; about a smooth motion the rows spread by 0.000",
+        "accuracy: lift rounded to 0.001 mm; the rows scatter about a smooth motion by 0.000",
         "corners found: none; dwells found: 19",
         "Corners (2)",
     ] {
@@ -1012,7 +1014,7 @@ fn a_new_measured_machine() {
         std::fs::write(folder.path().join("loose.toml"), loose).unwrap();
         let output = crate::common::program(["cam", "loose.toml"]).current_dir(folder.path()).output().unwrap();
         let notes = String::from_utf8_lossy(&output.stderr);
-        assert_eq!(notes.contains("mm is far more than the rows spread by, some 0.00"), is_loose, "{notes}");
+        assert_eq!(notes.contains("mm is far more than the spread of the rows, about 0.00"), is_loose, "{notes}");
         assert_eq!(notes.contains("cam.tolerance: 0.50 mm"), is_loose, "{notes}");
     }
     let page = run(&["design", "valve.toml", "--speeds", "3"]);
@@ -1020,7 +1022,7 @@ fn a_new_measured_machine() {
     let speeds = ["speeds", "valve.toml", "--rpm", "2700:4500", "--speeds", "10", "--starts", "8"];
     let page = run(&speeds);
     assert!(page.contains("leaves the cam first at 29") && page.contains("rpm: lift rounded to 0.001 mm"), "{page}");
-    assert!(page.contains("± is what the cam leaves open, lift rounded to 0.001 mm"), "{page}");
+    assert!(page.contains("± is the uncertainty from the cam, lift rounded to 0.001 mm"), "{page}");
     // No speed has more digits than the cam leaves it, whether how far it is open is known or not.
     let decimals =
         page.split_whitespace().filter_map(|word| word.split_once('.')).map(|(_, decimals)| decimals.len()).max();
@@ -1039,11 +1041,11 @@ fn a_new_measured_machine() {
     let report = std::fs::read_to_string(folder.path().join("report.html")).unwrap();
     for says in [
         "id=\"loads\"",
-        "table: 180 rows; columns parted by commas",
+        "table: 180 rows; columns separated by commas",
         ">impact speed</text>",
         ">(mm/s)<",
-        "± is what the cam leaves open, lift rounded to 0.001 mm",
-        "of the cam as it is drawn (lift rounded to 0.001 mm); the loads below have their ±.",
+        "± is the uncertainty from the cam, lift rounded to 0.001 mm",
+        "for the cam as it is drawn (lift rounded to 0.001 mm). The loads below have their ±",
         "design valve.toml --rpm 2700:3500 --out loads.svg",
         "speeds valve.toml --rpm 2700:3500 --out attractors.svg",
     ] {
@@ -1173,14 +1175,17 @@ fn a_slip_is_told_with_its_line() {
     std::fs::write(&rows, written.join("\n")).unwrap();
     let told = lines(&crate::common::text(run(&["cam", "valve.toml"]).stderr));
     assert_eq!(told.len(), 4, "{told:?}");
-    assert!(told[0].starts_with("note: valve.csv, line 60: lift 6.514 at 114 deg is 3.0 mm below what"), "{told:?}");
+    assert!(
+        told[0].starts_with("note: valve.csv, line 60: lift 6.514 at 114 deg is 3.0 mm below the trend"),
+        "{told:?}"
+    );
     assert!(told[2].starts_with("note: valve.csv, line 120: lift 0.05 at 234 deg is 0.05"), "{told:?}");
     assert_eq!(told[3], "note: 2 more rows are off as well: `cam --json` lists them");
     let of_run =
         lines(&crate::common::text(run(&["simulate", "valve.toml", "--rpm", "100", "--revolutions", "1"]).stderr));
     assert_eq!(told, of_run[..4]);
     assert!(
-        of_run[4].contains("which leaves the cam's second derivative open to 72 %") && of_run.len() == 5,
+        of_run[4].contains("so the cam's second derivative is uncertain by 72 %") && of_run.len() == 5,
         "{of_run:?}"
     );
     let sheet: Value = serde_json::from_slice(&run(&["cam", "valve.toml", "--json"]).stdout).unwrap();
@@ -1459,7 +1464,7 @@ fn a_noise_that_is_unknown_is_said_to_be() {
     let as_drawn = corner_impact_cli::show::notes::as_drawn(&model).unwrap().unwrap();
     for page in [sheet, design, as_drawn] {
         let page = crate::common::in_one_line(&page);
-        assert!(page.contains("How far the rows are from a smooth motion is unknown"), "{page}");
+        assert!(page.contains("The noise of the rows is unknown"), "{page}");
     }
 }
 
@@ -1522,20 +1527,26 @@ fn two_places_that_may_be_left_first_are_both_named() {
     middles.sort_by(f64::total_cmp);
     assert!((middles[0] - 167.0).abs() < 4.0 && (middles[1] - 193.0).abs() < 4.0, "{middles:?}");
     let page = crate::common::in_one_line(&found.text().unwrap());
-    assert!(page.contains("Where is open: ") && page.matches(" % of 16 likely cams").count() == 2, "{page}");
-    assert!(!page.split("Where is open").next().unwrap().contains(" deg"), "{page}");
+    assert!(
+        page.contains("The angle is uncertain: ") && page.matches(" % of 16 equally likely cams").count() == 2,
+        "{page}"
+    );
+    assert!(!page.split("The angle is uncertain").next().unwrap().contains(" deg"), "{page}");
     // The report says the same.
     let sentence = page.split("The follower leaves").nth(1).unwrap().split(" (computed").next().unwrap();
     let words = ["report", "twofold.toml", "--no-external", "--rpm", "1000:1100", "--out", "twofold.html"];
     common::program(words).current_dir(folder.path()).output().unwrap();
     let report = std::fs::read_to_string(folder.path().join("twofold.html")).unwrap();
-    let open = sentence.split("Where is open").nth(1).unwrap();
+    let open = sentence.split("The angle is uncertain").nth(1).unwrap();
     let report: String = report.split('<').filter_map(|part| part.split_once('>')).map(|(_, text)| text).collect();
-    assert!(common::in_one_line(&report).contains(&format!("Where is open{open}")), "{open}");
+    assert!(common::in_one_line(&report).contains(&format!("The angle is uncertain{open}")), "{open}");
     // One place that all likely cams share is not open.
     let one = SeparationPlace { share: 1.0, ..found.places[0] };
     let page = crate::common::in_one_line(&Design { places: vec![one], ..found }.text().unwrap());
-    assert!(page.contains(". Each of 16 likely cams lets go at 1") && !page.contains("is open"), "{page}");
+    assert!(
+        page.contains(". On each of 16 equally likely cams, it leaves at 1") && !page.contains("is uncertain"),
+        "{page}"
+    );
 }
 
 /// Coarse rows with four decimals of an exact motion: the note advises the tolerance that the decimals allow, with which the answer is right, and

@@ -2,7 +2,7 @@
 
 #[allow(dead_code)]
 #[path = "../documents/page.rs"]
-mod page;
+pub(crate) mod page;
 
 use std::collections::BTreeSet;
 use std::path::Path;

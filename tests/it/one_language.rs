@@ -81,7 +81,7 @@ fn speeds_and_axes_have_one_form() {
         let why = refused(&format!("{command} --rpm 700"));
         assert!(why.contains("takes a range: LO:HI"), "{command}: {why}");
         let why = refused(&format!("{command} --rpm 600:700:3"));
-        assert!(why.contains("takes a range alone: LO:HI"), "{command}: {why}");
+        assert!(why.contains("takes only a range: LO:HI"), "{command}: {why}");
     }
     // A number of values may be left out, and one of --rpm is taken wherever it is of use.
     let rows = |line: &str| printed(line).lines().count();
@@ -199,14 +199,14 @@ fn numbers_are_taken_as_people_type_them() {
         ("speeds --rpm 3000-5000", "a range has a colon: 3000:5000"),
         ("simulate --rmp 700", "a similar argument exists: '--rpm'"),
         ("simulate --spring 700", "Usage: corner-impact simulate [OPTIONS]"),
-        ("diagram --over rpm=600:700:3 --over mass=1:2:3", "note: `chart` goes over two numbers"),
+        ("diagram --over rpm=600:700:3 --over mass=1:2:3", "note: `chart` varies two numbers"),
         ("basins --rpm 700", "example: corner-impact basins --rpm 678"),
         ("figure slow-trce", "did you mean slow-trace? there are: cam-shape,"),
         ("c0.cvs", "c0.cvs: cannot be read: there is no such file"),
         ("cam models/osorio-2009.toml", "did you mean osorio-2008.toml?"),
         ("cam models", "it is a folder"),
         ("design help", "the command comes first"),
-        ("analyse lifts.csv", "note: `corner-impact MODEL` says what can be done"),
+        ("analyse lifts.csv", "note: `corner-impact MODEL` lists what you can do"),
         ("models/osorio-2008.toml desing", "a similar subcommand exists: 'design'"),
         ("--rpm 700 simulate", "note: options of a command come after it"),
         ("design --svg a.svg", "a similar argument exists: '--out'"),
@@ -227,7 +227,7 @@ fn numbers_are_taken_as_people_type_them() {
         ("diagram --parameter restitution=0.6:0.9:4", "a similar argument exists: '--over'"),
         ("claims --verdict wrong", "must be one of"),
         ("certify --rpm 673", "corner impacts are certified over a range, --rpm LO:HI"),
-        ("figure fast-impacts --rpm 660:700", "fast-impacts has speeds of its own: --rpm is of slow-trace"),
+        ("figure fast-impacts --rpm 660:700", "fast-impacts has fixed speeds: --rpm is for slow-trace"),
     ] {
         let (exit, _, why) = run(line);
         assert!(exit == 2 && why.contains(says) && !why.contains("-- --"), "{line}: {why}");

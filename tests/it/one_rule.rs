@@ -250,7 +250,7 @@ fn starts_and_budgets_that_cannot_be_are_told() {
     }
     let words =
         refused(&["chart", "--x", "rpm=700:701:2", "--y", "mass=1:2:2", "--state", "0.8,0", "--state", "0.9,0"]);
-    assert!(words.contains("--state is given 2 times, and one run has one start"), "{words}");
+    assert!(words.contains("--state is given 2 times, but one run has one start"), "{words}");
     let words = refused(&["basins", "--rpm", "700", "--state", "0.8,0", "--out", "x.svg"]);
     assert!(words.contains("--grid NxM"), "{words}");
 }

@@ -196,7 +196,7 @@ fn a_branch_in_another_number_ends_at_the_edge_with_a_plain_word() {
     assert!(table.rows.iter().all(|row| table.number(row, "rpm") == 700.0));
     let most = table.rows.iter().map(|row| table.number(row, "value")).fold(0.0, f64::max);
     assert!(179.0 < most && most <= 180.0, "{most}");
-    let edge = "the largest there is: cam.nose_end_deg must";
+    let edge = "the largest possible value: cam.nose_end_deg must";
     assert!(account.contains(edge) && account.contains("the end of the range"), "{account}");
 }
 
@@ -321,7 +321,7 @@ fn what_cannot_be_followed_is_refused_with_a_reason() {
     assert!(followed("spring=1:2").contains("spring is not a number of this model; there are: rpm, cam.base_radius"));
     assert!(followed("restitution=0.9:0.95").contains("outside of 0.9:0.95"));
     assert!(followed("restitution=0.9").contains("must be NAME=LO:HI"));
-    assert!(followed("restitution=0.9:0.95:3").contains("takes a range alone"));
+    assert!(followed("restitution=0.9:0.95:3").contains("takes only a range"));
     assert!(followed("restitution=0.9:0.1").contains("is not below"));
     let none = refused(&["continue", MODEL, "--from-rpm", "700", "--parameter", "rpm=600:800", "--impacts", "9"]);
     assert!(none.contains("no periodic orbit of 1 revolution(s) found at 700 rpm"), "{none}");

@@ -497,11 +497,11 @@ fn axes_that_cannot_be_are_refused() {
         ),
         (format!("diagram {MODEL} --rpm 700 --over restitution=0.9:0.5:3 --out {out}"), "below the lowest"),
         (format!("diagram {MODEL} --rpm 700 --over restitution=0.5:0.9:3:lin --out {out}"), "can only be log"),
-        (format!("diagram {MODEL} --over restitution=0.5:0.9:3 --out {out}"), "the speed is missing: --rpm R"),
-        (format!("diagram {MODEL} --rpm 600:700:3 --over restitution=0.5:0.9:3 --out {out}"), "`chart` goes over two"),
+        (format!("diagram {MODEL} --over restitution=0.5:0.9:3 --out {out}"), "the speed is missing: give --rpm R"),
+        (format!("diagram {MODEL} --rpm 600:700:3 --over restitution=0.5:0.9:3 --out {out}"), "`chart` varies two"),
         (format!("diagram {MODEL} --rpm 700 --over rpm=600:700:3 --out {out}"), "leave it out where rpm is an axis"),
         (format!("diagram {MODEL} --rpm 700 --out {out}"), "is one speed"),
-        (format!("diagram {MODEL} --out {out}"), "says what varies"),
+        (format!("diagram {MODEL} --out {out}"), "nothing varies: give --rpm LO:HI"),
         (
             format!("diagram {MODEL} --rpm 700 --over restitution=0.5:2:3 --out {out}"),
             "follower.restitution = 1.25: must be",
@@ -511,14 +511,14 @@ fn axes_that_cannot_be_are_refused() {
             "no point would",
         ),
         (format!("speeds {MODEL} --rpm 600:700 --over restitution=0.5:0.9"), "with --over, --rpm is one speed"),
-        (format!("speeds {MODEL} --over restitution=0.5:0.9"), "the speed is missing: --rpm R"),
+        (format!("speeds {MODEL} --over restitution=0.5:0.9"), "the speed is missing: give --rpm R"),
         (format!("speeds {MODEL} --rpm 700 --over rpm=600:700"), "leave it out where rpm is an axis"),
         (format!("design {MODEL} --rpm 700 --over rpm=600:700:2"), "leave it out where rpm is an axis"),
         (format!("speeds {MODEL} --rpm 700"), "is one speed"),
         (format!("speeds {MODEL} --rpm 700 --over restitution=0:0.9:log"), "begins above 0"),
         (format!("speeds {MODEL} --rpm 700 --over restitution=0.5:0.5:3"), "to a higher one"),
         (format!("basins {MODEL} --rpm 700 --over friction=0:1:3 --grid 2x2"), "friction"),
-        (format!("basins {MODEL} --over mass=1:2:3 --grid 2x2"), "the speed is missing: --rpm R"),
+        (format!("basins {MODEL} --over mass=1:2:3 --grid 2x2"), "the speed is missing: give --rpm R"),
         (format!("design {MODEL} --rpm 100:200 --over mass=1:2:3"), "with --over, --rpm is one speed"),
         (format!("design {MODEL} --over mass=1:2:3"), "--rpm"),
         (format!("chart {MODEL} --x rpm=0:700:3:log --y mass=1:2:2 --out {out}"), "above 0"),
@@ -578,14 +578,13 @@ fn a_diagram_says_its_threads_and_whether_it_judges() {
     };
     let plain = said(&[]);
     assert!(
-        plain.contains("302 revolutions; what they settle on is not classified") && plain.contains(" s on 1 thread,"),
+        plain.contains("302 revolutions; the motions are not classified") && plain.contains(" s on 1 thread,"),
         "{plain}"
     );
     for options in [&["--lyapunov"][..], &["--attractors"]] {
         let judged = said(options);
         assert!(
-            !judged.contains("not classified")
-                && judged.contains("and longer where growth or attractors are asked for"),
+            !judged.contains("not classified") && judged.contains("and longer for growth rates or attractors"),
             "{judged}"
         );
     }

@@ -310,7 +310,7 @@ fn a_model_without_a_corner_impact_has_a_page_that_says_why() {
     assert_eq!((code, out.as_str()), (0, "harmonic-follower.restitution-0-report.html\n"));
     let page = std::fs::read_to_string(folder.path().join(out.trim_end())).unwrap();
     assert!(page.contains(
-        "No corner impact is verified here: the model file has no [study], which says at which speeds to look for"
+        "No corner impact is verified here: the model file has no [study], the range of speeds in which to look for"
     ));
     assert!(!page.contains("study.rpm_min is needed"));
     let sections: Vec<&str> = between(&page, "<section id=\"", "\"").into_iter().collect();
@@ -337,7 +337,7 @@ fn a_model_without_a_corner_impact_has_a_page_that_says_why() {
 fn the_command_says_what_it_cannot_do() {
     let folder = tempfile::tempdir().unwrap();
     for (arguments, words) in [
-        (&["--json", "--out", "-"][..], "both want standard output"),
+        (&["--json", "--out", "-"][..], "both print to standard output"),
         (&["--out", "page.csv"][..], "must end in .html"),
         (&["--out", "nowhere/page.html"][..], "nowhere/page.html"),
         (&["nothing.toml"][..], "nothing.toml"),

@@ -123,7 +123,7 @@ fn a_figure_is_as_high_as_asked() {
         }
     }
     let low = Look { height: Some(60.0), ..column() }.framed(figure).unwrap_err().to_string();
-    assert!(low.contains("cannot be 21.2 mm high") && low.contains("it takes"), "{low}");
+    assert!(low.contains("cannot be 21.2 mm high") && low.contains("it needs"), "{low}");
     let long = lines(&["a name that is longer than half of the column"], [0.0, 1.0], 0.5);
     let right = Look { legend: LegendPlace::Right, ..column() }.framed(long).unwrap_err().to_string();
     assert!(right.contains("leaves no room") && right.contains("--legend below"), "{right}");

@@ -391,13 +391,16 @@ fn names_of_attractors_have_room() {
     let (many, note) = words(&found, WIDTH);
     let names: Vec<&str> = many.iter().map(|word| word.text.as_str()).collect();
     assert_eq!(names, ["A1", "A2", "A3", "36 brief"]);
-    assert_eq!(note, "small grey dots: 36 more, each over less than a thousandth of the range");
+    assert_eq!(note, "small grey dots: 36 more motions, each over less than a thousandth of the range");
     // A little longer they have lanes of their own, unless these are too many to look through.
     found.attractors.truncate(5);
     found.attractors.iter_mut().skip(3).for_each(|it| it.ends[1] = Place::of_speed(700.502));
     assert_eq!((words(&found, WIDTH).0.len(), words(&found, WIDTH).1.as_str()), (5, ""));
     found.attractors.extend((6..40).map(|index| over(700.5, 700.502, index)));
-    assert_eq!(words(&found, WIDTH).1, "small grey dots: 36 more, each over less than a hundredth of the range");
+    assert_eq!(
+        words(&found, WIDTH).1,
+        "small grey dots: 36 more motions, each over less than a hundredth of the range"
+    );
 }
 
 /// Every command that draws has the options of paper.

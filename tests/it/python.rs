@@ -80,7 +80,9 @@ fn a_script_that_fails_is_quoted() {
     let output = verify(&["models/osorio-2008.toml"], &[("CORNER_IMPACT_PYTHON", python.to_str().unwrap())]);
     let page = unwrapped(output.stdout);
     assert_eq!(output.status.code(), Some(1), "{page}");
-    for part in ["evaluate.py", "no module named sympathy", "simulate_scipy.py", "printed something else"] {
+    for part in
+        ["evaluate.py", "no module named sympathy", "simulate_scipy.py", "printed something other than its result"]
+    {
         assert!(page.contains(part), "{part} in {page}");
     }
 }

@@ -126,7 +126,7 @@ fn columns_are_chosen_by_name_or_number_and_the_others_are_told() {
     let file = folder.path().join("read.toml").display().to_string();
     let page = in_one_line(&text(corner_impact(["cam", &file]).stdout));
     for says in [
-        "table: 360 rows; columns parted by commas",
+        "table: 360 rows; columns separated by commas",
         "angles: column 2, in deg",
         "lifts: column 3, in mm; columns left out: no, velocity [mm/deg], acceleration [mm/deg^2]",
     ] {
@@ -332,14 +332,14 @@ fn what_is_not_read_is_refused_with_what_makes_it_read() {
     let slip = |at: &str, by: &str| all("angle [deg],lift [mm]").replacen(at, by, 1);
     let wide = |head: &str| format!("{head}\n{}", rows(0..360, |angle, lift| format!("{angle},{lift:.4},{lift:.4}")));
     for (csv, fields, says) in [
-        (all("angle [deg],radius [mm]"), "", "names a radius, the cam's own, which is no follower's lift"),
+        (all("angle [deg],radius [mm]"), "", "names a radius of the cam, which is not the follower's lift"),
         (all("angle [deg],lift [furlong]"), "", "the unit of the lift must be one of: m, cm, mm, um, in, ft, thou;"),
-        (all("angle [deg],lift in furlongs"), "", "say it in [cam], by unit"),
+        (all("angle [deg],lift in furlongs"), "", "set it in [cam], by unit"),
         (all("angle [deg],lift yards"), "", "the unit of the lift must be one of"),
         (all("angle [hours],lift [mm]"), "", "the unit of the angle must be one of: deg, rad, turn, gon;"),
-        (all("lifts in inches of cam 3\nangle,lift"), "", "say which the lifts are in, by unit in [cam]"),
-        (wide("angle,lift intake,lift exhaust"), "", "say which in [cam], by lift_column"),
-        (wide("angle,left,right"), "", "say which in [cam], by lift_column"),
+        (all("lifts in inches of cam 3\nangle,lift"), "", "set the unit of the lifts by unit in [cam]"),
+        (wide("angle,lift intake,lift exhaust"), "", "name it in [cam], by lift_column"),
+        (wide("angle,left,right"), "", "name it in [cam], by lift_column"),
         (
             wide(""),
             "",
@@ -357,15 +357,11 @@ fn what_is_not_read_is_refused_with_what_makes_it_read() {
             "lift.csv: has 3 columns; lift_column = 4 in [cam] asks for another",
         ),
         (slip("7,0.0000", "7,"), "", "row = 7,: has an empty cell: lift is missing"),
-        (
-            slip("7,0.0000", "7,NaN"),
-            "",
-            "lift = NaN: must be a finite number: this stands for a number that is not known",
-        ),
+        (slip("7,0.0000", "7,NaN"), "", "lift = NaN: must be a finite number: this marks a missing number"),
         (
             slip("7,0.0000", "7 deg,0.0000"),
             "",
-            "angle_deg = 7 deg: must be a finite number: there is more than a number in its cell",
+            "angle_deg = 7 deg: must be a finite number: the cell has more than a number",
         ),
         (
             all("angle,lift") + "\n" + &all("angle,lift"),
@@ -452,7 +448,7 @@ fn what_is_not_read_is_refused_with_what_makes_it_read() {
         (
             format!("angle [deg],lift [mm]\n129,0\n{}250,0\n", rows(130..=240, plain)),
             "outside = \"base\"",
-            "on line 2 is the lowest, and the next one is 0.5359 from it at once: the flank is cut off",
+            "on line 2 is the lowest, but the next one already differs by 0.5359: the flank is cut off",
         ),
         (of(116..=180), "mirrored = true", "outside = \"base\" in [cam], which fills the base circle"),
     ] {
@@ -476,7 +472,7 @@ fn a_refused_table_without_a_model_says_how_to_have_one() {
         (output.status.code(), in_one_line(&text(output.stderr)))
     };
     let of = |head: &str, angles: std::ops::Range<i32>| format!("{head}\n{}", rows(angles, plain));
-    let new = "there is no model file yet: `corner-impact new --law table my-machine.toml` writes one, and file = \"lifts.csv\" in it names this table";
+    let new = "there is no model file yet: `corner-impact new --law table my-machine.toml` writes one; name this table in it by file = \"lifts.csv\"";
     for csv in [of("angle,lift [furlong]", 0..360), of("angle,lift", 100..250)] {
         let (code, said) = page(&csv);
         assert!(code == Some(2) && said.contains(new), "{said}");
@@ -520,7 +516,7 @@ fn angles_in_any_unit_are_read() {
     ] {
         let csv = of(head, turn);
         let said = model(&TempDir::new().unwrap(), &csv, "").unwrap_err();
-        assert!(said.contains(&format!("say in [cam] {}", fields.join(" and "))), "{said}");
+        assert!(said.contains(&format!("set in [cam] {}", fields.join(" and "))), "{said}");
         is_the_lobe(&csv, &fields.join("\n"), 1.0);
     }
 }
@@ -566,7 +562,7 @@ fn rows_that_leave_the_cam_open_are_noted() {
     for (csv, says) in [
         (
             rows(every(30), |angle, _| format!("{angle},{:.4}", 5.0 - 5.0 * angle.to_radians().cos())),
-            "11 rows on a lobe are too few to know its accelerations",
+            "11 rows on a lobe are too few for its accelerations",
         ),
         (
             of(every(1), 0.05),

@@ -80,7 +80,7 @@ fn machines_of_which_nothing_is_said_are_refused_with_the_reason() {
     for (arguments, why) in [
         (&["models/laws/rectified-sine.toml", "--rpm", "300"][..], "the velocity of the cam jumps"),
         (&["models/osorio-2008.toml", "--rpm", "300", "--set", "restitution=1"], "without a loss"),
-        (&["models/osorio-2008.toml", "--rpm", "300:400"], "for one speed"),
+        (&["models/osorio-2008.toml", "--rpm", "300:400"], "takes one speed"),
     ] {
         let output = corner_impact([&["certify", "--resting"], arguments].concat());
         let words = text(output.stderr);

@@ -75,7 +75,7 @@ fn a_spring_that_is_just_slack_at_the_lowest_lift_lets_go_at_the_top() {
         assert_relative_eq!(answer.value.unwrap(), value, max_relative = 1e-9);
     }
     let preload = found.needs.iter().find(|answer| answer.lever == Lever::Preload).unwrap();
-    assert_eq!((preload.value, preload.note.as_str()), (Some(0.0), "as little as there can be will do"));
+    assert_eq!((preload.value, preload.note.as_str()), (Some(0.0), "the least possible value suffices"));
 }
 
 /// `speeds` has the speed of `design`, to the last bit, and ends there what stays on the cam.

@@ -120,7 +120,7 @@ fn without_its_description_a_store_takes_no_chart() {
     let before = files(at);
     for chart in [own, chart(&osorio(), 9)] {
         let refused = Store::open(at, &chart, [2, 3]).map(|_| ()).unwrap_err().to_string();
-        assert!(refused.contains("arrays and no zarr.json"), "{refused}");
+        assert!(refused.contains("arrays but no zarr.json"), "{refused}");
     }
     assert!(status(at).is_err());
     assert_eq!(files(at), before);
@@ -286,9 +286,9 @@ fn a_status_is_an_answer_or_a_sentence_within_a_second() {
         let (code, said) = says(shape, chunk, json!({}));
         assert!(code == Some(2) && said.contains(words), "{said}");
     };
-    refused([u64::MAX; 2], [1, 1], "18446744073709551615 blocks: a store has 1048576 or fewer");
-    refused([100_000, 10_000], [1, 1], "1000000000 blocks: a store has 1048576 or fewer");
-    refused([1025, 1024], [1, 1], "1049600 blocks: a store has");
+    refused([u64::MAX; 2], [1, 1], "18446744073709551615 blocks: a store can have 1048576 or fewer");
+    refused([100_000, 10_000], [1, 1], "1000000000 blocks: a store can have 1048576 or fewer");
+    refused([1025, 1024], [1, 1], "1049600 blocks: a store can have");
     refused([u64::MAX; 2], [u64::MAX; 2], "blocks of 18446744073709551615 x 18446744073709551615 points");
     refused([9, 9], [4096, 4097], "blocks of 4097 x 4096 points");
     for chunk in [[1, 1], [4096, 4096]] {

@@ -65,7 +65,7 @@ fn a_difference_has_less_of_an_error_that_both_machines_share() {
         document["changes"].as_array().unwrap().iter().find(|it| it["quantity"] == "separation_speed_rpm").unwrap();
     near(speed["error_parts"]["mass"].as_f64().unwrap(), part(&open, "mass"), 1e-12);
     let page = common::in_one_line(&found.text().unwrap());
-    for words in ["separation_speed_rpm: moved by ", "from the numbers (stiffness ", "moves both alike"] {
+    for words in ["separation_speed_rpm: moved by ", "from the numbers (stiffness ", "acts on both alike"] {
         assert!(page.contains(words), "{words}: {page}");
     }
     // The same machine twice differs in nothing, whatever its errors.
@@ -112,7 +112,7 @@ fn a_detachment_over_a_number_has_the_parts_of_the_others() {
     assert!(end.get("error_rpm").is_none() && end["error_parts"]["numbers"].as_f64().is_some(), "{end}");
     let page = common::in_one_line(&found.text().unwrap());
     assert!(page.contains("2003 ± 41 N/m, from the numbers (mass 41)"), "{page}");
-    assert!(page.contains("by the errors of mass. ") && !page.contains("errors of mass and stiffness"), "{page}");
+    assert!(page.contains("from the errors of mass. ") && !page.contains("errors of mass and stiffness"), "{page}");
 }
 
 /// A corner impact over the restitution moves as the speeds of the corner impacts of other machines say: `dr = -(dw/dm) / (dw/dr) dm`.
@@ -266,7 +266,7 @@ fn the_page_says_which_numbers_are_exact_where() {
     let need = "no separation to 1500 rpm";
     let model = follower(with(0.5, 0.005), with(2000.0, 30.0));
     let page = common::in_one_line(&design_over_mass(&model, need).text().unwrap());
-    let note = "Where mass varies, mass is exact. A number that is sought has no error of its own.";
+    let note = "Where mass varies, mass is exact. A number that is solved for has no error of its own.";
     assert!(page.contains(note), "{page}");
     let exact = common::in_one_line(&design_over_mass(&follower(json!(0.5), json!(2000.0)), need).text().unwrap());
     assert!(!exact.contains("exact") && !exact.contains('±'), "{exact}");

@@ -428,9 +428,9 @@ fn pages_say_where_the_uncertainty_comes_from() {
         common::in_one_line(&page)
     };
     run(&["new", "valve.toml", "--law", "table"]);
-    let of_cam = "± is of the cam alone: the model gives no error of the follower's numbers";
-    let both = "± is the root of the sum of two squares: the part of the cam, and two standard deviations by the errors of mass";
-    let numbers = "± is two standard deviations, by the errors of mass";
+    let of_cam = "± is from the cam alone: the model gives no error of the follower's numbers";
+    let both = "± is the root of the sum of two squares: the part from the cam, and two standard deviations from the errors of mass";
+    let numbers = "± is two standard deviations, from the errors of mass";
     let design = ["design", "--rpm", "2400:3400", "--speeds", "3"];
     let speeds = ["speeds", "--rpm", "2800:3000", "--speeds", "3", "--starts", "4"];
     for command in [&design[..], &speeds[..]] {

@@ -232,7 +232,9 @@ fn angles_may_be_given_in_degrees() {
     assert_eq!(after("90deg"), after(&quarter));
     assert_ne!(after("90deg"), after("90"));
     let said = |angle: &str| text(corner_impact(["simulate", "--rpm", "673", "--start-angle", angle]).stderr);
-    assert!(said("90").contains("note: --start-angle: 90 rad is 116.6202 deg of a turn; 90deg is in degrees\n"));
+    assert!(said("90").contains(
+        "note: --start-angle: 90 rad is more than a turn and means 116.6202 deg; for degrees, write 90deg\n"
+    ));
     assert!(!said("90deg").contains("--start-angle") && !said("6.28").contains("--start-angle"));
 }
 
@@ -247,7 +249,7 @@ fn numbers_that_are_odd_are_asked_about() {
             program(["simulate", file.to_str().unwrap(), "--rpm", rpm, "--revolutions", "1"]).output().unwrap();
         text(output.stderr)
     };
-    let soft = "note: stiffness 30 with mass 0.11: did you mean N/mm? [units] says what numbers are in\n";
+    let soft = "note: stiffness 30 with mass 0.11: did you mean N/mm? [units] sets the units of the numbers\n";
     assert_eq!(spoken(["0.11", "30", "preload = 220", "0.01"], "", "3000"), soft);
     assert_eq!(spoken(["0.11", "30", "rest_position = -0.0073", "0.01"], "", "4000"), soft);
     assert_eq!(spoken(["0.11", "30", "rest_position = -0.0073", "0.01"], "", "200"), "");

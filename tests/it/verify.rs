@@ -120,8 +120,8 @@ fn disagreement_is_said_plainly() {
     assert!(page.contains("DISAGREE") && page.contains("UNEXPECTED"));
     let page = page.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(
-        page.contains("35 of 36 comparisons agree, and 24 of 24 that follow")
-            && page.contains("1 came out otherwise than found")
+        page.contains("35 of 36 comparisons agree, and so do 24 of 24 that follow")
+            && page.contains("1 differ from the recorded verdict")
     );
     assert!(page.trim_end().ends_with("DISAGREES: a comparison above"));
 }

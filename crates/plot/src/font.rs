@@ -23,7 +23,7 @@ pub struct Fonts {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FontError {
     /// A family that is not installed on this machine.
-    #[error("no font \"{0}\" is installed: give the name of one that is, or the file (.ttf, .otf) of one")]
+    #[error("no font \"{0}\" is installed: give the name of an installed font, or a font file (.ttf, .otf)")]
     Family(String),
     /// A file that is not a font.
     #[error("{0}: cannot be read as a font")]

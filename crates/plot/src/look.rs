@@ -124,20 +124,20 @@ pub struct Look {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LookError {
     /// A width outside the allowed range.
-    #[error("a figure {:.1} mm wide cannot be made: {:.1} to {:.0} mm can", millimetres(*.0), millimetres(WIDTHS[0]), millimetres(WIDTHS[1]))]
+    #[error("a figure {:.1} mm wide cannot be made: the width must be {:.1} to {:.0} mm", millimetres(*.0), millimetres(WIDTHS[0]), millimetres(WIDTHS[1]))]
     Width(f64),
     /// A height in which the panels and words have no room, or that panels to scale do not have.
     #[error(
-        "this figure cannot be {:.1} mm high at a width of {:.1} mm: it takes {:.1} mm",
+        "this figure cannot be {:.1} mm high at a width of {:.1} mm: it needs {:.1} mm",
         millimetres(*height), millimetres(*width), millimetres(*needed)
     )]
     #[expect(missing_docs, reason = "what the words say")]
     Height { height: f64, width: f64, needed: f64 },
     /// A legend that leaves the frames too little room.
-    #[error("the legend leaves no room for the figure in a width of {:.1} mm: --legend below or above does", millimetres(*.0))]
+    #[error("the legend leaves no room for the figure in a width of {:.1} mm: use --legend below or above", millimetres(*.0))]
     Legend(f64),
     /// Letters that leave no room, or that are too small to read.
-    #[error("letters of {size:.2} pt do not fit into a figure {:.1} mm wide: {low:.2} to {high:.1} pt do", millimetres(*width))]
+    #[error("letters of {size:.2} pt do not fit into a figure {:.1} mm wide: the size must be {low:.2} to {high:.1} pt", millimetres(*width))]
     #[expect(missing_docs, reason = "what the words say")]
     Size { size: f64, width: f64, low: f64, high: f64 },
     /// A range that shows no data.
@@ -146,7 +146,7 @@ pub enum LookError {
     Aside { axis: &'static str, shown: [f64; 2], drawn: [f64; 2] },
     /// A range that shows too little of the data.
     #[error(
-        "{axis} from {} to {} is less than a hundredth of what is drawn, from {} to {}: compute the figure anew over a narrower range",
+        "{axis} from {} to {} is less than a hundredth of what is drawn, from {} to {}: compute the figure over a narrower range",
         shown[0], shown[1], drawn[0] as f32, drawn[1] as f32
     )]
     #[expect(missing_docs, reason = "what the words say")]

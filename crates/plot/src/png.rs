@@ -21,7 +21,7 @@ const BAND: u32 = 8;
 #[derive(Debug, thiserror::Error)]
 pub enum PngError {
     /// A width that is not allowed.
-    #[error("an image {0} pixels wide cannot be made: 1 to {WIDEST} can")]
+    #[error("an image {0} pixels wide cannot be made: the width must be 1 to {WIDEST}")]
     Width(u32),
     /// The SVG could not be written.
     #[error("the figure could not be written as SVG: {0}")]

@@ -75,7 +75,7 @@ pub enum JumpOrderError {
     )]
     NotFree { cam_angle: f64, least: f64 },
     /// Too few differences stand out of rounding.
-    #[error("jump order: {resolved} of {tried} differences stand out of rounding, and {needed} are needed for a fit")]
+    #[error("jump order: {resolved} of {tried} differences exceed rounding, but a fit needs {needed}")]
     Unresolved { resolved: usize, tried: usize, needed: usize },
     /// A side could not be sampled.
     #[error("jump order: {0}")]

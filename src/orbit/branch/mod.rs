@@ -172,24 +172,24 @@ impl End {
             Self::Range => "the end of the range".into(),
             Self::Closed => "its own start: the branch is closed".into(),
             Self::Edge { largest, why } => {
-                format!("the {} there is: {why}", if *largest { "largest" } else { "smallest" })
+                format!("the {} possible value: {why}", if *largest { "largest" } else { "smallest" })
             }
             Self::Unbounded => "impacts that become faster without bound".into(),
-            Self::Endless => "impacts without number before the follower rests".into(),
-            Self::Kink => "an impact on the way to the rest at a corner, from where it is not followed on".into(),
+            Self::Endless => "infinitely many impacts before the follower rests".into(),
+            Self::Kink => "an impact at a corner on the way to the rest, beyond which it is not followed".into(),
             Self::OtherWay => "a place from which the follower goes another way".into(),
-            Self::Continuum => "what looks like a continuum of orbits: over the last steps amplitudes change and the value stays the same".into(),
+            Self::Continuum => "an apparent continuum of orbits: over the last steps amplitudes change at the same value".into(),
             Self::MostPoints => "the number of points that was asked for".into(),
             Self::Chatter => "the onset of chattering".into(),
             Self::Clear => {
-                "the end of the range; a follower at rest is as far from the cam at every speed, so that there is no graze".into()
+                "the end of the range; a follower at rest is equally far from the cam at every speed, so there is no graze".into()
             }
-            Self::Falls => "a place from which nothing holds the follower above the cam".into(),
+            Self::Falls => "a place beyond which nothing holds the follower above the cam".into(),
             Self::Corner => "an impact at a corner, beyond which nothing continues it".into(),
             Self::Graze => "a graze, beyond which no orbit continues it".into(),
-            Self::Shorter => "an orbit of fewer revolutions, which it branches off from".into(),
+            Self::Shorter => "an orbit of fewer revolutions, from which it branches off".into(),
             Self::Gap => "a corner where the cam's velocity jumps, beyond which no orbit continues it".into(),
-            Self::Lost => "a place from which Newton's method finds no orbit nearby".into(),
+            Self::Lost => "a place beyond which Newton's method finds no orbit nearby".into(),
         }
     }
 }

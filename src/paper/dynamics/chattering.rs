@@ -47,9 +47,9 @@ pub(in crate::paper) fn detachment(context: &Context<'_>) -> Decision {
         (force / corner.plus.curvature).sqrt() / angular_velocity(1.0)
     });
     let evidence = format!(
-        "no event in a revolution from rest on the cam at {silent} of the speeds 1, 2, ..., 114 rpm; the lowest speed with a \
-         release is {speed:.6} rpm, at {:.4} deg, which rounds to {:.0} rpm; the nose would first have to pull at P, from {nose:.6} \
-         rpm on",
+        "from rest on the cam, a revolution has no event at {silent} of the speeds 1, 2, ..., 114 rpm. The lowest speed with a \
+         release is {speed:.6} rpm, at {:.4} deg; it rounds to {:.0} rpm. From {nose:.6} rpm on, the nose would have to pull at P to hold \
+         the follower",
         at.to_degrees(),
         speed.round()
     );
@@ -71,9 +71,9 @@ pub(in crate::paper) fn chattering(context: &Context<'_>, rpm: f64) -> Decision 
     machine.revolve(&mut motion, 3)?;
     let forgets = growth(&machine, motion, 2)? == f64::NEG_INFINITY;
     let evidence = format!(
-        "released at P ({:.2} deg), it has {} impacts above 1e-6 m/s, each leaving {ratio:.4} of the one before in the end; they \
-         accumulate {:.3} deg after P, at {:.3} deg, where it sticks; the next release at P is {} revolution later, and a \
-         deviation is wiped out: {forgets}",
+        "after the release at P ({:.2} deg), the follower has {} impacts above 1e-6 m/s; in the end each has {ratio:.4} of the speed of \
+         the one before. They accumulate {:.3} deg after P, at {:.3} deg, where the follower sticks. The next release at P is {} \
+         revolution later. Deviations are wiped out: {forgets}",
         p.to_degrees(),
         round.felt(),
         round.accumulation.to_degrees(),
@@ -102,10 +102,10 @@ pub(in crate::paper) fn impact_diagram_of_slow_cams(context: &Context<'_>) -> De
     // How many revolutions instead is for rounding to decide: each multiplies a deviation by a large number.
     let above = at(200.0)?.period != 1;
     let evidence = format!(
-        "at each of 115, 116, ..., 198 rpm one revolution from release to release at P, with more than {SEVERAL} impacts that \
-         accumulate: {all}; above 1e-6 m/s are {}, {} and {} of them at 115, 120 and 198 rpm; up to \
-         {one_release:.3} rpm it is released a second time, on the nose; the accumulation reaches P ({reach:.2} deg, a revolution on) at {end:.6} rpm and this motion ends; at 200 rpm it \
-         takes longer to return: {above}",
+        "at each of 115, 116, ..., 198 rpm there is one revolution from release to release at P, with more than {SEVERAL} impacts that \
+         accumulate: {all}. At 115, 120 and 198 rpm, {}, {} and {} of them are above 1e-6 m/s. Up to \
+         {one_release:.3} rpm the follower is released a second time, on the nose. At {end:.6} rpm the accumulation reaches P ({reach:.2} deg, a revolution later), \
+         and this motion ends. At 200 rpm the follower returns later: {above}",
         felt[0], felt[1], felt[2]
     );
     let ends_at_p = (reach - p.to_degrees()).abs() <= tolerance::DRAWN_DEGREES.value;
@@ -180,9 +180,10 @@ pub(in crate::paper) fn resonant_peaks(context: &Context<'_>) -> Decision {
     };
     let [peaks, dips, neither] = count(&found);
     let evidence = format!(
-        "of {} crossings of a corner by the lines of the first {FOLLOWED} impacts after the release, at {} to {} rpm, the angle where \
-         impacts accumulate has a peak at {peaks}, a dip at {dips}, and no extremum at {neither}; by corner {}. Lines that jump over a \
-         corner do not cross it: {}; at each of these an impact of the line, or one before it, becomes a graze, at {slowest:.0e} m/s or less",
+        "the lines of the first {FOLLOWED} impacts after the release cross a corner {0} times at {1} to {2} rpm. The angle where \
+         impacts accumulate has a peak at {peaks} crossings, a dip at {dips}, and no extremum at {neither}; by corner (peaks/dips/neither): {3}. \
+         Lines that jump over a corner do not cross it: {4}. At each jump, an impact of the line, or one before it, becomes a graze, at \
+         {slowest:.0e} m/s or less",
         found.len(),
         RANGE[0],
         RANGE[1],
@@ -210,9 +211,9 @@ pub(in crate::paper) fn period_adding(context: &Context<'_>) -> Decision {
     let steps = |periods: &[u64], step: u64| periods.windows(2).all(|two| two[1] == two[0] + step);
     let holds = steps(&ones, 1) && steps(&twos, 2) && shrinks;
     let evidence = format!(
-        "stable motions of {} revolutions at {} rpm: each has one more revolution of three impacts, and the windows \
-         accumulate, five times closer each time; of {} revolutions at {} rpm; windows of other periods lie in between, and \
-         there are none up to 198.56 rpm, where all is period one",
+        "there are stable motions of {} revolutions at {} rpm. Each has one more revolution of three impacts, and the windows \
+         accumulate, five times closer each time. There are also motions of {} revolutions at {} rpm. Windows of other periods lie in \
+         between. Up to 198.56 rpm there are none: every motion has period one",
         listed(&ones),
         listed(ADDING_ONE.iter().map(|rpm| format!("{rpm:.3}"))),
         listed(&twos),

@@ -44,9 +44,9 @@ pub(in crate::paper) fn transition(context: &Context<'_>) -> Decision {
     }
     let decade = passage::revolutions_per_decade(&local).unwrap_or(f64::NAN);
     let evidence = format!(
-        "one impact a revolution after 3000 from x* at 1e-4 rpm above {speed:.6} rpm: {above}; with the speed then lowered to \
-         1e-4 rpm below it, after 10000 more: {below}; {} rpm below it the motion has left x* by {LEFT} m after {} revolutions \
-         (piecewise-linear map/runs), {decade:.1} more for each factor of ten",
+        "a run from x* at 1e-4 rpm above {speed:.6} rpm has one impact a revolution after 3000 revolutions: {above}. With the speed then \
+         lowered to 1e-4 rpm below it, the run still has one after 10000 more: {below}. At {} rpm below it, the motion is {LEFT} m away \
+         from x* after {} revolutions (piecewise-linear map/runs), {decade:.1} more for each factor of ten",
         listed(BELOW.map(|below| format!("{below:e}"))),
         listed(counts),
     );
@@ -79,11 +79,11 @@ pub(in crate::paper) fn coexisting(context: &Context<'_>) -> Decision {
     let parted = lines > 0 && farthest <= tolerance::BORDER_ON_MANIFOLD.value;
     let lost = lost(context)?;
     let evidence = format!(
-        "at {} rpm a start at rest on the cam does not settle in 10000 revolutions, with a Lyapunov exponent above {} a \
-         revolution, and x* goes to one impact a revolution: {both}; at 678 rpm the border of their basins, by halving on \
-         {lines} lines, is the stable manifold of the unstable orbit of one impact, by runs backwards, within {:e} m: \
-         {parted}; that orbit's unstable manifold, which the chaotic motion fills, meets it at {lost:.2} rpm; at 683 rpm both \
-         starts settle: {alone}",
+        "at {} rpm, a start at rest on the cam does not settle in 10000 revolutions, with a Lyapunov exponent above {} a \
+         revolution, and a start at x* settles on one impact a revolution: {both}. At 678 rpm, the border of their basins, by halving on \
+         {lines} lines, is within {:e} m of the stable manifold of the unstable orbit of one impact, by runs backwards: \
+         {parted}. The unstable manifold of that orbit, which the chaotic motion fills, meets the stable one at {lost:.2} rpm. At 683 rpm \
+         the start at rest settles on one impact a revolution, too: {alone}",
         listed(COEXISTING),
         tolerance::CHAOTIC_GROWTH.value,
         tolerance::BORDER_ON_MANIFOLD.value,

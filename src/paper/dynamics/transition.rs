@@ -68,7 +68,7 @@ pub(in crate::paper) fn period_one_above(context: &Context<'_>) -> Decision {
     let (is_proved, proof) = match proved_counts(context.model, RANGE, BITS) {
         Ok(proved) => {
             let is_proved = one_stable_orbit(&proved, context.findings.at.speed_rpm(), flip);
-            (is_proved, format!("is proved: {is_proved}; that runs come to it is not"))
+            (is_proved, format!("is proved: {is_proved}. That runs converge to it is not proved"))
         }
         // The rest of the ledger needs no Python; what is missing is for the first line to say.
         Err(error) => {
@@ -76,9 +76,9 @@ pub(in crate::paper) fn period_one_above(context: &Context<'_>) -> Decision {
         }
     };
     let evidence = format!(
-        "of 3000 revolutions from x* each, those at {} rpm end on one impact a revolution, in one state; a multiplier of it \
-         passes -1 at {flip:.6} rpm. That there is a stable orbit of one impact in one revolution at every speed from the corner impact \
-         to there, and none of any kind from {} rpm to the corner impact, {proof}",
+        "runs of 3000 revolutions from x* end on one impact a revolution, in one state, at {} rpm. A multiplier of this motion \
+         passes -1 at {flip:.6} rpm. At every speed from the corner impact to there, a stable orbit of one impact in one revolution \
+         exists, and none of any kind exists from {} rpm to the corner impact. This {proof}",
         listed(&settled),
         RANGE[0]
     );
@@ -109,7 +109,7 @@ pub(in crate::paper) fn impact_diagram(context: &Context<'_>) -> Decision {
     let scattered = !of_one_impact(&[661.0, 665.0, 670.0, 673.0])?.contains(&true);
     let beyond = !of_one_impact(&[740.0, 745.0, 750.0])?.contains(&true);
     let evidence = format!(
-        "one impact, in one place, at all of {} rpm: {one_line}; none such at 661, 665, 670, 673 rpm: {scattered}; nor at \
+        "runs settle on one impact, in one place, at all of {} rpm: {one_line}. They do not at 661, 665, 670, 673 rpm: {scattered}, nor at \
          740, 745, 750 rpm: {beyond}",
         listed(ABOVE)
     );
@@ -135,10 +135,10 @@ pub(in crate::paper) fn chaos_below(context: &Context<'_>) -> Decision {
     let set = HSet { cone_slope: None, ..kept };
     let is_proved = prove(&chaotic, &set).is_ok();
     let evidence = format!(
-        "largest Lyapunov exponent from x*: at 670 rpm, by {} blocks of {} revolutions, above {threshold} a revolution and \
-         more than {SIGNIFICANT} standard errors above 0: {is_chaotic}; at 680 rpm {above:.3}, the logarithm of r. That a set of chaotic \
-         motions exists at 670 rpm, with a topological entropy of at least {:.5} a revolution, is proved: {is_proved}; that \
-         this run comes to it is not",
+        "the largest Lyapunov exponent of a run from x* at 670 rpm, by {} blocks of {} revolutions, is above {threshold} a revolution and \
+         more than {SIGNIFICANT} standard errors above 0: {is_chaotic}. At 680 rpm it is {above:.3}, the logarithm of r. A set of chaotic \
+         motions with a topological entropy of at least {:.5} a revolution exists at 670 rpm; this is proved: {is_proved}. That \
+         this run converges to it is not proved",
         BLOCKS.0,
         BLOCKS.1,
         // Rounded down, as a bound from below must be.
@@ -160,9 +160,9 @@ pub(in crate::paper) fn transitions_at_corners(context: &Context<'_>) -> Decisio
     machine.revolve(&mut motion, 1000)?;
     let chaotic = growth(&machine, motion, 4000)? > tolerance::CHAOTIC_GROWTH.value;
     let evidence = format!(
-        "the line of one impact meets P ({:.2} deg) at {:.6} rpm; upwards it flips at {flip:.4} rpm to two revolutions, and the \
-         later of their impacts, at {:.1} deg, meets Q ({:.1} deg) at {:.3} rpm; 0.1 rpm further the Lyapunov exponent is \
-         above {} a revolution: {chaotic}",
+        "the line of one impact meets P ({:.2} deg) at {:.6} rpm. At higher speeds it flips at {flip:.4} rpm to a motion of two \
+         revolutions. The later of its two impacts, at {:.1} deg, meets Q ({:.1} deg) at {:.3} rpm. 0.1 rpm higher, the Lyapunov exponent \
+         is above {} a revolution: {chaotic}",
         p.to_degrees(),
         at.speed_rpm(),
         reached.to_degrees(),
@@ -211,9 +211,10 @@ pub(in crate::paper) fn chaos_for_good(context: &Context<'_>) -> Decision {
     }
     let evidence = format!(
         "in {REVOLUTIONS} revolutions from x*, and in as many from rest on the cam, the follower comes to rest on the cam at {} of the speeds \
-         {} rpm (`corner-impact simulate --rpm 673.2344 --revolutions {REVOLUTIONS} --json` counts sticks and releases); at {RESTING} \
-         rpm, nine below the corner impact, it comes to rest on the cam's top once in some thousand revolutions and is released at Q', \
-         each time in the same state: {repeats}; there what follows can only repeat. That a motion is chaotic for good no run shows",
+         {} rpm (`corner-impact simulate --rpm 673.2344 --revolutions {REVOLUTIONS} --json` counts sticks and releases). At {RESTING} \
+         rpm, nine below the corner impact, it rests on the cam's top once in some thousand revolutions. It is then released at Q', \
+         each time in the same state: {repeats}. From there on the motion can only repeat. No run can show that a motion stays chaotic \
+         for ever",
         resting.len(),
         listed(PAST),
     );

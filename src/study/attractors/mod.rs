@@ -132,7 +132,7 @@ pub enum AttractorsError {
     #[error("{name} = {low}:{high}: a range goes from a value to a higher one{}", if *of_logarithms { ", and a logarithmic one begins above 0" } else { "" })]
     NoRangeOf { name: String, low: f64, high: f64, of_logarithms: bool },
     /// The grid is too fine for doubles, or has too many values to be run.
-    #[error("{low}:{high}: values that are {step:e} apart are too many, or too near to be told apart")]
+    #[error("{low}:{high}: values that are {step:e} apart are too many, or too close to distinguish")]
     TooFine { low: f64, high: f64, step: f64 },
     /// No value could be run.
     #[error("at {place}, and at every other value: {error}")]
@@ -156,7 +156,7 @@ pub fn attractors(
     let at = |value: &f64| {
         // Cancelled work does not begin any of the remaining values.
         cancel::check_now();
-        watch.at("what runs end on", done.fetch_add(1, Ordering::Relaxed), total);
+        watch.at("motions that runs settle on", done.fetch_add(1, Ordering::Relaxed), total);
         let found = over.machine(*value).map_err(RunError::from).and_then(|machine| {
             let runs = (&resolution.sample, resolution.budget);
             Ok(AttractorsAtValue::seeded(&machine, runs, resolution.two_impacts)?)
@@ -172,12 +172,12 @@ pub fn attractors(
     {
         return Err(AttractorsError::Run { place: over.parameter.words(*value), error: Box::new(error.clone()) });
     }
-    watch.at("what neighbouring values end on", 0, 0);
+    watch.at("motions at neighbouring values", 0, 0);
     // For given starts, the runs from those starts are the whole answer.
     if let Sample::Spread(_) = resolution.sample {
         exchange(over, &mut grid);
     }
-    watch.at("where each begins and ends", 0, 0);
+    watch.at("beginning and end of each motion", 0, 0);
     let mut families =
         families(over, (&grid, range), &|value| resolution.step.near(value), (&resolution.sample, resolution.budget));
     let separation = over.is_speed().then(|| {

@@ -65,13 +65,12 @@ document!(Certified as it {
 
 /// Lists the hypotheses of the script's proofs, with the steps that they remove from the cam.
 fn hypotheses(assumed: Option<Assumed>) -> Vec<String> {
-    let numbers = "the machine's numbers are the decimals of its model file, but for angles of a table in radians, which are the doubles \
-                   nearest to them in degrees";
+    let numbers = "the machine's numbers are the decimals of its model file, except angles of a table in radians, which are the nearest \
+                   doubles in degrees";
     let mechanics = "free flight follows the equation of motion, and impacts are instantaneous, by Newton's law";
     let cam = assumed.map(|Assumed { lift_m, slope_m_rad }| {
         format!(
-            "the cam is the one that is left when the steps of up to {lift_m:.1e} m and {slope_m_rad:.1e} m/rad by which its pieces miss \
-             each other, as they are typed, are taken out"
+            "the cam's pieces join: the steps between them as typed, up to {lift_m:.1e} m and {slope_m_rad:.1e} m/rad, are removed"
         )
     });
     [numbers, mechanics].map(str::to_owned).into_iter().chain(cam).collect()
@@ -336,11 +335,11 @@ fn ask<T: DeserializeOwned>(model: &Model, bits: u32, (field, value): (&str, Val
     if is_beyond(model) {
         if is_contour(model) {
             let allowed =
-                "gives a contour; proofs are of lifts, and of the three circles of arcs with what touches them";
+                "gives a contour; proofs are for lifts, and for the three circles of arcs with their follower";
             return Err(model.reject("cam.law", allowed).into());
         }
         let allowed =
-            format!("proofs are of splines through the rows, cubic or quintic, and of {MOST_PROVED_ROWS} rows at most");
+            format!("proofs are for cubic or quintic splines through the rows, with {MOST_PROVED_ROWS} rows at most");
         return Err(model.reject("cam.spline", allowed).into());
     }
     let mut document = model.exact();

@@ -257,7 +257,7 @@ pub fn compare(a: &Model, b: &Model, external: External, watch: &dyn Watch) -> R
     let (models, fields) = (Pair { a: ModelLabel::of(a), b: ModelLabel::of(b) }, fields(a, b));
     let units = &a.units;
     let (of_a, of_b) = (Findings::new(a, units, external, watch)?, Findings::new(b, units, external, watch)?);
-    watch.at("what the uncertainty of the machines leaves open", 0, 0);
+    watch.at("uncertainty of the differences", 0, 0);
     let side = |model, found| Side { model, found, units };
     let (open, measured) = open(&side(a, &of_a), &side(b, &of_b))?;
     let names: BTreeSet<&String> = of_a.names().chain(of_b.names()).collect();

@@ -200,7 +200,7 @@ pub fn design(model: &Model, asked: &Asked, watch: &dyn Watch) -> Result<Design,
         ([rpm], [Some(_)]) if table.over.is_speed() => round(&contact, *rpm, MOMENTS),
         _ => Vec::new(),
     };
-    let pieces = Pieces::new(watch, "what attracts where the follower leaves the cam", parted.len());
+    let pieces = Pieces::new(watch, "attractors where the follower leaves the cam", parted.len());
     let found = parted.par_iter().map(|value| pieces.each(|| table.loads(*value))).collect::<Result<Vec<_>, _>>()?;
     let (loads, attractors): (Vec<Loads>, Vec<AttractorsAt>) = found.into_iter().unzip();
     let forces: Vec<ForceAt> = at_each.iter().flatten().map(|(at, _)| *at).collect();

@@ -75,7 +75,9 @@ impl FromStr for Need {
                 let name = name.join("-");
                 let load = Load::ALL.into_iter().find(|load| load.to_string() == name).ok_or(like)?;
                 if load == Load::Force {
-                    return Err("a force is no need: what keeps the follower on the cam presses harder; --limit tells where it is".into());
+                    return Err(
+                        "a force cannot be a need: keeping the follower on the cam raises it; --limit finds where it is exceeded".into(),
+                    );
                 }
                 Ok(Self { what: What::Below(load, number(value)? * in_si(load, unit)?), rpm: number(rpm)? })
             }

@@ -254,7 +254,7 @@ pub(super) fn answer(
     let (now, unit) = of.told(lever, of.value(lever));
     let stuck = found
         .stuck
-        .map(|value| format!("at {} {unit} a run makes no progress, which is taken not to do", told(value) as f32));
+        .map(|value| format!("at {} {unit} a run makes no progress, which counts as a failure", told(value) as f32));
     let again = found.again.map(|value| format!("met again with {} {unit}", told(value) as f32));
     let notes = [found.note.clone()].into_iter().filter(|note| !note.is_empty()).chain(again).chain(stuck);
     Ok(Answer {
@@ -353,7 +353,9 @@ pub(super) fn find(of: &Changed<'_>, need: &Need, lever: Lever) -> Result<Found,
         let (last, unit) = told(values.last().copied().unwrap_or_default());
         let side = if is_upper_bound { "above" } else { "below" };
         let tried = if need.what == What::NoSeparation { "" } else { ", of those tried," };
-        return Ok(told_stuck(none(format!("no {lever} {side} {last:.1e} {unit}{tried} does it, the others kept"))));
+        return Ok(told_stuck(none(format!(
+            "no {lever} {side} {last:.1e} {unit}{tried} suffices, with the others unchanged"
+        ))));
     };
     let before = match first.checked_sub(1) {
         // If a tiny value already meets the need, there is no least value to find.
@@ -381,9 +383,9 @@ pub(super) fn find(of: &Changed<'_>, need: &Need, lever: Lever) -> Result<Found,
         (None, None) => {
             let (value, unit) = told(values[first]);
             let (value, note) = if is_upper_bound {
-                (values[first], format!("as far as {value:.3e} {unit} is looked at, any will do"))
+                (values[first], format!("any value suffices, as far as {value:.3e} {unit} was tried"))
             } else {
-                (values[first], "as little as there can be will do".into())
+                (values[first], "the least possible value suffices".into())
             };
             Found { value: Some(value), ..none(note) }
         }

@@ -273,7 +273,7 @@ fn wait(runs: &LongRuns<'_>, ends: &mut [Option<End>], releases: &Releases, watc
             let all = all.unwrap_or_default();
             return (outlasts(all, soon), all);
         }
-        let told = each(watch, "runs that end on nothing so far", wanderers as usize);
+        let told = each(watch, "runs that have not settled so far", wanderers as usize);
         let stretch = ends.par_iter_mut().map(|end| {
             let Some(End { run: run @ Ok(RunOutcome::Wanders), motion, wandered, .. }) = end else {
                 return Wandering::default();
@@ -385,7 +385,7 @@ fn told_wandering(
         // If they are not chaotic together, each is judged by itself.
         _ => {
             let rest = wanderers.get(told.len()..).unwrap_or_default();
-            let further = each(watch, "growth of deviations from runs that end on nothing", rest.len());
+            let further = each(watch, "growth of deviations from runs that have not settled", rest.len());
             let records = MEASURED * Budget::RECORDS / (rest.len() as u64).max(1);
             let one = |run| {
                 further();

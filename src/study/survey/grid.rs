@@ -33,7 +33,7 @@ pub enum SurveyError {
     #[error(transparent)]
     Over(#[from] OverError),
     /// Both axes are the same number.
-    #[error("both axes are {0}: a chart is over two numbers")]
+    #[error("both axes are {0}: a chart needs two different numbers")]
     OneNumber(String),
     /// No points, or more than [`Survey::MOST`].
     #[error("{points} points: there must be 1 to {}", Survey::MOST)]

@@ -24,10 +24,10 @@ pub struct Over<'a> {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum OverError {
     /// No speed is given, and the number that varies is not the speed.
-    #[error("{}, and the speed is missing: --rpm R says at which", .0.as_ref().map_or("neither axis is rpm".into(), |name| format!("{name} varies")))]
+    #[error("{}, but the speed is missing: give --rpm R", .0.as_ref().map_or("neither axis is rpm".into(), |name| format!("{name} varies")))]
     NoSpeed(Option<String>),
     /// A speed is given, but the speed is the number that varies.
-    #[error("--rpm R says at which speed another number varies: leave it out where rpm is an axis")]
+    #[error("--rpm R is the speed at which other numbers vary: leave it out where rpm is an axis")]
     TwoSpeeds,
     /// The machine is impossible.
     #[error(transparent)]

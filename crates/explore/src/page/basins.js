@@ -161,7 +161,7 @@
         const { x, y } = rangesOf(shown);
         const told = shown.endings.map((ending, index) => ({ ...looks[index], ...shares[index], name: nameOf(ending) })).sort((a, b) => b.share - a.share);
         const text = told.map(({ name, share, error }) => `${fixed(share * 100, 1)} ± ${fixed(Math.max(error * 100, 0.1), 1)} %: ${name}`);
-        panel.heading(told.length === 1 ? `Every start ends on one motion: ${told[0].name}` : `${told.length} motions share the starts: ${told.slice(0, 3).map(({ name, share }) => `${name} (${fixed(share * 100, share < 0.1 || share > 0.99 ? 1 : 0)} %)`).join(", ")}`);
+        panel.heading(told.length === 1 ? `Every start settles on one motion: ${told[0].name}` : `${told.length} motions share the starts: ${told.slice(0, 3).map(({ name, share }) => `${name} (${fixed(share * 100, share < 0.1 || share > 0.99 ? 1 : 0)} %)`).join(", ")}`);
         legend.replaceChildren(Explore.key(told.map(({ colour, shape }, index) => ({ colour, shape, label: text[index] }))));
         plot.draw({
           x: { label: `position at cam angle ${number(degrees(shown.angle), 6)}°`, unit: unit.length, range: x },

@@ -66,7 +66,7 @@
     const path = (row) => (context.model().numbers.find((each) => each.path.endsWith(`.${row.parameter}`)) || {}).path;
     return make("ul", { class: "needs" }, ...rows.map((row) => {
       const [unit, own] = [row.unit ? ` ${row.unit}` : "", path(row)];
-      if (row.value === null) return make("li", {}, `No ${row.parameter} alone does it: ${row.note || "none was found"} (${known(row)}).`);
+      if (row.value === null) return make("li", {}, `No ${row.parameter} alone meets the need: ${row.note || "none was found"} (${known(row)}).`);
       const value = safe(row);
       const set = own && !meets(row) && value > 0 ? Explore.button(`Set ${number(value, 4)}${unit}`, () => context.assign(own, value), { "aria-label": `Set the ${row.parameter} to ${number(value, 4)}${unit}` }) : null;
       return make("li", {}, make("strong", {}, row.parameter), ` ${limit(row)}${unit} (now ${number(row.now, 5)}; ${known(row)})${row.note ? `; ${row.note}` : ""} `, set);
@@ -124,7 +124,7 @@
         return {
           x: { label: "speed", unit: "rpm", range: range() }, y: { label: "least contact force", unit, range: extent([rows.y, [0]]) },
           layers: [{ kind: "rule", y: 0, colour: "ink", width: 1 }, ...separationLayers(shown), ...curve(rows, "blue", hover, atSpeed(rows)), { kind: "rule", x: context.state().rpm, colour: "grey", width: 1.5, dash: [2, 3], label: "" }, needRule()],
-          description: `${headline()}. At ${number(rows.x[0], 5)} rpm the cam presses with ${withError(rows.y[0], rows.error[0])} ${unit} at least, at ${number(rows.x[rows.x.length - 1], 5)} rpm with ${withError(rows.y[rows.y.length - 1], rows.error[rows.error.length - 1])} ${unit}`,
+          description: `${headline()}. The least contact force is ${withError(rows.y[0], rows.error[0])} ${unit} at ${number(rows.x[0], 5)} rpm, and at ${number(rows.x[rows.x.length - 1], 5)} rpm it is ${withError(rows.y[rows.y.length - 1], rows.error[rows.error.length - 1])} ${unit}`,
         };
       };
       const loadScene = () => {
@@ -132,7 +132,7 @@
         if (!shown.loads.length) return { x: { label: "speed", unit: "rpm", range: range() }, y: { label: LOADS[key].name, range: [0, 1] }, layers: [...separationLayers(shown), needRule()], message: "no impacts at these speeds", description: "No impacts at these speeds" };
         const rows = columnsOf(shown.loads, key);
         const unit = unitOf(rows.unit);
-        const hover = (index) => ({ title: `${number(rows.x[index], 6)} rpm`, rows: [[LOADS[key].name, `${withError(rows.y[index], rows.error[index])} ${unit}`]], known: "sampled: the most of runs from four starts" });
+        const hover = (index) => ({ title: `${number(rows.x[index], 6)} rpm`, rows: [[LOADS[key].name, `${withError(rows.y[index], rows.error[index])} ${unit}`]], known: "sampled: the largest of runs from four starts" });
         const bound = need() && need().kind === key && { kind: "rule", y: need().below, colour: "green", width: 2.5, label: `need: below ${number(need().below, 4)} ${unit}`, move: (value, done) => assign({ below: Number(value.toPrecision(2)) }, done) };
         const last = rows.y.length - 1;
         return {
@@ -144,7 +144,7 @@
       const headline = () => {
         const { separation: found, separates } = shown;
         if (found) return `Separates at ${withError(found.speed_rpm, found.error_rpm, 7)} rpm, at ${withError(Explore.turned(found.cam_angle_rad), Explore.degrees(found.cam_angle_error_rad || 0), 5)}° of the cam`;
-        return { "at-every-speed": "Separates at every speed, however slow", never: "Stays on the cam at every speed" }[separates] || `Separates ${String(separates).replace(/-/g, " ")}`;
+        return { "at-every-speed": "Separates at every speed, however low", never: "Stays on the cam at every speed" }[separates] || `Separates ${String(separates).replace(/-/g, " ")}`;
       };
       const draw = () => {
         if (!shown) return;
@@ -155,12 +155,12 @@
       };
       const same = () => required && need() && required.text === needText(need(), loadUnit());
       const say = () => {
-        if (!need()) { words.textContent = "Choose a need, such as no separation up to a speed, and drag its line: the program says which spring meets it."; list.replaceChildren(); return; }
+        if (!need()) { words.textContent = "Choose a need, such as no separation up to a speed, and drag its line. The program finds the spring that meets it."; list.replaceChildren(); return; }
         const text = needText(need(), loadUnit());
         if (!same()) {
           const rows = need().kind === "separation" ? columnsOf(shown.contact_force, "least") : columnsOf(shown.loads, need().kind);
           const value = at(rows, need().rpm);
-          words.textContent = `Need: ${text}. ${value === null ? "" : need().kind === "separation" ? `There the cam presses with ${number(value, 3)} ${unitOf(rows.unit)} at least, as read from the curve. ` : `There it is ${number(value, 3)} ${unitOf(rows.unit)}, as read from the curve. `}The program computes the answer when the line rests.`;
+          words.textContent = `Need: ${text}. ${value === null ? "" : need().kind === "separation" ? `There the least contact force is ${number(value, 3)} ${unitOf(rows.unit)}, as read from the curve. ` : `There it is ${number(value, 3)} ${unitOf(rows.unit)}, as read from the curve. `}The program computes the answer when the line rests.`;
           list.classList.add("waiting");
           return;
         }
@@ -168,7 +168,7 @@
         const found = required.rows.filter((row) => row.value !== null);
         const met = found.length > 0 && found.some(meets) && !found.some(misses);
         words.textContent = met ? `Need: ${text}. The machine as it is meets it.` : found.length === 0 ? `Need: ${text}. No number alone meets it.`
-          : `Need: ${text}. The machine as it is ${found.some(misses) ? "does not meet it" : "may miss it, as it lies within ±"}. Each of these alone does, with the other numbers kept:`;
+          : `Need: ${text}. The machine as it is ${found.some(misses) ? "does not meet it" : "may miss it, as it lies within ±"}. Each of these changes alone meets it, with the other numbers unchanged:`;
         list.replaceChildren(needList(required.rows, context));
       };
       const show = (state) => {

@@ -52,7 +52,7 @@
     const y = extent([[0], ...shown.map((ray) => ray.y)], 0.25);
     return {
       x: { label: "change of the period δT; faster to the left", unit: scale === 1e6 ? "µs" : "ms", range: [-reach * scale, reach * scale] },
-      y: { label: "position less that of x*", unit: unit.length, range: y },
+      y: { label: "position minus that of x*", unit: unit.length, range: y },
       layers: [{ kind: "rule", x: 0, colour: "grey", width: 1, dash: [2, 3], label: `${number(rpmAt(found, 0), 9)} rpm` }, ...machineLayers(found, scale), ...rays, ...emptySides(found, reach, scale, y)],
       description: found.rays.filter((ray) => ray.positions.length <= 2).map((ray) => `Orbit ${ray.word}, ${stableOf(ray) ? "stable" : "unstable"}, at ${ray.sign < 0 ? "faster" : "slower"} speeds`).join(". ") || "The local map has no orbit of period one or two",
     };
@@ -181,7 +181,7 @@
       description: own ? `${names[0]} is ${number(own[0], 4)} and ${names[1]} is ${number(own[1], 4)}: ${own[0] * own[1] > 0 ? words.same : words.other}` : "",
     };
   };
-  const FOLDS = { names: ["det(I − A⁻)", "det(I − A⁺)"], words: { same: "the motion lives on", other: "fold", colours: ["blue", "vermilion"] }, pair: (verdict) => [verdict.minus, verdict.plus] };
+  const FOLDS = { names: ["det(I − A⁻)", "det(I − A⁺)"], words: { same: "persistence", other: "fold", colours: ["blue", "vermilion"] }, pair: (verdict) => [verdict.minus, verdict.plus] };
   const FLIPS = { names: ["det(I + A⁻)", "det(I + A⁺)"], words: { same: "no period two", other: "period two is born", colours: ["blue", "purple"] }, pair: (verdict) => verdict.flips || [] };
 
   // The view -------------------------------------------------------------------------------------------------------------------

@@ -67,7 +67,7 @@
     name: "valve", title: "A measured cam: from separation to a spring", model: "valve.toml",
     steps: [
       { title: "Where it separates", view: "loads", state: { rpm: 2500, views: { loads: { range: [2000, 4000] } } },
-        text: "The lifts of this cam stand every two degrees, rounded to 0.001 mm as a gauge gives them, which leaves its acceleration open to 1.4 %. The follower separates at 2915 ± 13 rpm, and ± is what the rounding leaves open (computed)." },
+        text: "The lifts of this cam are given every two degrees, rounded to 0.001 mm as by a gauge. So its acceleration is uncertain by 1.4 %. The follower separates at 2915 ± 13 rpm, where ± is the uncertainty from the rounding (computed)." },
       { title: "What separation costs", view: "loads", state: { rpm: 3500, views: { loads: { range: [2000, 4000], load: "impact_speed" } } },
         text: "At 3500 rpm the follower is off the cam for 24.7 % of the time and lands at up to 3668 ± 21 mm/s. These loads are sampled: they are the most of runs from four starts." },
       { title: "A need", view: "loads", state: { rpm: 3600, views: { loads: { range: [2000, 4000], need: { kind: "separation", rpm: 3600 } } } },
@@ -136,7 +136,7 @@
       const same = isAs(state, stateOf(story, state.story.step));
       changed.hidden = same;
       again.hidden = same;
-      changed.textContent = same ? "" : "You have changed the numbers. The text speaks of the step as it was.";
+      changed.textContent = same ? "" : "You have changed the numbers. The text describes the original step.";
       if (key === shown) return;
       shown = key;
       title.textContent = `${story.title}: ${step.title.charAt(0).toLowerCase()}${step.title.slice(1)}`;

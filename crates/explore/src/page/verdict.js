@@ -35,12 +35,12 @@
       const other = exist.minus === "faster" ? "slower" : "faster";
       return [`Two periodic motions meet at the corner and vanish together. Both exist at ${exist.minus} speeds: ${side("minus")}, ${side("plus")}. At ${other} speeds there is neither.`];
     }
-    const crossing = `The periodic motion crosses the corner and lives on: at ${exist.minus} speeds it strikes before the corner (${stability(found, "minus")}), at ${exist.plus} speeds after it (${stability(found, "plus")}).`;
+    const crossing = `The periodic motion crosses the corner and persists: at ${exist.minus} speeds it strikes before the corner (${stability(found, "minus")}), at ${exist.plus} speeds after it (${stability(found, "plus")}).`;
     if (kind !== "nonsmooth-flip") return [crossing];
     const twice = (found.local_map || []).find((each) => each.period_two && each.period_two.admissible && each.speeds !== "critical");
     return [crossing, twice ? `An orbit of period two is born there. It exists at ${twice.speeds} speeds and is ${twice.period_two.stability}.` : "An orbit of period two is born there."];
   };
-  const ENDS = { "fixed-point": "settle on the orbit", "period-two": "settle on the orbit", periodic: "settle on the orbit", chaotic: "are chaotic", escapes: "leave", undecided: "stay undecided" };
+  const ENDS = { "fixed-point": "settle on the orbit", "period-two": "settle on the orbit", periodic: "settle on the orbit", chaotic: "are chaotic", escapes: "diverge", undecided: "are undecided" };
   /** Where the starts of the local map end, at faster and at slower speeds. */
   const endings = (found) => (found.local_map || []).filter((each) => each.speeds === "faster" || each.speeds === "slower").map((each) => {
     const parts = each.ends.map((end) => `${end.starts} ${ENDS[end.end] || end.end}${end.word ? ` ${end.word}` : ""}`);
@@ -50,9 +50,9 @@
   const KNOWN = { proved: "proved", computed: "computed", sampled: "sampled" };
   const danger = ({ danger: found }) => {
     if (!found) return [];
-    const grows = found.diverges && found.diverges.word ? ` Motions from at least ${Math.floor(found.diverges.share_of_directions * 1000) / 10} % of the directions diverge, along ${found.diverges.word}, by a factor of ${number(found.diverges.multiplier, 5)} each time (${KNOWN[found.diverges.known] || found.diverges.known}).` : "";
+    const grows = found.diverges && found.diverges.word ? ` Motions from at least ${Math.floor(found.diverges.share_of_directions * 1000) / 10} % of the directions diverge along the sequence ${found.diverges.word}, by a factor of ${number(found.diverges.multiplier, 5)} per period (${KNOWN[found.diverges.known] || found.diverges.known}).` : "";
     if (found.kind === "dangerous") return [`Dangerous: the basin of the stable motion shrinks to nothing at the corner impact, although the motion stays stable (${KNOWN[found.known] || found.known}).${grows}`];
-    return [`Several attractors meet at the corner impact: the smallest disturbance decides on which one the motion settles (${KNOWN[found.known] || found.known}).${grows}`];
+    return [`Several attractors meet at the corner impact: the smallest disturbance selects the one on which the motion settles (${KNOWN[found.known] || found.known}).${grows}`];
   };
   /** Sentences that say what happens at the corner impact. */
   Explore.verdict.words = (found) => {
@@ -92,7 +92,7 @@
       row(`det(I − A${sign})`, number(determinant, DIGITS), "computed; its sign decides"),
     ];
     return make("table", { class: "numbers-table" },
-      make("caption", {}, `One revolution near the corner impact: x → A x + B δT, with x the deviation of position (${units.length || "m"}) and velocity (${units.velocity || "m/s"}) and δT that of the period (s). − before the corner, + after it.`),
+      make("caption", {}, `One revolution near the corner impact: x → A x + B δT, x is the deviation of position (${units.length || "m"}) and velocity (${units.velocity || "m/s"}), and δT the deviation of the period (s). − holds before the corner, + after it.`),
       make("thead", {}, make("tr", {}, make("th", {}, "number"), make("th", {}, "value"), make("th", {}, "how it is known"))),
       make("tbody", {}, ...side("minus", "⁻", minus), ...side("plus", "⁺", plus)));
   };

@@ -77,8 +77,8 @@
   }));
   const KNOWN = { proved: "proved", computed: "computed", sampled: "sampled", read: "read from the model" };
   const LONG = {
-    proved: "The result comes from interval arithmetic: it is a proof.", computed: "The result comes from a computation in double precision whose error is checked.",
-    sampled: "The result comes from samples: what lies between them is not seen.", read: "The number stands in the model.",
+    proved: "Proved by interval arithmetic.", computed: "Computed in double precision, with a checked error.",
+    sampled: "Sampled: events between the samples are not seen.", read: "The number is given in the model.",
   };
 
   // A panel ------------------------------------------------------------------------------------------------------------

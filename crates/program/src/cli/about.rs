@@ -12,7 +12,7 @@ use crate::show::{Page, words};
 use corner_impact::cam::Cam;
 use corner_impact::study::speeds::usual_range;
 
-/// Says what can be done with a model: the same as `corner-impact MODEL`.
+/// Lists what you can do with a model, as `corner-impact MODEL` does.
 #[derive(clap::Args)]
 #[command(
     hide = true,
@@ -47,24 +47,24 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let of_acceleration = cam.corners().iter().filter(|corner| corner.jump_order == 2).count();
     let corners = words::many(of_acceleration as u64, "corner");
     let missing = arguments.model.still_needed();
-    let of = if missing.is_empty() { "" } else { " of the assumed follower" };
+    let of = if missing.is_empty() { "" } else { " for the assumed follower" };
     let lead = format!(
-        "cam of law \"{}\" with {corners} where the acceleration jumps; without --rpm, `speeds` shows the motions{of} at {low} to {high} rpm",
+        "The cam has law \"{}\" and {corners} where the acceleration jumps. Without --rpm, `speeds` covers {low} to {high} rpm{of}.",
         model.cam.law()
     );
     let mut uses = vec![
-        ("cam", String::new(), "the cam's lift, its corners, and how well it is known"),
-        ("design", String::new(), "up to which speed the follower stays on the cam, and what must be changed"),
-        ("simulate", format!(" --rpm {low}"), "one run: impacts, gap and force"),
-        ("speeds", String::new(), "the motions that it ends on over the speeds"),
-        ("report", String::new(), "all of it on one page for a browser"),
+        ("cam", String::new(), "shows the cam's lift, its corners and its accuracy"),
+        ("design", String::new(), "finds the speed up to which the follower stays on the cam"),
+        ("simulate", format!(" --rpm {low}"), "simulates one run: impacts, gap and force"),
+        ("speeds", String::new(), "finds the motions that runs settle on over a range of speeds"),
+        ("report", String::new(), "writes all results as one page for a browser"),
     ];
     // The paper's result needs a jump of the acceleration.
     if of_acceleration > 0 {
-        uses.push(("locate", format!(" --rpm {low}:{high}"), "the speeds at which an orbit hits such a corner"));
+        uses.push(("locate", format!(" --rpm {low}:{high}"), "finds the speeds at which an orbit hits such a corner"));
     }
     if of_acceleration > 0 && model.study.is_some() {
-        uses.push(("verify", String::new(), "the map at the corner impact, by every route"));
+        uses.push(("verify", String::new(), "computes the map at the corner impact by every route"));
     }
     let named = session.named.clone();
     let entry = |(name, rest, what): (&str, String, &'static str)| {

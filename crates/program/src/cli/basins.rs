@@ -16,9 +16,9 @@ use corner_impact::study::basins::{BasinSection, BasinsOver, Begun, Grid, Sectio
 use corner_impact::study::survey::Over;
 use corner_impact::untrusted;
 
-/// Tells what each start of a grid ends on.
+/// Finds the motion that each start of a grid settles on.
 ///
-/// The result is a table or a picture at one speed, or over a number how many starts end on what.
+/// At one speed, the result is a table or a picture of the starts. With `--over`, it is the share of the starts that settle on each motion.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n\
     \x20 corner-impact basins --rpm 678 --strobe 5.76 --grid 60x40\n\
@@ -29,26 +29,26 @@ use corner_impact::untrusted;
 pub(super) struct Arguments {
     #[command(flatten)]
     model: ModelArgument,
-    /// Speed of the cam, rpm; or lowest speed, highest speed, and how many [default: 9].
+    /// Speed of the cam, rpm; or the lowest speed, the highest speed and their number [default: 9].
     #[arg(long, value_name = "R|LO:HI[:N]", value_parser = speeds, required_unless_present = "over", allow_hyphen_values = true)]
     rpm: Option<Speeds>,
-    /// Tell the share of each motion at values of a number of the model, at the speed of --rpm: from where to where, at how many, and whether these are
-    /// spaced by their logarithm.
+    /// Vary a number of the model at the speed of --rpm, and give the share of each motion at each value. LO and HI are the lowest and highest value, N is
+    /// their number [default: 9]. `:log` spaces them logarithmically.
     #[arg(long, value_name = "NAME=LO:HI[:N][:log]", value_parser = axis, allow_hyphen_values = true)]
     over: Option<NamedSpan>,
-    /// Cells along the positions and along the velocities.
+    /// Number of cells along the positions and along the velocities.
     #[arg(long, value_name = "NxM", value_parser = cells, required_unless_present = "state")]
     grid: Option<Cells>,
-    /// The section: the cam angle at which the starts are, rad or as 90deg.
+    /// Cam angle of the starts, in rad or as 90deg.
     #[arg(long, value_name = "RAD", value_parser = angle, default_value_t = 0.0, allow_hyphen_values = true)]
     strobe: f64,
-    /// Positions [default: from the cam to twice as far from it as any orbit of one impact a revolution].
+    /// Range of positions [default: from the cam to twice the largest distance of any orbit with one impact a revolution].
     #[arg(long, value_name = "LO:HI", value_parser = range, allow_hyphen_values = true)]
     position: Option<[f64; 2]>,
-    /// Velocities [default: three times the range of those orbits and of the cam, or of its height in a radian].
+    /// Range of velocities [default: three times the range of those orbits and of the cam. If that range is less than the lift per radian of rotation, that lift in both directions is tripled instead].
     #[arg(long, value_name = "LO:HI", value_parser = range, allow_hyphen_values = true)]
     velocity: Option<[f64; 2]>,
-    /// Position and velocity of a start on the section, in place of a grid (may be repeated).
+    /// Position and velocity of one start, in place of a grid (repeatable).
     #[arg(long, value_name = "Q,V", value_parser = state, allow_hyphen_values = true, conflicts_with_all = ["grid", "position", "velocity"])]
     state: Vec<State>,
     #[command(flatten)]
@@ -56,7 +56,7 @@ pub(super) struct Arguments {
     /// An older name of --transient.
     #[arg(long, value_name = "N", hide = true, conflicts_with = "transient", value_parser = clap::value_parser!(u64).range(1..=Budget::MOST))]
     revolutions: Option<u64>,
-    /// A table (.csv, or - for standard output) or a picture (.svg, .png, .pdf).
+    /// Write a table (.csv, or - for standard output) or a picture (.svg, .png, .pdf).
     #[arg(long, value_name = "FILE", value_parser = picture::picture_or_table, group = "picture")]
     out: Option<PathBuf>,
     #[command(flatten)]
@@ -78,7 +78,7 @@ fn cells(text: &str) -> Result<Cells, String> {
         part.trim().parse::<usize>().map_err(|_| format!("\"{}\" is not a number of cells", untrusted::value(part)))
     };
     let Some((columns, rows)) = text.split_once('x') else {
-        return Err("must be NxM, such as 60x40: cells along the positions and along the velocities".into());
+        return Err("must be NxM, such as 60x40: the number of cells along positions and along velocities".into());
     };
     let (columns, rows) = (count(columns)?, count(rows)?);
     match columns.checked_mul(rows) {
@@ -105,16 +105,16 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         None => SectionStarts::Given(States { cam_angle: section.map.cam_angle, states: arguments.state.clone() }),
     };
     if grid.is_none() && arguments.out.as_deref().is_some_and(|path| picture::kind(path).is_some()) {
-        return Err(CommandError::Words("a picture is of a grid: --grid NxM says how fine".into()));
+        return Err(CommandError::Words("a picture needs a grid: give its cells by --grid NxM".into()));
     }
     let basins = watched("runs of each start", |watch| begun.basins(&section.map.machine, budget, threads, watch))?;
     let wall_s = clock.elapsed().as_secs_f64();
     if let Some(path) = &arguments.out {
         let table = || csv::basins(&basins, &model.units);
         let picture = || {
-            let title = format!("{} at {rpm} rpm: what each start ends on", model.name);
+            let title = format!("{} at {rpm} rpm: the motion that each start settles on", model.name);
             // Refused above where there is none.
-            let grid = grid.ok_or_else(|| CommandError::Words("a picture is of a grid".into()))?;
+            let grid = grid.ok_or_else(|| CommandError::Words("a picture needs a grid".into()))?;
             Ok(basins_figure(&title, &grid, &basins, &section.border(&grid, &basins)))
         };
         Target::create(path, &mut *session.out, arguments.picture.request()?)?.fill(&model.units, table, picture)?;

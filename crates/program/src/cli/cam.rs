@@ -19,14 +19,14 @@ pub(super) struct Arguments {
     model: ModelArgument,
     #[command(flatten)]
     answer: AnswerArguments,
-    /// Leave out corners where only a derivative above this order jumps.
+    /// Leave out corners where only derivatives above order N jump.
     #[arg(long, value_name = "N", default_value_t = Jet::HIGHEST_JUMP)]
     order: usize,
-    /// Draw lift, velocity and acceleration against the cam angle (.svg, .png or .pdf), and below them the shape of a cam whose lift follows from
-    /// its contour.
+    /// Draw lift, velocity and acceleration against the cam angle (.svg, .png or .pdf). If the lift is computed from the contour, the cam's shape is drawn
+    /// below them.
     #[arg(long, value_name = "FILE", value_parser = picture::picture, group = "picture")]
     out: Option<PathBuf>,
-    /// Draw the shape alone, of any cam, with the end of the follower on it: contour, path of a roller's centre, roller or face.
+    /// Draw only the cam's shape, for any law, with the end of the follower on it: contour, path of the roller's centre, roller or face.
     #[arg(long, requires = "picture")]
     shape: bool,
     #[command(flatten)]

@@ -8,7 +8,7 @@ use corner_impact::study::certify::{BITS, CertifyError, certify, proved_counts, 
 
 /// Proves that corner impacts exist, in ball arithmetic.
 ///
-/// Their maps and verdicts are proved, too.
+/// It also proves their maps and verdicts.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n\
     \x20 corner-impact certify\n\
@@ -18,23 +18,23 @@ use corner_impact::study::certify::{BITS, CertifyError, certify, proved_counts, 
     \x20 corner-impact certify --resting --rpm 450\n\
     \n\
     Needs Python with the packages that `make verify` sets up.\n\
-    Exit code: 0 every border collision that `locate` finds is proved, 1 one is not, 2 bad model file or usage, or no Python.")]
+    Exit code: 0 every border collision that `locate` finds is proved, 1 one of them is not, 2 bad model file or usage, or no Python.")]
 pub(super) struct Arguments {
     #[command(flatten)]
     model: ModelArgument,
-    /// Range of speeds, rpm; with --orbits also one speed, with --resting only one [default: the model's [study]].
+    /// Range of speeds, rpm [default: the model's [study]]. --orbits also takes one speed. --resting takes only one speed.
     #[arg(long, value_name = "LO:HI|R", value_parser = rpm_or_range)]
     rpm: Option<[f64; 2]>,
-    /// Turns of the cam after which the orbits repeat, and no fewer.
+    /// Revolutions of the cam after which the orbits first repeat.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=Search::MOST_REVOLUTIONS))]
     revolutions: u64,
-    /// Bits that the balls are computed with.
+    /// Precision of the balls, in bits.
     #[arg(long, value_name = "N", default_value_t = BITS, value_parser = clap::value_parser!(u32).range(16..=16384))]
     bits: u32,
-    /// Prove all periodic orbits of one impact and of two in one revolution at the speed of --rpm, instead of corner impacts; at every speed of a range, how many there are of one impact.
+    /// Prove periodic orbits instead of corner impacts. At one speed: all orbits of one and of two impacts in one revolution. Over a range: the number of one-impact orbits at every speed.
     #[arg(long, requires = "rpm", conflicts_with = "revolutions")]
     orbits: bool,
-    /// Prove the motion that follows a rest on the cam at the speed of --rpm. The bits are doubled where they do not suffice.
+    /// Prove the motion that follows a rest on the cam, at the speed of --rpm. The precision is doubled where it does not suffice.
     #[arg(long, requires = "rpm", conflicts_with_all = ["revolutions", "orbits"])]
     resting: bool,
     #[command(flatten)]
@@ -55,7 +55,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     }
     if let (true, Some([low, high])) = (arguments.resting, arguments.rpm) {
         if low < high {
-            return Err(CommandError::Words("--resting is for one speed: --rpm R".into()));
+            return Err(CommandError::Words("--resting takes one speed: --rpm R".into()));
         }
         let found = watched("proving motions that rest", |_| proved_resting(&model, low, arguments.bits))?;
         session.answer(&found, &arguments.answer)?;

@@ -14,20 +14,20 @@ use corner_impact::study::chaos::{chaos, portrait};
     \x20 corner-impact chaos --rpm 670 --out chaos.svg\n\
     \x20 corner-impact chaos models/osorio-2008.toml --rpm 673:673.5 --json\n\
     \n\
-    A proof is by enclosures that leave no case out; that other motions come to the set is not said.\n\
-    Exit code: 0 done, also where nothing is proved, 2 bad model file, usage or file, or a run that cannot go on.")]
+    A proof encloses every case. It does not state that other motions converge to the set.\n\
+    Exit code: 0 done, also if nothing is proved, 2 bad model file, usage or file, or a run that cannot go on.")]
 pub(super) struct Arguments {
     #[command(flatten)]
     model: ModelArgument,
-    /// Speed of the cam, or lowest and highest.
+    /// Speed of the cam, rpm; or the lowest and the highest speed.
     #[arg(long, value_name = "R|LO:HI", value_parser = rpm_or_range, allow_hyphen_values = true)]
     rpm: [f64; 2],
-    /// Look for regions that trap as well, at the lowest speed: impacts that are followed by impacts among them for ever.
+    /// Also look for trapping regions, at the lowest speed. After an impact in such a region, every later impact is in it.
     #[arg(long)]
     trapping: bool,
     #[command(flatten)]
     answer: AnswerArguments,
-    /// A picture (.svg, .png, .pdf) of the h-set, its strips and where they are carried, at the lowest speed with a proof.
+    /// Draw the h-set, its strips and their images (.svg, .png, .pdf), at the lowest speed with a proof.
     #[arg(long, value_name = "FILE", value_parser = picture, group = "picture")]
     out: Option<PathBuf>,
     #[command(flatten)]
@@ -41,7 +41,8 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     match (canvas, found.theorems.first()) {
         (Some(canvas), Some(theorem)) => {
             let rpm = theorem.set.rpm[0];
-            let title = format!("{} at {rpm} rpm: strips of N, and where so many impacts carry them", model.name);
+            let title =
+                format!("{} at {rpm} rpm: strips of N and their images after the numbers of impacts shown", model.name);
             let figure = chaos_figure(&title, &theorem.set, &portrait(&model, &theorem.set)?);
             canvas.write(figure, &model.units)?;
         }

@@ -18,9 +18,9 @@ use corner_impact::study::chart::store::{SIDES, Shard, Store, status};
 use corner_impact::study::curve::curves;
 use corner_impact::study::survey::Axis;
 
-/// Charts over two numbers what a run comes to.
+/// Charts the motion that runs settle on over two numbers.
 ///
-/// That is its period, its growth and how hard it hits.
+/// The chart has its period, its growth rate and its impact speed.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n\
     \x20 corner-impact chart --over rpm=600:760:80 --over restitution=0.5:0.95:60 --out periods.svg\n\
@@ -32,8 +32,8 @@ use corner_impact::study::survey::Axis;
 pub(super) struct Arguments {
     #[command(flatten)]
     model: ModelArgument,
-    /// An axis, first the horizontal one, then the vertical: rpm or a number of the model, its lowest and highest value, and how many [default: 60];
-    /// with :log spaced by their logarithm.
+    /// Horizontal axis, then vertical axis. NAME is rpm or a number of the model. LO and HI are its lowest and highest value, N is the number of values
+    /// [default: 60]. `:log` spaces them logarithmically.
     #[arg(long, value_name = "NAME=LO:HI[:N][:log]", value_parser = axis, required_unless_present_any = ["status", "x"], conflicts_with_all = ["x", "y"],
         allow_hyphen_values = true)]
     over: Vec<NamedSpan>,
@@ -43,30 +43,30 @@ pub(super) struct Arguments {
     /// An older name of the second.
     #[arg(long, value_name = "AXIS", hide = true, value_parser = axis, requires = "x", allow_hyphen_values = true)]
     y: Option<NamedSpan>,
-    /// Speed of the cam, rpm, where no axis is it.
+    /// Speed of the cam, rpm, if neither axis is rpm.
     #[arg(long, value_name = "RPM", value_parser = rpm, allow_hyphen_values = true)]
     rpm: Option<f64>,
     #[command(flatten)]
     budget: BudgetArguments,
     #[command(flatten)]
     start: StartArguments,
-    /// Quantity that the colours of a picture show; a table and a store hold all of them.
+    /// Quantity that the colours of a picture show. A table and a store hold all quantities.
     #[arg(long, value_enum, default_value = "period")]
     show: ShowName,
-    /// Draw over a picture the curves of corner impacts, folds, flips, grazes, detachment and the onset of resting of motions
-    /// that repeat after one revolution, as `curve` follows them; one axis must be rpm.
+    /// Draw curves of bifurcations over the picture, as `curve` follows them. They are corner impacts, folds, flips, grazes, detachment and the onset of
+    /// resting, of motions that repeat after one revolution. One axis must be rpm.
     #[arg(long, requires = "out", conflicts_with = "status")]
     with_curves: bool,
-    /// A table (.csv, or - for standard output), a picture (.svg, .png, .pdf), or a zarr store (.zarr): a folder of blocks of 100 x 100
-    /// points, of which those that are there already are not run again.
+    /// Write a table (.csv, or - for standard output), a picture (.svg, .png, .pdf) or a zarr store (.zarr). A store is a folder of blocks of 100 x 100
+    /// points. Blocks that exist already are not run again.
     #[arg(long, value_name = "FILE", value_parser = out, group = "picture")]
     out: Option<PathBuf>,
     #[command(flatten)]
     picture: picture::PictureArguments,
-    /// Run the part I of N of a store's blocks; the others are for other processes, at the same time or later.
+    /// Run part I of N of a store's blocks. Other processes run the other parts, at the same time or later.
     #[arg(long, value_name = "I/N", value_parser = shard, requires = "out")]
     shard: Option<Shard>,
-    /// Say how much of a store is done, instead; with --json as a document.
+    /// Print how much of a store is done, and run nothing. With --json, print a document.
     #[arg(long, value_name = "STORE", conflicts_with_all = ["over", "x", "y", "out"])]
     status: Option<PathBuf>,
     #[command(flatten)]
@@ -91,7 +91,7 @@ fn shard(text: &str) -> Result<Shard, String> {
     let parts = text.split_once('/').and_then(|(index, of)| Some((number(index)?, number(of)?)));
     match parts {
         Some((index, of)) if (1..=of).contains(&index) => Ok(Shard { index, of }),
-        _ => Err("must be I/N: the part I, from 1 to N, of N".into()),
+        _ => Err("must be I/N: part I of N parts, with I from 1 to N".into()),
     }
 }
 
@@ -130,8 +130,8 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let axes: Vec<&NamedSpan> = arguments.over.iter().chain(&arguments.x).chain(&arguments.y).collect();
     let [x, y] = axes.as_slice() else {
         let words = match axes.len() {
-            1 => "--over is given once, and a chart has two axes; `speeds` and `diagram` have one".to_owned(),
-            count => format!("--over is given {count} times, and a chart has two axes"),
+            1 => "--over is given once, but a chart has two axes; `speeds` and `diagram` have one".to_owned(),
+            count => format!("--over is given {count} times, but a chart has two axes"),
         };
         return Err(CommandError::Words(words));
     };

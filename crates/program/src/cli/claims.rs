@@ -12,24 +12,24 @@ use corner_impact::study::verify::{External, verify_watched};
 
 /// Prints the paper's statements, each with a verdict.
 ///
-/// The statements are those of the paper's source on arXiv, with their evidence.
+/// The statements are those of the paper's source on arXiv. Each verdict has its evidence.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n\
     \x20 corner-impact claims\n\
     \x20 corner-impact claims models/damped-light.toml --json\n\
     \x20 corner-impact claims --verdict refuted --known computed\n\
     \n\
-    For another model than the paper's, statements about the paper's own numbers are open.\n\
-    Exit code: 0 every check comes to the ledger's verdict, 1 one does not, 2 bad model file.")]
+    With a model other than the paper's, statements about the paper's own numbers are open.\n\
+    Exit code: 0 every check confirms the ledger's verdict, 1 a check contradicts it, 2 bad model file.")]
 pub(super) struct Arguments {
     #[command(flatten)]
     model: ModelArgument,
     #[command(flatten)]
     answer: AnswerArguments,
-    /// Only statements of this verdict: holds, in-part, misprint, refuted, open, definition.
+    /// Print only statements with this verdict: holds, in-part, misprint, refuted, open, definition.
     #[arg(long, value_parser = named::<Verdict>, conflicts_with = "markdown")]
     verdict: Option<Verdict>,
-    /// Only statements whose verdict is known so: proved, computed, sampled, read.
+    /// Print only statements with this kind of evidence: proved, computed, sampled, read.
     #[arg(long, value_parser = named::<Evidence>, conflicts_with = "markdown")]
     known: Option<Evidence>,
     /// Print the page of docs/claims.md.
@@ -41,7 +41,7 @@ pub(super) struct Arguments {
 fn named<T: serde::de::DeserializeOwned>(name: &str) -> Result<T, String> {
     serde_json::from_value(name.into()).map_err(|error| match error.to_string().split_once("expected one of ") {
         Some((_, names)) => format!("must be one of {}", names.replace('`', "")),
-        None => "there is none of that name".into(),
+        None => "this name is unknown".into(),
     })
 }
 

@@ -8,22 +8,22 @@ use super::picture::ends_in;
 use super::{AnswerArguments, CommandError, Exit, ModelArgument, Session, progress::watched};
 use corner_impact::study::compare::compare;
 
-/// Tells what moved from one model to another.
+/// Lists what differs between the results of two models.
 ///
-/// The verdict comes first, then each number that changed, and by how much more than its error.
+/// The verdicts come first. Then come the numbers that changed, each with its change in multiples of its error.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n\
     \x20 corner-impact compare --set restitution=0.7\n\
     \x20 corner-impact compare models/damped-light.toml models/damped-heavy.toml --no-external\n\
     \x20 corner-impact compare models/osorio-2008.toml --set mass=1.3 --no-external --json\n\
     \n\
-    The answer is in the units of A; the lengths of B must be in the same. A model without a corner impact is an answer, too.\n\
-    Exit code: 0 done, whatever moved; 1 routes disagree about one of the two; 2 bad usage or model file.")]
+    Results are in the units of A. B must have the same unit of length. A model without a corner impact is no error.\n\
+    Exit code: 0 done, whatever changed, 1 routes disagree about one of the models, 2 bad usage or model file.")]
 pub(super) struct Arguments {
     /// Model file (TOML) [default: the paper's model, osorio-2008, which is built in].
     #[arg(value_name = "A")]
     first: Option<PathBuf>,
-    /// The model file that it is compared with [default: A, with the numbers of --set].
+    /// Model file that is compared with A [default: A, with the numbers of --set].
     #[arg(value_name = "B", required_unless_present = "numbers")]
     second: Option<PathBuf>,
     /// Changes of the second model.

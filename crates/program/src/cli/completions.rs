@@ -4,17 +4,19 @@ use clap_complete::Shell;
 
 use super::{CommandError, Exit, Session, help};
 
-/// Prints what a shell needs to complete commands and options.
+/// Prints the script by which a shell completes commands and options.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n\
     \x20 corner-impact completions bash\n\
     \x20 corner-impact completions zsh\n\
     \n\
-    For bash, to have it in every shell: put it into ~/.local/share/bash-completion/completions/corner-impact; for zsh \
-    into a file _corner-impact in a folder of $fpath; for fish into ~/.config/fish/completions/corner-impact.fish.\n\
+    To load the script in every shell, save it.\n\
+    bash: ~/.local/share/bash-completion/completions/corner-impact\n\
+    zsh: a file _corner-impact in a folder of $fpath\n\
+    fish: ~/.config/fish/completions/corner-impact.fish\n\
     Exit code: 0 done, 2 bad usage.")]
 pub(super) struct Arguments {
-    /// Which shell.
+    /// Shell that is to complete.
     shell: Shell,
 }
 

@@ -14,9 +14,9 @@ use corner_impact::orbit::branch::Following;
 use corner_impact::orbit::{Parameter, Search};
 use corner_impact::study::continuation::branches;
 
-/// Follows orbits through a number, round folds and corners.
+/// Follows periodic orbits through a number, round folds and corners.
 ///
-/// The orbits are those of one speed.
+/// The orbits to start from are those at one speed.
 #[derive(clap::Args)]
 #[command(
     name = "continue",
@@ -25,35 +25,35 @@ use corner_impact::study::continuation::branches;
     \x20 corner-impact continue --rpm 700 --over restitution=0.5:0.95 --out branches.svg\n\
     \x20 corner-impact continue --rpm 738 --over rpm=735:745 --all\n\
     \n\
-    Prints the table; what each branch passes and where it ends goes to standard error.\n\
+    Prints the table. The special points of each branch and its end go to standard error.\n\
     Exit code: 0 done, 2 bad model file, usage or file, or nothing to follow."
 )]
 pub(super) struct Arguments {
     #[command(flatten)]
     model: ModelArgument,
-    /// Speed at which the orbits are looked for.
+    /// Speed at which the search for orbits starts.
     #[arg(long, value_name = "R", value_parser = rpm, alias = "from-rpm", allow_hyphen_values = true)]
     rpm: f64,
-    /// The number to vary, with its lowest and highest value: rpm, or a number of the model file, such as restitution.
+    /// Number to vary, with its lowest and highest value: rpm, or a number of the model such as restitution.
     #[arg(long, value_name = "NAME=LO:HI", value_parser = followed, alias = "parameter", allow_hyphen_values = true)]
     over: (String, [f64; 2]),
-    /// Turns of the cam in one period.
+    /// Revolutions of the cam in one period.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=Search::MOST_REVOLUTIONS))]
     revolutions: u64,
-    /// Only orbits that start with this many impacts.
+    /// Follow only orbits that start with this many impacts.
     #[arg(long, value_name = "M")]
     impacts: Option<usize>,
-    /// The longest step, of the range and of a radian.
+    /// Longest step, as a fraction of the range and of a radian.
     #[arg(long, value_name = "STEP", default_value_t = 0.02, value_parser = positive)]
     step: f64,
-    /// Orbits after which a branch is given up, in either direction.
+    /// Most orbits of a branch, in either direction.
     #[arg(long, value_name = "N", default_value_t = 2000, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     points: u32,
-    /// Follow also what branches off with twice the period at flips, grazes and corner impacts, and branches that cross, and from
-    /// these again, so many times in all.
+    /// Also follow branches of twice the period, which begin at flips, grazes and corner impacts, and branches that cross. Their own branches follow,
+    /// DOUBLINGS times in all; without a number, 3 times.
     #[arg(long, value_name = "DOUBLINGS", num_args = 0..=1, require_equals = true, default_value_t = 0, default_missing_value = "3", value_parser = clap::value_parser!(u32).range(0..=10))]
     all: u32,
-    /// A table (.csv, or - for standard output) or a picture (.svg, .png, .pdf) [default: -].
+    /// Write a table (.csv, or - for standard output) or a picture (.svg, .png, .pdf) [default: -].
     #[arg(long, value_name = "FILE", value_parser = picture_or_table, group = "picture")]
     out: Option<PathBuf>,
     /// Print one JSON document instead of the table.
@@ -61,7 +61,7 @@ pub(super) struct Arguments {
     json: bool,
     #[command(flatten)]
     picture: PictureArguments,
-    /// Values of the parameter at which a picture shows what runs settle on; 0 for none.
+    /// Number of values at which a picture also shows what runs settle on; 0 for none.
     #[arg(long, value_name = "N", default_value_t = 400, value_parser = clap::value_parser!(u32).range(0..=100_000))]
     runs: u32,
 }

@@ -16,37 +16,37 @@ use corner_impact_plot::{extent, layout::widened};
 
 /// Follows bifurcations through a number of the model.
 ///
-/// These are corner impacts, folds, flips, grazes, detachment and the onset of resting: their speed, and where their type changes.
+/// It follows corner impacts, folds, flips, grazes, detachment and the onset of resting. The result is the speed of each, and the values at which its type changes.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n\
     \x20 corner-impact curve --rpm 600:760 --over restitution=0.5:0.95\n\
     \x20 corner-impact curve --rpm 600:760 --over restitution=0.5:0.95 --out curve.svg\n\
     \x20 corner-impact curve --rpm 600:760 --over restitution=0.5:0.95 --event fold --event flip\n\
     \n\
-    Prints the table; what each curve passes and where it ends goes to standard error.\n\
-    Exit code: 0 done, also where there is none, 2 bad model file, usage or file.")]
+    Prints the table. The special points of each curve and its end go to standard error.\n\
+    Exit code: 0 done, also if no curve was found, 2 bad model file, usage or file.")]
 pub(super) struct Arguments {
     #[command(flatten)]
     model: ModelArgument,
-    /// Speeds between which events of the model are looked for.
+    /// Range of speeds in which events are looked for.
     #[arg(long, value_name = "LO:HI", value_parser = rpm_range, allow_hyphen_values = true)]
     rpm: [f64; 2],
-    /// The number to vary, with its lowest and highest value: a number of the model file, such as restitution.
+    /// Number of the model to vary, such as restitution, with its lowest and highest value.
     #[arg(long, value_name = "NAME=LO:HI", value_parser = followed, alias = "parameter", allow_hyphen_values = true)]
     over: (String, [f64; 2]),
-    /// Which events are followed; may be repeated [default: all].
+    /// Event to follow (repeatable) [default: all].
     #[arg(long = "event", value_name = "EVENT", value_parser = event)]
     events: Vec<Bifurcation>,
-    /// Turns of the cam in one period.
+    /// Revolutions of the cam in one period.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=Search::MOST_REVOLUTIONS))]
     revolutions: u64,
-    /// Only orbits that were found with this many impacts.
+    /// Follow only events of orbits that were found with this many impacts.
     #[arg(long, value_name = "M")]
     impacts: Option<usize>,
-    /// The longest step, of the ranges and of a radian.
+    /// Longest step, as a fraction of the ranges and of a radian.
     #[arg(long, value_name = "STEP", default_value_t = LONGEST_STEP, value_parser = positive)]
     step: f64,
-    /// A table (.csv, or - for standard output) or a picture (.svg, .png, .pdf) [default: -].
+    /// Write a table (.csv, or - for standard output) or a picture (.svg, .png, .pdf) [default: -].
     #[arg(long, value_name = "FILE", value_parser = picture_or_table, group = "picture")]
     out: Option<PathBuf>,
     /// Print one JSON document instead of the table.

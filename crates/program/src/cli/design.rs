@@ -18,9 +18,9 @@ use corner_impact::study::design::needs::{Lever, Need, in_si};
 use corner_impact::study::design::{Asked, design};
 use corner_impact::study::survey::{Axis, Values};
 
-/// Tells up to which speed the follower stays on the cam.
+/// Finds the speed up to which the follower stays on the cam.
 ///
-/// Beyond that speed, it lists how hard the follower hits. With `--need`, it finds how stiff, light or preloaded the machine must be to stay on the cam.
+/// Above that speed, it lists how hard the follower hits. With `--need`, it finds how stiff, light or preloaded the machine must be.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n\
     \x20 corner-impact design\n\
@@ -28,29 +28,27 @@ use corner_impact::study::survey::{Axis, Values};
     \x20 corner-impact design models/laws/program.toml --rpm 300 --out force.svg\n\
     \x20 corner-impact design --rpm 200 --over mass=1:2:5\n\
     \n\
-    Where runs are looked at, it is those from four starts at each speed: another motion may do worse.\n\
+    Runs begin from four starts at each speed. Another motion may hit harder.\n\
     Exit code: 0 done, 2 bad model file, usage or file, or a run that cannot go on.")]
 pub(super) struct Arguments {
     #[command(flatten)]
     model: ModelArgument,
-    /// One speed, a range, or speeds at which the force is told [default: half to one and a half times the
-    /// speed at which the follower first leaves the cam].
+    /// One speed, a range, or the speeds at which the forces are listed [default: half to one and a half times the speed at which the follower first
+    /// leaves the cam].
     #[arg(long, value_name = "R|LO:HI[:N]", value_parser = speeds, allow_hyphen_values = true)]
     rpm: Option<Speeds>,
-    /// A number of the model that varies: from where to where, at how many values, and whether these are spaced by their logarithm. The table of
-    /// forces and loads goes over it at the one speed of --rpm; with --need, a table has what each need takes at each of its
-    /// values, and --rpm may be left out.
+    /// Number of the model to vary: its lowest and highest value, and the number of values. `:log` spaces them logarithmically. The table has the forces and
+    /// loads at each value, at the one speed of --rpm. With --need, a table has what each need takes at each value, and --rpm may be left out.
     #[arg(long, value_name = "NAME=LO:HI[:N][:log]", value_parser = axis, alias = "against", allow_hyphen_values = true)]
     over: Option<NamedSpan>,
-    /// Values of a range of which no number is written.
+    /// Number of values in a range that is written without one.
     #[arg(long, value_name = "N", default_value_t = 21, value_parser = clap::value_parser!(u32).range(2..=10_000))]
     speeds: u32,
-    /// A requirement: "no separation to 4500 rpm", "impact speed below 0.5 m/s to 6000 rpm"; also gap and energy (may
-    /// be repeated).
+    /// Requirement (repeatable), such as "no separation to 4500 rpm" or "impact speed below 0.5 m/s to 6000 rpm". Gap and energy can take the place of impact speed.
     #[arg(long, value_name = "TEXT", value_parser = need)]
     need: Vec<(String, Need)>,
-    /// Tell where a load is first more than this, in the units of the model or one that is named: impact-speed=0.5m/s; also gap, energy and force (may
-    /// be repeated).
+    /// Find where a load first exceeds VALUE (repeatable). NAME is impact-speed, gap, energy or force. The unit is the model's, or the one that you write:
+    /// impact-speed=0.5m/s.
     #[arg(long, value_name = "NAME=VALUE", value_parser = limit)]
     limit: Vec<(Load, f64, Option<f64>)>,
     #[command(flatten)]
@@ -72,7 +70,7 @@ fn need(text: &str) -> Result<(String, Need), String> {
 
 /// A load, what it may be at most, and what the unit is of the SI's where one is named.
 fn limit(text: &str) -> Result<(Load, f64, Option<f64>), String> {
-    let (name, value) = text.split_once('=').ok_or("must be NAME=VALUE: a load, and what it may be at most")?;
+    let (name, value) = text.split_once('=').ok_or("must be NAME=VALUE: a load and its limit")?;
     let load = load(name.trim())?;
     let unit = Some(parted(value).1).filter(|unit| !unit.is_empty() && !unit.starts_with(','));
     let number = finite(value, unit.unwrap_or_default())?;

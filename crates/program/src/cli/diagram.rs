@@ -23,7 +23,7 @@ use corner_impact::study::design::loads::Load;
 use corner_impact::study::diagram::{self as swept, Swept, on_attractors};
 use corner_impact::study::survey::{Beginning, Counted, Growth, Places, Section, Survey, Sweep, SweepStart, growth};
 
-/// Sweeps over speeds or a number: what the motion settles on.
+/// Sweeps over speeds or another number, and records what the motion settles on.
 ///
 /// The result is a table or a picture.
 #[derive(clap::Args)]
@@ -36,43 +36,43 @@ use corner_impact::study::survey::{Beginning, Counted, Growth, Places, Section, 
 pub(super) struct Arguments {
     #[command(flatten)]
     model: ModelArgument,
-    /// Lowest speed, highest speed, and how many [default: 400]; with --over the one speed.
+    /// Lowest speed, highest speed and number of speeds [default: 400]; with --over, the one speed.
     #[arg(long, value_name = "LO:HI[:N]|R", value_parser = speeds, allow_hyphen_values = true)]
     rpm: Option<Speeds>,
-    /// A number of the model to go over in place of the speed: from where to where, at how many values, and whether these are spaced by their logarithm.
+    /// Number of the model to vary in place of the speed: its lowest and highest value, and the number of values [default: 400]. `:log` spaces them logarithmically.
     #[arg(long, value_name = "NAME=LO:HI[:N][:log]", value_parser = axis, allow_hyphen_values = true)]
     over: Option<NamedSpan>,
     #[command(flatten)]
     budget: BudgetArguments,
-    /// Record what happens at the cam, or the state at one cam angle.
+    /// Record the events on the cam (impact), or the state at one cam angle (strobe).
     #[arg(long, value_enum, default_value = "impact")]
     section: SectionName,
-    /// That angle, rad or as 90deg [default: 0].
+    /// Cam angle of --section strobe, in rad or as 90deg [default: 0].
     #[arg(long, value_name = "RAD", value_parser = angle, allow_hyphen_values = true)]
     strobe: Option<f64>,
-    /// Start of each value: the same for all, or on from the next lower (up) or next higher one (down), on one thread.
+    /// Start at each value: the same for all (fixed), or the end of the run at the next lower value (up) or at the next higher value (down). up and down use one thread.
     #[arg(long = "start", value_enum, default_value = "fixed")]
     following: FollowingName,
-    /// Record each attractor: those that 64 starts, or those of --state, come to at a value, from a point on the attractor. They are found as by `speeds`.
+    /// Record every attractor that is found, each from a point on it. As in `speeds`, the search runs 64 starts at each value, or those of --state.
     #[arg(long, conflicts_with = "following")]
     attractors: bool,
     #[command(flatten)]
     start: StartArguments,
-    /// A table (.csv, or - for standard output) or a picture (.svg, .png, .pdf).
+    /// Write a table (.csv, or - for standard output) or a picture (.svg, .png, .pdf).
     #[arg(long, value_name = "FILE", value_parser = picture::picture_or_table, group = "picture")]
     out: Option<PathBuf>,
     #[command(flatten)]
     picture: picture::PictureArguments,
-    /// Write one row a value: what the run comes to, its period, impacts, growth and fastest impact, as in `chart`.
+    /// Write one row for each value, as `chart` does: the kind of motion, its period, impacts, growth rate and fastest impact.
     #[arg(long, requires = "out", conflicts_with_all = ["attractors", "following", "section", "strobe", "lyapunov", "json"])]
     one_row: bool,
-    /// Show a load of each revolution that is recorded: the fastest impact, the largest gap, the energy that impacts take, or the largest
-    /// contact force; a table has all of them.
+    /// Show a load of each recorded revolution: the fastest impact, the largest gap, the energy lost in impacts, or the largest contact force. A table has
+    /// all of them.
     #[arg(long, value_name = "LOAD", value_parser = load, requires = "out",
         conflicts_with_all = ["attractors", "following", "section", "strobe", "lyapunov", "json", "one_row"])]
     show: Option<Load>,
-    /// Add the Lyapunov exponent of each value, per revolution, and its error: two columns, or a second panel. Of a motion that
-    /// repeats it is that of its multipliers; -inf where the follower came to stick to the cam, be it once.
+    /// Add the Lyapunov exponent per revolution and its error at each value: two columns, or a second panel. For a motion that repeats, it follows from the
+    /// multipliers. It is -inf where the follower stuck to the cam at least once.
     #[arg(long, requires = "out")]
     lyapunov: bool,
     #[command(flatten)]
@@ -101,7 +101,7 @@ enum FollowingName {
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
     let to_standard = picture::out_is_standard(arguments.out.as_ref(), arguments.answer.json)?;
     if arguments.strobe.is_some() && matches!(arguments.section, SectionName::Impact) {
-        return Err(CommandError::Words("--strobe is the angle of --section strobe, which is not there".into()));
+        return Err(CommandError::Words("--strobe is the angle of --section strobe: give both or neither".into()));
     }
     let model = arguments.model.read_as_drawn(session)?;
     arguments.start.doubt(session);
@@ -218,7 +218,7 @@ fn one_row(arguments: &Arguments, survey: &Survey, session: &mut Session<'_>) ->
         .map(|path| Target::create(path, &mut *session.out, arguments.picture.request()?))
         .transpose()?
     else {
-        return Err(CommandError::Words("--one-row is a table: --out must end in .csv or be -".into()));
+        return Err(CommandError::Words("--one-row writes a table: --out must end in .csv or be -".into()));
     };
     let (start, threads) = (arguments.start.start()?, session.threads);
     let budget = arguments.budget.budget(Budget::CHART)?;

@@ -9,9 +9,9 @@ use crate::show::block::{Block, words};
 use corner_impact::command::shell_word;
 use corner_impact::study::verify::{External, verify_watched};
 
-/// Says what a name stands for, with its formula and evidence.
+/// Explains a name, with its formula and evidence.
 ///
-/// The page has the inputs of the formula, its value by every route, how it is known, and where it is computed, proved and tested.
+/// The page has the inputs of the formula, its value by every route and the kind of evidence. It names the code, the proof and the tests.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n\
     \x20 corner-impact explain B_minus\n\
@@ -21,14 +21,14 @@ use corner_impact::study::verify::{External, verify_watched};
     \n\
     WHAT is a number as `verify` names it, a label or a claim of the paper, a tolerance, a field of the model, or a column of \
     a file.\n\
-    Exit code: 0 it is known, 2 bad model file or nothing of that name.")]
+    Exit code: 0 done, 2 bad model file or unknown name.")]
 pub(super) struct Arguments {
-    /// The name: B_minus, eq:PT, feigin, CAM_JUMP, growth_rate, follower.mass.
+    /// Name to explain, such as B_minus, eq:PT, feigin, CAM_JUMP, growth_rate or follower.mass.
     #[arg(required_unless_present = "list")]
     what: Option<String>,
     #[command(flatten)]
     model: ModelArgument,
-    /// List every name with what it stands for.
+    /// List every name with its meaning.
     #[arg(long, conflicts_with_all = ["what", "json"])]
     list: bool,
     #[command(flatten)]

@@ -5,10 +5,10 @@ use corner_impact::study::verify::External;
 /// Routes in Python (symbolic, scipy, certificate): they run unless this says otherwise, and the result says which were left out.
 #[derive(clap::Args)]
 pub(super) struct ExternalArguments {
-    /// Run the routes that need Python, as usual.
+    /// Run the routes that need Python; this is the default.
     #[arg(long, overrides_with = "no_external")]
     external: bool,
-    /// Leave out the routes that need Python (symbolic, scipy, certificate), and say so.
+    /// Leave out the routes that need Python (symbolic, scipy, certificate). The result lists them as left out.
     #[arg(long)]
     no_external: bool,
 }

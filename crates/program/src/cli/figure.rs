@@ -23,17 +23,17 @@ use corner_impact::untrusted;
     \x20 corner-impact figure fast-impacts --out fast-impacts.svg\n\
     \x20 corner-impact figure models/damped-heavy.toml composition --out composition.png\n\
     \n\
-    Exit code: 0 done, 2 bad model file, usage or file, or a figure that the model has not.")]
+    Exit code: 0 done, 2 bad model file, usage or file, or a figure that this model does not have.")]
 pub(super) struct Arguments {
-    /// Model file (TOML) [default: the paper's], then the figure to draw, from the list; a name with a dot or a slash is a file.
+    /// Model file (TOML) [default: the paper's model], then the name of the figure to draw. A word with a dot or a slash is a file.
     #[arg(value_name = "MODEL] [ID", num_args = 0..=2)]
     words: Vec<String>,
     #[command(flatten)]
     changes: Changes,
-    /// Speeds of the figures that are of no corner impact [default: the machine's own].
+    /// Range of speeds of the figures that need no corner impact [default: chosen for the machine].
     #[arg(long, value_name = "LO:HI", value_parser = rpm_range, allow_hyphen_values = true)]
     rpm: Option<[f64; 2]>,
-    /// The picture (.svg, .png or .pdf).
+    /// Write the picture (.svg, .png or .pdf).
     #[arg(long, value_name = "FILE", value_parser = picture::picture, group = "picture")]
     out: Option<PathBuf>,
     #[command(flatten)]
@@ -67,7 +67,7 @@ fn named(words: &[String]) -> Result<(Option<&str>, Option<&str>), CommandError>
         [word] if is_file_name(word) => Ok((Some(word), None)),
         [word] => Ok((None, Some(word))),
         [model, id] => Ok((Some(model), Some(id))),
-        _ => Err(CommandError::Words("at most a model file and a figure".into())),
+        _ => Err(CommandError::Words("too many words: give a model file and a figure at most".into())),
     }
 }
 
@@ -85,13 +85,15 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let (file, id) = named(&arguments.words)?;
     let model = ModelArgument::of(file.map(Path::new), &arguments.changes).read_as_drawn(session)?;
     if id.is_none() && arguments.out.is_some() {
-        return Err(CommandError::Words("--out is for one figure: name it, from the list without --out".into()));
+        return Err(CommandError::Words(
+            "--out writes one figure: add its name; `corner-impact figure` lists the names".into(),
+        ));
     }
     let entry = id.map(entry).transpose()?;
     if let (Some(Entry { id, takes_rpm: false, .. }), Some([low, high])) = (entry, arguments.rpm) {
         let others: Vec<&str> = FIGURES.iter().filter(|entry| entry.takes_rpm).map(|entry| entry.id).collect();
         return Err(CommandError::Words(format!(
-            "{id} has speeds of its own: --rpm is of {}; `diagram --rpm {low}:{high} --out FILE.svg` draws impacts at others",
+            "{id} has fixed speeds: --rpm is for {}; `diagram --rpm {low}:{high} --out FILE.svg` draws impacts at other speeds",
             others.join(", ")
         )));
     }

@@ -19,15 +19,26 @@ const STYLES: Styles = Styles::styled()
 
 /// Commands for a first try, at the end of the help.
 const EXAMPLES: &str = "Examples:
-  corner-impact new my-machine.toml        begin a model file of your own
-  corner-impact models/osorio-2008.toml    what can be done with a model
+  corner-impact new my-machine.toml        write a model file to start from
+  corner-impact models/osorio-2008.toml    list what you can do with a model
   corner-impact verify --no-external       check the paper's model, which is built in
 
-`corner-impact COMMAND --help` has examples for each; where they name models/, they are run from the project's folder.";
+`corner-impact COMMAND --help` has examples of each command. Examples that name models/ run in the project's folder.";
 
 /// The command line as it is, in letters alone.
 pub(super) fn plain() -> Command {
-    Arguments::command().after_help(EXAMPLES)
+    whole().after_help(EXAMPLES)
+}
+
+/// The command line, with a full stop behind texts of several sentences, which clap takes away.
+fn whole() -> Command {
+    let stopped = |argument: Arg| {
+        let help = argument.get_help().map(ToString::to_string).unwrap_or_default();
+        if help.contains(". ") && !help.ends_with('.') { argument.help(format!("{help}.")) } else { argument }
+    };
+    let command = Arguments::command();
+    let names: Vec<String> = command.get_subcommands().map(|sub| sub.get_name().to_owned()).collect();
+    names.into_iter().fold(command, |command, name| command.mut_subcommand(name, |sub| sub.mut_args(stopped)))
 }
 
 /// The options that `-h` has, by their fields; `--help` has all.
@@ -67,7 +78,7 @@ const ESSENTIAL: &[&str] = &[
 
 /// The command line, laid out for so many columns: all of it, or what `-h` shows.
 pub(super) fn command(width: usize, is_short: bool) -> Command {
-    let mut command = Arguments::command().styles(STYLES).term_width(width).max_term_width(width);
+    let mut command = whole().styles(STYLES).term_width(width).max_term_width(width);
     let template = if is_short { brief(&command, width) } else { template(&command, width) };
     if is_short {
         command = ["color", "threads"]
@@ -94,7 +105,7 @@ pub(super) fn is_short(words: &[OsString]) -> bool {
     words.iter().skip(1).take_while(|word| *word != "--").any(|word| word == "-h")
 }
 
-const MORE: &str = "`corner-impact MODEL` says what can be done with a model; `corner-impact COMMAND --help` has all options and more examples.";
+const MORE: &str = "`corner-impact MODEL` lists what you can do with a model. `corner-impact COMMAND --help` has all options and more examples.";
 
 /// A command as `-h` shows it: the options that most people need, each in a few words, and two examples.
 fn shortened(sub: Command, name: &str, after: &str) -> Command {

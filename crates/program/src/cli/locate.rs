@@ -8,20 +8,20 @@ use corner_impact::study::locate::{LocateRangeError, locate};
 
 /// Lists the speeds at which an orbit hits a corner of the cam.
 ///
-/// Each has the map on both sides of the corner and the type of the bifurcation.
+/// Each speed has the map on both sides of the corner and the type of the bifurcation.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n\
     \x20 corner-impact locate --rpm 600:760\n\
     \x20 corner-impact locate models/osorio-2008.toml --rpm 600:760 --revolutions 2 --json\n\
     \n\
-    Exit code: 0 done and the routes agree, 1 routes disagree at a corner impact, 2 bad model file or usage.")]
+    Exit code: 0 the routes agree, 1 routes disagree at a corner impact, 2 bad model file or usage.")]
 pub(super) struct Arguments {
     #[command(flatten)]
     model: ModelArgument,
     /// Range of speeds, rpm.
     #[arg(long, value_name = "LO:HI", value_parser = study)]
     rpm: Study,
-    /// Turns of the cam after which the orbits repeat, and no fewer.
+    /// Revolutions of the cam after which the orbits first repeat.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=Search::MOST_REVOLUTIONS))]
     revolutions: u64,
     #[command(flatten)]

@@ -15,10 +15,10 @@ use corner_impact::file::Output;
     \x20 corner-impact man\n\
     \x20 corner-impact man --out man1\n\
     \n\
-    `man -l man1/corner-impact.1` shows a page; in ~/.local/share/man/man1 they are found by name.\n\
+    `man -l man1/corner-impact.1` shows a page. In ~/.local/share/man/man1, `man` finds pages by name.\n\
     Exit code: 0 done, 2 bad usage or a file that cannot be written.")]
 pub(super) struct Arguments {
-    /// Folder for the pages, which is made if it is not there [default: the program's page, on standard output].
+    /// Folder for the pages; it is created if it does not exist [default: print the program's page].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 }

@@ -68,19 +68,19 @@ pub enum Exit {
     BadInput = 2,
 }
 
-/// Motions of a follower on a cam: separation, impacts, chaos, and the corner-impact bifurcation, proved by independent routes.
+/// Computes separation, impacts and chaos of cam followers, and verifies the corner-impact bifurcation by independent routes.
 #[derive(Parser)]
 #[command(name = "corner-impact", bin_name = "corner-impact", version)]
 struct Arguments {
     #[command(subcommand)]
     command: Command,
-    /// Whether pages, complaints and help are coloured.
+    /// When to colour pages, errors and help.
     #[arg(long, global = true, value_enum, value_name = "WHEN", default_value = "auto")]
     color: ColorChoice,
-    /// Print results and errors alone: no notes, progress or `next:`.
+    /// Print only results and errors: no notes, progress or `next:`.
     #[arg(long, short, global = true)]
     quiet: bool,
-    /// Threads that share the work [default: RAYON_NUM_THREADS, or one for each core].
+    /// Number of threads that share the work [default: RAYON_NUM_THREADS, or one per core].
     #[arg(long, global = true, value_name = "N", value_parser = threads::threads, allow_hyphen_values = true)]
     threads: Option<usize>,
 }

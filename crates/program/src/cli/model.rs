@@ -25,7 +25,7 @@ pub(super) struct ModelArgument {
 /// Which numbers of the model are others than in its file.
 #[derive(clap::Args, Clone, Default)]
 pub(super) struct Changes {
-    /// Take VALUE for a number of the model: restitution=0.7, a whole path, follower.mass=2, or an error, mass.error=0.1 (may be repeated).
+    /// Set a number of the model to VALUE (repeatable). NAME is a number such as restitution, its full path such as follower.mass, or its error such as mass.error.
     #[arg(long = "set", value_name = "NAME=VALUE", value_parser = change)]
     numbers: Vec<Change>,
     #[command(flatten)]
@@ -33,7 +33,7 @@ pub(super) struct Changes {
 }
 
 /// The heading of these options in `--help`.
-const FOLLOWER: &str = "The follower (mass, stiffness and preload beside a table)";
+const FOLLOWER: &str = "Follower (a table needs mass, stiffness and preload)";
 
 /// A number of the follower that has an option of its own.
 struct FollowerOption {
@@ -75,9 +75,9 @@ impl clap::Args for FollowerNumbers {
             let meaning = ModelNumber::of(&option.path()).map_or("", |number| number.meaning);
             let help = match option.unit {
                 "" => format!("Set the {meaning}"),
-                unit => {
-                    format!("Set the {meaning}, in the model's unit (beside a table of lifts {unit}) or with its own")
-                }
+                unit => format!(
+                    "Set the {meaning}. The unit is the model's, or {unit} for a table of lifts, unless you write one"
+                ),
             };
             let arg = Arg::new(option.name).long(option.name).value_name("VALUE").help(help);
             command.arg(arg.help_heading(FOLLOWER).allow_hyphen_values(true))
@@ -153,14 +153,13 @@ fn error_of(name: &str) -> Option<&str> {
 
 /// `NAME=VALUE`.
 fn change(text: &str) -> Result<Change, String> {
-    let (name, number) =
-        text.split_once('=').ok_or("must be NAME=VALUE: a number of the model, and what it is to be")?;
+    let (name, number) = text.split_once('=').ok_or("must be NAME=VALUE: a number of the model and its new value")?;
     number_of(name, number).map_err(|words| match name.trim().rsplit('.').next() {
         _ if number.contains(|letter: char| letter.is_ascii_digit()) => words,
         Some("contact") => {
-            format!("{words}: NAME=VALUE changes numbers; contact stands under [cam] in the file, as {CONTACTS}")
+            format!("{words}: NAME=VALUE changes only numbers; change contact in the file, under [cam]: {CONTACTS}")
         }
-        _ => format!("{words}: NAME=VALUE changes numbers; words stand in the file"),
+        _ => format!("{words}: NAME=VALUE changes only numbers; change words in the file"),
     })
 }
 
@@ -200,7 +199,7 @@ impl Change {
 fn missing(path: &Path) -> Result<(), CommandError> {
     let shown = path.display();
     if path.is_dir() {
-        return Err(CommandError::Words(format!("{shown}: cannot be read: it is a folder, and a model is one file")));
+        return Err(CommandError::Words(format!("{shown}: cannot be read: it is a folder, not a model file")));
     }
     if path.exists() {
         return Ok(());
@@ -208,7 +207,7 @@ fn missing(path: &Path) -> Result<(), CommandError> {
     let word = path.to_string_lossy();
     if super::Arguments::command().find_subcommand(&*word).is_some() || word == "help" {
         return Err(CommandError::Words(format!(
-            "{shown} is not a model: the command comes first, and `--help` after it explains it"
+            "{shown} is not a model: the command comes first; `corner-impact COMMAND --help` explains a command"
         )));
     }
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
@@ -257,7 +256,8 @@ impl ModelArgument {
         let set = values.map(|change| Parameter::named(model, &change.name));
         if set.collect::<Result<Vec<_>, _>>()?.contains(&parameter) {
             let name = parameter.name();
-            let words = format!("--set {name}: no point would have that value, as {option} goes through others");
+            let words =
+                format!("--set {name}: {option} varies this number, so no point would use the value; drop one of them");
             return Err(CommandError::Words(words));
         }
         Ok(parameter)
@@ -283,7 +283,7 @@ impl ModelArgument {
                 let text = assumed(path, &mut changes, needs_follower)?;
                 let file = path.with_extension("toml");
                 session.note(&format!(
-                    "no model file: this one is assumed; save it as {} to change it\n{text}",
+                    "there is no model file, so this one is assumed; save it as {} to change it\n{text}",
                     file.display()
                 ));
                 // The assumed model is in no file of that name.
@@ -291,8 +291,8 @@ impl ModelArgument {
                     let names_field = error.to_string().contains("in [cam]");
                     let law = if error.to_string().contains("law = \"contour\"") { "contour" } else { "table" };
                     let words = format!(
-                        "; there is no model file yet: `corner-impact new --law {law} my-machine.toml` writes one, and file = \"{}\" in it \
-                         names this table",
+                        "; there is no model file yet: `corner-impact new --law {law} my-machine.toml` writes one; name this table \
+                         in it by file = \"{}\"",
                         path.file_name().unwrap_or_default().display()
                     );
                     let table = path.display().to_string();

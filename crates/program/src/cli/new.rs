@@ -12,22 +12,22 @@ use corner_impact::model::{ModelTemplate, TEMPLATE_NAME, TEMPLATES};
 
 /// Writes a commented model file to start from.
 ///
-/// Every field has its unit and what it may be.
+/// Every field has a comment with its unit and allowed values.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n\
     \x20 corner-impact new my-machine.toml\n\
     \x20 corner-impact new --law program\n\
     \n\
-    Every file that it writes loads as it stands; `verify` takes those of arcs, program and polynomial.\n\
-    Exit code: 0 done, 2 bad usage, or a file that is there already or cannot be written.")]
+    Every file loads without changes. `verify` takes the laws arcs, program and polynomial.\n\
+    Exit code: 0 done, 2 bad usage, or a file that exists already or cannot be written.")]
 pub(super) struct Arguments {
-    /// The file to write; - is standard output.
+    /// File to write; - is standard output.
     #[arg(value_name = "FILE", default_value = "-")]
     file: PathBuf,
-    /// How the cam's lift is written down.
+    /// Law of the cam's lift.
     #[arg(long, default_value = "arcs", value_parser = PossibleValuesParser::new(TEMPLATES.iter().map(|template| template.law)))]
     law: String,
-    /// Write over a file that is there.
+    /// Overwrite an existing file.
     #[arg(long)]
     force: bool,
 }
@@ -39,7 +39,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     if path.as_os_str() == "-" {
         session.print(&law.text())?;
         if let Some((table, _)) = law.table {
-            session.note(&format!("{table} is not written: give a FILE to have it beside the model"));
+            session.note(&format!("{table} is not written: give a FILE, and the table is written beside the model"));
         }
         return Ok(Exit::Agrees);
     }
@@ -56,7 +56,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let mut files: Vec<(&Path, &str)> = vec![(path, &text)];
     files.extend(beside.iter().map(|(path, rows)| (&**path, *rows)));
     if let Some((there, _)) = files.iter().find(|(path, _)| path.is_file()).filter(|_| !arguments.force) {
-        let words = format!("{}: is there already; --force writes over it", there.display());
+        let words = format!("{}: the file exists already; --force overwrites it", there.display());
         return Err(CommandError::Words(words));
     }
     file::distinct(["the model", "its table"].into_iter().zip(files.iter().map(|(path, _)| *path)))?;

@@ -101,7 +101,7 @@ impl Span {
     fn bare(self) -> Result<[f64; 2], String> {
         match (self.count, self.spacing) {
             (None, Spacing::Linear) => Ok(self.ends),
-            _ => Err("has a number of values, and this command takes a range alone: LO:HI".into()),
+            _ => Err("has a number of values, but this command takes only a range: LO:HI".into()),
         }
     }
 }
@@ -116,14 +116,14 @@ fn span(text: &str, number: fn(&str) -> Result<f64, String>, what: &str) -> Resu
         [low, high, count, spacing] => (low, high, Some(count), Some(spacing)),
         _ => {
             return Err(format!(
-                "must be LO:HI: lowest and highest {what}; then :N, how many, and :log for a logarithmic axis"
+                "must be LO:HI, the lowest and highest {what}; after it may follow :N, their number, and :log, logarithmic spacing"
             ));
         }
     };
     let spacing = match spacing.map(|word| word.trim()) {
         None => Spacing::Linear,
         Some("log") => Spacing::Logarithmic,
-        Some(other) => return Err(format!("\"{}\" is no spacing: it can only be log", untrusted::value(other))),
+        Some(other) => return Err(format!("\"{}\" is not a spacing: it can only be log", untrusted::value(other))),
     };
     let ends = [number(low)?, number(high)?];
     let count = count.map(|count| {
@@ -185,7 +185,7 @@ pub(super) fn rpm(text: &str) -> Result<f64, String> {
     match speeds(text)? {
         Speeds::One(rpm) => Ok(rpm),
         Speeds::Span(_) => {
-            Err("is a range, and this command takes one speed: R; `speeds` and `diagram` take a range".into())
+            Err("is a range, but this command takes one speed: R; `speeds` and `diagram` take a range".into())
         }
     }
 }
@@ -194,7 +194,7 @@ pub(super) fn rpm(text: &str) -> Result<f64, String> {
 pub(super) fn rpm_range(text: &str) -> Result<[f64; 2], String> {
     match speeds(text)? {
         Speeds::One(_) => {
-            Err("is one speed, and this command takes a range: LO:HI; `simulate` and `orbit` take one speed".into())
+            Err("is one speed, but this command takes a range: LO:HI; `simulate` and `orbit` take one speed".into())
         }
         Speeds::Span(span) => span.bare(),
     }
@@ -215,7 +215,8 @@ pub(super) type NamedSpan = (String, Span);
 pub(super) fn axis(text: &str) -> Result<NamedSpan, String> {
     let Some((name, values)) = text.split_once('=') else {
         return Err(
-            "must be NAME=LO:HI: what changes, and from where to where; then :N, at how many values, and :log".into()
+            "must be NAME=LO:HI, a number with its lowest and highest value; after it may follow :N, the number of values, and :log"
+                .into()
         );
     };
     let name = name.trim();
@@ -226,7 +227,7 @@ pub(super) fn axis(text: &str) -> Result<NamedSpan, String> {
 /// An axis of a command that chooses its own values.
 pub(super) fn followed(text: &str) -> Result<(String, [f64; 2]), String> {
     if !text.contains(':') {
-        return Err("must be NAME=LO:HI: what changes, and from where to where".into());
+        return Err("must be NAME=LO:HI, a number with its lowest and highest value".into());
     }
     let (name, span) = axis(text)?;
     Ok((name, span.bare()?))

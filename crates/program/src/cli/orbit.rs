@@ -9,28 +9,28 @@ use corner_impact::study::orbit::{OrbitQuery, orbits};
 
 /// Finds periodic orbits at one speed, with their multipliers.
 ///
-/// Stable and unstable ones.
+/// The orbits may be stable or unstable.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n\
     \x20 corner-impact orbit --rpm 680\n\
     \x20 corner-impact orbit models/osorio-2008.toml --rpm 745 --revolutions 2 --json\n\
     \n\
-    Orbits of one impact, and of two in one revolution, are proved to be all, but for impacts at angles that are told; others \
-    are found by a search from many starts, which may miss some.\n\
-    Exit code: 0 done, also where there is none, 2 bad model file or usage.")]
+    The list of orbits of one impact, and of two in one revolution, is proved to be complete, except for impacts at the angles that \
+    the page names. Other orbits come from a search from many starts, which may miss some.\n\
+    Exit code: 0 done, also if there is no orbit, 2 bad model file or usage.")]
 pub(super) struct Arguments {
     #[command(flatten)]
     model: ModelArgument,
-    /// Speed of the cam.
+    /// Speed of the cam, rpm.
     #[arg(long, value_name = "R", value_parser = rpm, allow_hyphen_values = true)]
     rpm: f64,
-    /// Turns of the cam in one period.
+    /// Revolutions of the cam in one period.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=Search::MOST_REVOLUTIONS))]
     revolutions: u64,
     /// Impacts in one period [default: any number].
     #[arg(long, value_name = "M")]
     impacts: Option<usize>,
-    /// Only the orbit that Newton's method finds from this state at cam angle 0: position and velocity, in the model's units.
+    /// Find only the orbit to which Newton's method converges from this state at cam angle 0: position and velocity, in the model's units.
     #[arg(long, value_name = "Q,V", value_parser = state, allow_hyphen_values = true, conflicts_with = "impacts")]
     guess: Option<State>,
     #[command(flatten)]

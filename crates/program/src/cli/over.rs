@@ -24,7 +24,7 @@ pub(super) fn varied(
         }
         (Some(Speeds::Span(span)), None) => Ok((None, Some((Parameter::Speed.name().into(), span)))),
         (Some(Speeds::One(rpm)), None) => Err(CommandError::Words(format!(
-            "--rpm {rpm} is one speed: --rpm LO:HI is a range of speeds, --over NAME=LO:HI is what varies at this one, and `simulate` runs at it alone"
+            "--rpm {rpm} is one speed: give a range, --rpm LO:HI, or add --over NAME=LO:HI to vary a number at this speed; `simulate` runs at one speed"
         ))),
         (Some(Speeds::One(rpm)), Some(over)) => Ok((Some(rpm), Some(over.clone()))),
         (None, over) => Ok((None, over.cloned())),
@@ -39,7 +39,7 @@ pub(super) fn over(
     usual: usize,
 ) -> Result<(Option<f64>, Axis), CommandError> {
     let (rpm, Some((name, span))) = varied(rpm, over)? else {
-        return Err(CommandError::Words("--rpm LO:HI, or --over NAME=LO:HI, says what varies".into()));
+        return Err(CommandError::Words("nothing varies: give --rpm LO:HI or --over NAME=LO:HI".into()));
     };
     Ok((rpm, Axis::new(argument.varied(model, &name, "--over")?, &span.values(usual))))
 }

@@ -23,25 +23,25 @@ const LOOKS: &str = "How a picture looks";
 /// How pictures stand on paper.
 #[derive(clap::Args)]
 pub(super) struct LookArguments {
-    /// Width on paper, such as 85mm, 8.5cm, 3.35in or 240pt [default: that of what an SVG stands in, 169mm on paper].
+    /// Width on paper, such as 85mm, 8.5cm, 3.35in or 240pt [default: 169mm on paper; an SVG fills its place on a page].
     #[arg(long, value_name = "WIDTH", value_parser = length, requires = "picture", help_heading = LOOKS)]
     width: Option<f64>,
-    /// Height of the letters on paper, such as 8pt [default: 8.3pt in a figure 169mm wide, and in proportion].
+    /// Height of the letters on paper, such as 8pt [default: 8.3pt at a width of 169mm, in proportion at others].
     #[arg(long, value_name = "SIZE", value_parser = length, requires = "picture", help_heading = LOOKS)]
     size: Option<f64>,
-    /// The letters: a font that is installed, or the file of one (.ttf, .otf); they come with the picture [default: the program's own].
+    /// Font of the letters: an installed font, or a font file (.ttf, .otf). The picture contains the letters [default: the program's own font].
     #[arg(long, value_name = "FONT", requires = "picture", help_heading = LOOKS)]
     font: Option<String>,
-    /// Write the figure's own title above it, or TEXT [default: the figure's own, and none where --width is given].
+    /// Write a title above the figure: TEXT, or the figure's own [default: the figure's own; none with --width].
     #[arg(long, value_name = "TEXT", num_args = 0..=1, require_equals = true, default_missing_value = "", requires = "picture", help_heading = LOOKS)]
     title: Option<String>,
     /// Leave out the title.
     #[arg(long, conflicts_with = "title", requires = "picture", help_heading = LOOKS)]
     no_title: bool,
-    /// Place of the legend: none, above each frame, below the figure, or right of it [default: above].
+    /// Place of the legend: none, above (each frame), below (the figure) or right (of it) [default: above].
     #[arg(long, value_name = "PLACE", value_parser = LegendPlace::named, requires = "picture", help_heading = LOOKS)]
     legend: Option<LegendPlace>,
-    /// A screen that may be dark, or white paper; PNG and PDF are white on both.
+    /// Colours for a screen that may be dark, or for white paper. PNG and PDF are always white.
     #[arg(long, value_enum, value_name = "THEME", requires = "picture", help_heading = LOOKS)]
     theme: Option<ThemeName>,
 }
@@ -57,19 +57,19 @@ enum ThemeName {
 pub(super) struct PictureArguments {
     #[command(flatten)]
     look: LookArguments,
-    /// Height on paper, such as 60mm [default: what the panels take].
+    /// Height on paper, such as 60mm [default: the height that the panels need].
     #[arg(long, value_name = "HEIGHT", value_parser = length, requires = "picture", help_heading = LOOKS)]
     height: Option<f64>,
     /// Ends of the horizontal axis, in its unit.
     #[arg(long, value_name = "LO:HI", value_parser = range, allow_hyphen_values = true, requires = "picture", help_heading = LOOKS)]
     x_range: Option<[f64; 2]>,
-    /// Ends of the vertical axis, in its unit: of the first panel, where there are more; the others keep theirs.
+    /// Ends of the vertical axis, in its unit. Of several panels, only the first changes.
     #[arg(long, value_name = "LO:HI", value_parser = range, allow_hyphen_values = true, requires = "picture", help_heading = LOOKS)]
     y_range: Option<[f64; 2]>,
-    /// Write a Python script that draws the same figure with matplotlib, and its data beside it: a file of the same name that ends in .csv.
+    /// Write a Python script that draws the same figure with matplotlib. Its data go to a file of the same name that ends in .csv.
     #[arg(long, value_name = "FILE", value_parser = script, requires = "picture", help_heading = LOOKS)]
     script: Option<PathBuf>,
-    /// Open the file once it is written.
+    /// Open the file after writing it.
     #[arg(long, requires = "picture", help_heading = LOOKS)]
     open: bool,
 }
@@ -260,8 +260,8 @@ impl<'a> Target<'a> {
         Ok(match kind(path) {
             Some(_) => Self::Picture(Box::new(Canvas::create(path, request)?)),
             None if request.look.is_some() || request.script.is_some() => {
-                let words = "--width, --height, --size, --font, --title, --no-title, --legend, --theme, --x-range, --y-range and --script are of \
-                             pictures: the name must end in .svg, .png or .pdf";
+                let words = "--width, --height, --size, --font, --title, --no-title, --legend, --theme, --x-range, --y-range and --script are for \
+                             pictures: --out must end in .svg, .png or .pdf";
                 return Err(CommandError::Words(words.into()));
             }
             None => Self::Table(Output::create(path, standard)?),

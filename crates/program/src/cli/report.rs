@@ -15,34 +15,34 @@ use corner_impact::file::Output;
 use corner_impact::json;
 use corner_impact::model::{Model, ModelError};
 
-/// Writes all about a model as one HTML page.
+/// Writes all results for a model as one HTML page.
 ///
-/// The page opens from disk.
+/// A browser opens the page from disk.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n\
     \x20 corner-impact report\n\
     \x20 corner-impact report models/sharp-nose.toml --rpm 200:300 --out page.html\n\
     \n\
-    The page needs no network and no other file; its name is printed. It opens with the answer: where the follower\n\
-    separates from the cam, how hard it hits, where motions coexist, what is proved.\n\
-    Each figure has the command below it that writes it alone. `corner-impact figure`, `speeds` and `design` take --height and --script.\n\
+    The page needs no network and no other file. The program prints its name.\n\
+    It begins with the answer: where the follower separates from the cam, how hard it hits, where motions coexist, what is proved.\n\
+    Below each figure is the command that writes it alone. `corner-impact figure`, `speeds` and `design` take --height and --script.\n\
     Exit code: 0 everything checked agrees, 1 something disagrees, 2 bad model file, usage or file.")]
 pub(super) struct Arguments {
     #[command(flatten)]
     model: ModelArgument,
-    /// The page [default: the model file's name with -report.html, in this folder]; - for standard output.
+    /// File of the page; - is standard output [default: the model file's name with -report.html, in this folder].
     #[arg(long, value_name = "FILE", value_parser = page, group = "picture")]
     out: Option<PathBuf>,
     #[command(flatten)]
     look: LookArguments,
-    /// Print one JSON document instead; the page only where --out names it.
+    /// Print one JSON document. The page is then written only if --out names it.
     #[arg(long)]
     json: bool,
-    /// Open the page once it is written.
+    /// Open the page after writing it.
     #[arg(long, conflicts_with = "json")]
     open: bool,
-    /// Lowest and highest speed that the answer is about [default: from below where the follower first leaves the cam up to the end of
-    /// the model's [study], or to twice that speed, or twice that of its spring where it stays on the cam].
+    /// Lowest and highest speed of the answer [default: from below the speed at which the follower first leaves the cam to the end of the model's [study].
+    /// Without a [study] it ends at twice that speed, or at twice the spring's own speed if the follower never leaves].
     #[arg(long, value_name = "LO:HI", value_parser = rpm_range, allow_hyphen_values = true)]
     rpm: Option<[f64; 2]>,
     #[command(flatten)]
@@ -58,7 +58,7 @@ pub(super) fn page(text: &str) -> Result<PathBuf, String> {
 
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
     if arguments.json && arguments.out.as_deref() == Some(Path::new("-")) {
-        return Err(CommandError::Words("--json and --out - both want standard output".into()));
+        return Err(CommandError::Words("--json and --out - both print to standard output".into()));
     }
     let model = arguments.model.read(session)?;
     let path = match (&arguments.out, arguments.json) {
@@ -69,7 +69,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     session.wishes.file = path.clone();
     let look = arguments.look.look()?;
     if let (Some(_), Err(why)) = (&path, live::module()) {
-        session.note(&format!("the pictures of the page will be still: {why}"));
+        session.note(&format!("the pictures of the page will not be live: {why}"));
     }
     // The file is begun before the work: a name that cannot be is told at once.
     let file = match &path {

@@ -106,7 +106,7 @@ fn is_of(error: &clap::Error, context: ContextKind, option: &str) -> bool {
 /// The commands that take an option which another refuses; none if there are none.
 fn taken_by(command: &clap::Command, error: &clap::Error) -> Option<String> {
     if error.kind() == Kind::ArgumentConflict && is_of(error, ContextKind::InvalidArg, "--over") {
-        return is_of(error, ContextKind::PriorArg, "--over").then(|| "note: `chart` goes over two numbers".into());
+        return is_of(error, ContextKind::PriorArg, "--over").then(|| "note: `chart` varies two numbers".into());
     }
     let name = unknown_option(error)?;
     let takes = |sub: &&clap::Command| {
@@ -307,7 +307,7 @@ impl Session<'_> {
             self.note(&format!("wrote {}", path.display()));
         }
         if self.wishes.open && open::that_detached(&path).is_err() {
-            self.note(&format!("{} is written, and nothing here opens it", path.display()));
+            self.note(&format!("{} is written, but no program here opens it", path.display()));
         }
     }
 
@@ -375,7 +375,7 @@ impl Session<'_> {
         let others = match error.kind() {
             _ if is_early => Some("note: options of a command come after it".into()),
             Kind::InvalidSubcommand => {
-                Some("note: `corner-impact MODEL` says what can be done with a model file or a table of lifts".into())
+                Some("note: `corner-impact MODEL` lists what you can do with a model file or a table of lifts".into())
             }
             _ => others,
         };

@@ -15,7 +15,7 @@ use corner_impact::file::{self, Output};
 use corner_impact::orbit::long_run::Budget;
 use corner_impact::study::simulate::{RunLoads, RunRequest, Sight, Simulation, Until};
 
-/// Runs one motion of a model and says what happened.
+/// Simulates one run of a model and summarises it.
 #[derive(clap::Args)]
 #[command(group = ArgGroup::new("picture").multiple(true))]
 #[command(after_help = "Examples:\n\
@@ -26,14 +26,14 @@ use corner_impact::study::simulate::{RunLoads, RunRequest, Sight, Simulation, Un
 pub(super) struct Arguments {
     #[command(flatten)]
     model: ModelArgument,
-    /// Speed of the cam.
+    /// Speed of the cam, rpm.
     #[arg(long, value_name = "R", value_parser = rpm, allow_hyphen_values = true)]
     rpm: f64,
-    /// Turns of the cam.
+    /// Revolutions of the cam.
     #[arg(long, value_name = "N", default_value_t = 100, value_parser = count, allow_hyphen_values = true,
         conflicts_with = "impacts")]
     revolutions: u64,
-    /// Run up to this many impacts instead.
+    /// Run until this many impacts instead.
     #[arg(long, value_name = "N", value_parser = count, allow_hyphen_values = true)]
     impacts: Option<u64>,
     #[command(flatten)]
@@ -44,14 +44,14 @@ pub(super) struct Arguments {
     /// Write the state each time the cam passes this angle, rad or as 90deg, to the file of --strobe-out.
     #[arg(long, value_name = "RAD", value_parser = angle, requires = "strobe_out", allow_hyphen_values = true)]
     strobe: Option<f64>,
-    /// Where the states go, as CSV; - is standard output.
+    /// File for the states of --strobe, as CSV; - is standard output.
     #[arg(long, value_name = "FILE", requires = "strobe")]
     strobe_out: Option<PathBuf>,
     #[command(flatten)]
     answer: AnswerArguments,
-    /// Add to the summary what the run comes to in the long run, and how fast a small deviation grows there per revolution: a natural logarithm,
-    /// of a motion that repeats by its multipliers, -inf (null in JSON) where the follower comes to rest on the cam, else a mean with its
-    /// standard error. However short the run is: --transient, --record, --longest and --patience say for how long it is followed for that.
+    /// Add the motion that the run settles on, and the growth rate of a small deviation per revolution, as a natural logarithm. For a motion that repeats,
+    /// the rate follows from the multipliers. It is -inf (null in JSON) if the follower comes to rest on the cam. Otherwise it is a mean with its standard
+    /// error. For this, the run is followed as long as --transient, --record, --longest and --patience ask, however short it is.
     #[arg(long)]
     lyapunov: bool,
     #[command(flatten)]
@@ -62,10 +62,10 @@ pub(super) struct Arguments {
     /// Draw the gap against its velocity over the last revolutions (.svg, .png or .pdf).
     #[arg(long, value_name = "FILE", value_parser = drawn_only, conflicts_with = "impacts", group = "picture")]
     phase_plane: Option<PathBuf>,
-    /// Moments of each revolution that --out shows, beside the events [default: 3600 in a picture, 360 in a table].
+    /// Moments of each revolution that --out shows, besides the events [default: 3600 in a picture, 360 in a table].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000), requires = "out")]
     points_per_revolution: Option<u32>,
-    /// How many revolutions are drawn [default: 2].
+    /// Number of revolutions to draw [default: 2].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1000))]
     drawn: Option<u64>,
     #[command(flatten)]
@@ -79,8 +79,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let streams = [&arguments.events, &arguments.strobe_out, &arguments.out].map(|path| is_standard(path.as_ref()));
     let streams = streams.into_iter().chain([arguments.answer.json]).filter(|to_standard| *to_standard).count();
     if streams > 1 {
-        let words =
-            "--events -, --strobe-out -, --out - and --json all print to standard output: give the tables files";
+        let words = "--events -, --strobe-out -, --out - and --json all print to standard output: keep one, give the others files";
         return Err(CommandError::Words(words.into()));
     }
     let Arguments { events, strobe_out, out: trace, phase_plane, .. } = arguments;
@@ -90,13 +89,15 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let beside = request.files();
     let drawings = [trace, phase_plane].into_iter().flatten().filter(|path| picture::kind(path).is_some()).count();
     if beside.is_some() && drawings > 1 {
-        return Err(CommandError::Words("--script draws one picture, and --out and --phase-plane are two".into()));
+        return Err(CommandError::Words(
+            "--script draws one picture, but --out and --phase-plane are two: leave one out".into(),
+        ));
     }
     let files = results.iter().filter_map(|(option, path)| Some((*option, path.as_deref()?)));
     let beside = beside.iter().flatten().map(|(option, path)| (*option, path.as_path()));
     file::distinct(files.chain(beside).filter(|(_, path)| path.as_os_str() != "-"))?;
     if arguments.drawn.is_some() && trace.is_none() && phase_plane.is_none() {
-        return Err(CommandError::Words("--drawn says how much --out and --phase-plane draw: neither is there".into()));
+        return Err(CommandError::Words("--drawn needs --out or --phase-plane".into()));
     }
     let model = arguments.model.read_as_drawn(session)?;
     arguments.start.doubt(session);

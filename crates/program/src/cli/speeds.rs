@@ -16,33 +16,33 @@ use corner_impact::study::attractors::{Resolution, Step};
 use corner_impact::study::speeds::{speeds, usual_range};
 use corner_impact::study::survey::{Over, Spacing};
 
-/// Tells which motions a machine ends on at which speeds.
+/// Finds the motions that a machine settles on, and at which speeds.
 ///
-/// Or at which values of another number: where each motion begins and ends, and how many starts end on it.
+/// The result has the beginning and the end of each motion, and the share of starts that settle on it. With `--over`, another number varies.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n\
     \x20 corner-impact speeds\n\
     \x20 corner-impact speeds models/osorio-2008.toml --rpm 600:800 --speeds 100 --out speeds.svg\n\
     \x20 corner-impact speeds --over restitution=0.5:0.9:100 --rpm 700\n\
     \n\
-    The values that are run are multiples of a step, whatever the range: a part of a range has the answer of that part, if --step is the same.\n\
+    The values that are run are multiples of a step, whatever the range. So a part of a range gives the same answer there, with the same --step.\n\
     Exit code: 0 done, 2 bad model file, usage, or a run that cannot go on.")]
 pub(super) struct Arguments {
     #[command(flatten)]
     model: ModelArgument,
-    /// Lowest and highest speed, and with --over the one speed [default: from below where the follower first leaves the cam up to the end of the model's [study], or to twice that speed, or twice that of its spring where it stays on the cam].
+    /// Lowest and highest speed; with --over, the one speed [default: from below the speed at which the follower first leaves the cam to the end of the model's [study]. Without a [study] it ends at twice that speed, or at twice the spring's own speed if the follower never leaves].
     #[arg(long, value_name = "LO:HI[:N]|R", value_parser = typed, allow_hyphen_values = true)]
     rpm: Option<Speeds>,
-    /// A number of the model to go over in place of the speed: from where to where, at how many values at least, and whether these are spaced by their logarithm.
+    /// Number of the model to vary in place of the speed: its lowest and highest value, and the least number of values. `:log` spaces them logarithmically.
     #[arg(long, value_name = "NAME=LO:HI[:N][:log]", value_parser = axis, allow_hyphen_values = true)]
     over: Option<NamedSpan>,
-    /// The least number of values that are run.
+    /// Least number of values to run.
     #[arg(long, value_name = "N", default_value_t = 300, value_parser = clap::value_parser!(u32).range(2..=100_000))]
     speeds: u32,
-    /// From one value to the next, at most, of a logarithmic axis in decades: 1, 2, 3 or 5 times a power of ten is taken [default: what puts as many values into the range as asked for].
+    /// Longest step from one value to the next, in decades on a logarithmic axis. The step is 1, 2, 3 or 5 times a power of ten [default: the step that gives the number of values asked for].
     #[arg(long, value_name = "STEP", value_parser = positive, allow_hyphen_values = true, conflicts_with = "speeds")]
     step: Option<f64>,
-    /// Starts that are run at each value.
+    /// Number of starts at each value.
     #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=1_000_000),
         conflicts_with_all = ["state", "relative_velocity"])]
     starts: u32,
@@ -50,12 +50,12 @@ pub(super) struct Arguments {
     start: StartArguments,
     #[command(flatten)]
     budget: BudgetArguments,
-    /// Begin at each value on the stable orbits of two impacts in one revolution, too: a search by intervals finds all of them but next to a fold, a graze or a corner, in up to some seconds a value.
+    /// Also start on the stable orbits of two impacts in one revolution. A search by intervals finds all of them, except next to a fold, a graze or a corner. It takes up to some seconds for each value.
     #[arg(long, conflicts_with_all = ["state", "relative_velocity"])]
     two_impacts: bool,
     #[command(flatten)]
     answer: AnswerArguments,
-    /// A picture (.svg, .png, .pdf) of impacts, attractors and shares over the speeds, or a table (.csv, or - for standard output).
+    /// Draw impacts, attractors and shares over the speeds (.svg, .png, .pdf), or write a table (.csv, or - for standard output).
     #[arg(long, value_name = "FILE", value_parser = picture_or_table, group = "picture")]
     out: Option<PathBuf>,
     #[command(flatten)]
@@ -86,7 +86,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         (arguments.start.sample(arguments.starts as usize), arguments.budget.budget(Budget::SURVEY)?);
     let resolution = Resolution { step, sample, budget, two_impacts: arguments.two_impacts };
     let over = Over::new(&model, parameter, rpm)?;
-    let found = watched("what runs end on", |watch| speeds(&over, range, &resolution, watch))?;
+    let found = watched("motions that runs settle on", |watch| speeds(&over, range, &resolution, watch))?;
     if let Some(path) = &arguments.out {
         let table = || csv::speeds(&found);
         let request = arguments.picture.request()?;

@@ -13,13 +13,13 @@ use corner_impact::study::survey::{Placed, Sample, Start};
 /// Where the run starts, or the runs of a survey.
 #[derive(clap::Args)]
 pub(super) struct StartArguments {
-    /// Cam angle at the start, rad or as 90deg.
+    /// Cam angle at the start, in rad or as 90deg.
     #[arg(long, value_name = "RAD", default_value_t = 0.0, value_parser = angle, allow_hyphen_values = true)]
     pub(super) start_angle: f64,
-    /// Position and velocity at the start, in the model's units. A survey of many starts takes it repeatedly, in place of its sample.
+    /// Position and velocity at the start, in the model's units. Commands that run many starts take it repeatedly, in place of their sample.
     #[arg(long, value_name = "Q,V", value_parser = state, allow_hyphen_values = true, conflicts_with = "relative_velocity")]
     state: Vec<State>,
-    /// Start on the cam and leave it at this velocity, in the model's units, 0 or more [default: 0].
+    /// Start on the cam with this velocity relative to it, in the model's units, 0 or more [default: 0].
     #[arg(long, value_name = "U", value_parser = not_negative, allow_hyphen_values = true)]
     relative_velocity: Option<f64>,
 }
@@ -36,7 +36,7 @@ impl StartArguments {
             None => Ok(self.on_cam(0.0)),
             Some([start]) => Ok(*start),
             Some(all) => {
-                let words = format!("--state is given {} times, and one run has one start", all.len());
+                let words = format!("--state is given {} times, but one run has one start", all.len());
                 Err(CommandError::Words(words))
             }
         }
@@ -64,18 +64,18 @@ impl StartArguments {
 /// For how long runs are followed before it is said what they come to.
 #[derive(clap::Args)]
 pub(super) struct BudgetArguments {
-    /// Revolutions within which a run is to settle [default: 200, in a chart or a diagram 300].
+    /// Revolutions within which a run should settle [default: 200; 300 in chart and diagram].
     #[arg(long, value_name = "N", value_parser = count, allow_hyphen_values = true)]
     transient: Option<u64>,
-    /// Revolutions after that over which growth is taken of a run that has settled on no orbit; up to 8 times as many where they
-    /// tell nothing [default: 1600, in design 200, in a chart or a diagram 100].
+    /// Revolutions after that, over which the growth rate of a run without a period is measured. Up to 8 times as many follow while the result is undecided
+    /// [default: 1600; 200 in design, 100 in chart and diagram].
     #[arg(long, value_name = "N", value_parser = count, allow_hyphen_values = true)]
     record: Option<u64>,
-    /// The longest period of an orbit, revolutions [default: 32].
+    /// Longest period of an orbit, in revolutions [default: 32].
     #[arg(long, value_name = "N", value_parser = count, allow_hyphen_values = true)]
     longest: Option<u64>,
-    /// Revolutions for which runs that settle on nothing are followed before that is called chaos, all together: the longer, the rarer the
-    /// rests that are seen [default: 100000, in design, a chart or a diagram 0].
+    /// Revolutions for which runs that do not settle are followed before they are called chaotic, in total. A larger number finds rarer rests [default: 100000;
+    /// 0 in design, chart and diagram].
     #[arg(long, value_name = "N", value_parser = count, allow_hyphen_values = true)]
     patience: Option<u64>,
 }
@@ -106,7 +106,9 @@ pub(super) fn cam_angle(option: &str, angle: f64, session: &mut Session<'_>) -> 
     let of_turn = within_a_turn(angle);
     if angle.abs() > TAU {
         let degrees = of_turn.to_degrees();
-        session.note(&format!("{option}: {angle} rad is {degrees:.4} deg of a turn; {angle}deg is in degrees"));
+        session.note(&format!(
+            "{option}: {angle} rad is more than a turn and means {degrees:.4} deg; for degrees, write {angle}deg"
+        ));
     }
     of_turn
 }

@@ -32,7 +32,7 @@ pub(super) fn start(asked: Option<usize>) -> Result<(), CommandError> {
         .spawn_handler(|thread| std::thread::Builder::new().spawn(cancel::carry(move || thread.run())).map(drop));
     match builder.build_global() {
         Err(error) if error.source().is_some() => {
-            let words = format!("threads cannot be started: {error}; {VARIABLE} says how many there are to be");
+            let words = format!("threads cannot be started: {error}; {VARIABLE} sets their number");
             Err(CommandError::Words(words))
         }
         _ => Ok(()),

@@ -7,7 +7,7 @@ use corner_impact::study::verify::verify_watched;
 
 /// Computes the map at a corner impact by every route.
 ///
-/// First, it finds the corner impact of the model. At the end it says whether the routes agree.
+/// It first finds the corner impact of the model. At the end it says whether the routes agree.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n\
     \x20 corner-impact verify\n\
@@ -28,7 +28,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let model = arguments.model.read(session)?;
     if !Cam::new(&model)?.corners().iter().any(|corner| corner.jump_order <= 2) {
         let words = "the acceleration of this cam jumps nowhere, so there is no corner impact to verify; `cam`, `design`, `simulate` and `speeds` \
-                     are for every cam";
+                     take every cam";
         return Err(CommandError::Words(format!("{}: {words}", model.file())));
     }
     let findings =

@@ -125,7 +125,7 @@ pub struct Test {
 #[derive(Debug, thiserror::Error)]
 pub enum ExplainError {
     /// Unknown name.
-    #[error("nothing is called \"{what}\" here{} (`explain --list` has every name)", hint(.meant))]
+    #[error("unknown name \"{what}\"{} (`explain --list` lists every name)", hint(.meant))]
     Unknown {
         /// The name that was looked up.
         what: String,
@@ -319,7 +319,7 @@ impl Links {
                 value: Some(row.value.into()),
                 code: Some(Code { file: "src/tolerance.rs".into(), function: row.name.into() }),
                 tests: tests(&["tests/it/tolerance.rs: every_row_has_its_reason".into()]),
-                ..plain(&format!("A tolerance: {}.", row.reason), Evidence::Read)
+                ..plain(&format!("Tolerance: {}.", row.reason), Evidence::Read)
             },
             Target::Claim(claim) => Explanation {
                 evidence: evidence(claim, findings)?,
@@ -333,7 +333,7 @@ impl Links {
                         file: "crates/program/src/report/quantities.rs".into(),
                         function: "quantities".into(),
                     }),
-                    ..plain(&format!("A number of the model: {}{unit}.", it.meaning), Evidence::Read)
+                    ..plain(&format!("Number of the model: {}{unit}.", it.meaning), Evidence::Read)
                 }
             }
         })
@@ -418,7 +418,7 @@ impl Links {
         let wrong = self.claims.iter().find(|claim| label.as_ref().is_some_and(|label| claim.id.starts_with(label)));
         let slip = wrong.and_then(|claim| {
             let right = claim.correct.as_ref()?;
-            Some(format!("; {} in print, right is: {right}", claim.verdict))
+            Some(format!("; {} in print; correct: {right}", claim.verdict))
         });
         link.paper.as_ref().map(|place| format!("{place}{}", slip.unwrap_or_default()))
     }
@@ -450,9 +450,9 @@ impl Links {
             }
             Some(Check::Read(..)) | None => (Evidence::Read, "", None),
         };
-        let right = claim.correct.as_ref().map_or_else(String::new, |right| format!(" Right instead: {right}"));
+        let right = claim.correct.as_ref().map_or_else(String::new, |right| format!(" Correct: {right}"));
         Explanation {
-            sentence: format!("The paper states, of its own model: {}{right}", claim.statement),
+            sentence: format!("The paper states for its own model: {}{right}", claim.statement),
             value: Some(claim.verdict.to_string().into()),
             known,
             code: code(code_at),

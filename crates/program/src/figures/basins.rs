@@ -58,7 +58,7 @@ pub fn shares_figure(found: &BasinsOver) -> Figure {
         let points = it.shares.iter().map(|[value, share]| [across.place(*value), 100.0 * share]);
         Series::line(&label(it), colour, stroke, points)
     });
-    let title = format!("{}: what starts end on, {}", found.model, found.over.range(found.range));
+    let title = format!("{}: motions that starts settle on, {}", found.model, found.over.range(found.range));
     let shares = FigureAxis::new("share of starts", "%").over([-5.0, 105.0]);
     let panel = Panel::new(shares, 0.5, series.collect());
     let note = match all.len().saturating_sub(COLOURS.len()) {

@@ -31,17 +31,18 @@ pub(crate) const FAST_IMPACTS: Entry = Entry {
         if let Some(panel) = figure.panels.first_mut() {
             panel.y.range = shown.or(panel.y.range);
         }
-        let line = "At the corner impact the line of one impact a revolution goes on";
+        let line = "At the corner impact, the line of one impact a revolution continues";
         let end = match subject.scenario() {
-            Some(Scenario::NonsmoothFold) => " At the corner impact two lines of one impact a revolution meet and end.",
-            Some(Scenario::NonsmoothFlip) => &format!(" {line}, and one of two in two begins."),
+            Some(Scenario::NonsmoothFold) => {
+                " At the corner impact, two lines of one impact a revolution meet and end."
+            }
+            Some(Scenario::NonsmoothFlip) => &format!(" {line}, and one of two impacts in two revolutions begins."),
             Some(Scenario::Persistence) => &format!(" {line}."),
             None => "",
         };
         let caption = format!(
-            "Where impacts fall on the cam: grey is what runs with rising and with falling speed settle on, broad where it \
-             repeats; lines are the orbits of one impact in one revolution and of two in two, stable unbroken and unstable \
-             broken.{end}",
+            "Cam angles of impacts. Grey: motions on which runs with rising and with falling speed settle, broad if they repeat; lines: \
+             orbits of one impact in one revolution and of two in two, solid if stable and broken if unstable.{end}",
         );
         drawn(figure, caption)
     },

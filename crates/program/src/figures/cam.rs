@@ -16,7 +16,7 @@ pub(crate) const CAM: Entry = Entry {
         drawn(
             lift_figure(&subject.cam, title),
             format!(
-                "The lift of the cam and its first two derivatives against the angle that the cam has turned. {}",
+                "The lift of the cam and its first two derivatives against the cam angle. {}",
                 corners_in_words(&subject.cam, "Vertical lines")
             ),
         )

@@ -20,7 +20,7 @@ pub(crate) const CAM_SHAPE: Entry = Entry {
         let outline = Outline::of(&subject.model, &subject.cam);
         let how = match subject.model.cam.contact() {
             Some(FollowerContact::Flat) => {
-                "The flat face of the follower is square to the line straight above the axis O".to_owned()
+                "The flat face of the follower is perpendicular to the line straight above the axis O".to_owned()
             }
             Some(FollowerContact::Roller { .. }) => {
                 "The thin line is the path of the roller's centre, seen from the cam; the axis is O".to_owned()

@@ -24,7 +24,7 @@ pub(crate) const CHAOTIC_SET: Entry = Entry {
         let rpm = subject.shown.fast.clone()?.beyond;
         let kept = known(&subject.model.name).into_iter().find(|set| set.rpm == [rpm; 2]);
         let set = kept.ok_or_else(|| format!("no h-set is kept for {rpm} rpm; `chaos --rpm {rpm}` looks for one"))?;
-        let refused = |impacts: u64| format!("the strip of {impacts} impacts is not proved to cover the h-set");
+        let refused = |impacts: u64| format!("the proof that the strip of {impacts} impacts covers the h-set failed");
         prove(&subject.machine(rpm), &set).map_err(|why| refused(why.impacts))?;
         let portrait = portrait(&subject.model, &set).map_err(|error| error.to_string())?;
         let caption = format!(

@@ -43,7 +43,7 @@ pub fn curve_figure(
     let panel =
         Panel::new(FigureAxis::new("speed", "rpm").over(speeds), 0.52, lines(curves, |rpm, value| [value, rpm]));
     let is_shown = (range[0]..=range[1]).contains(&own);
-    let marks = is_shown.then(|| Mark { at: own, label: format!("the model, {own}") }).into_iter().collect();
+    let marks = is_shown.then(|| Mark { at: own, label: format!("this model, {own}") }).into_iter().collect();
     Figure { marks, ..Figure::new(title, FigureAxis::new(name, unit).over(range), vec![panel]) }
 }
 

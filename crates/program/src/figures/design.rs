@@ -36,7 +36,7 @@ fn round(found: &Design) -> Figure {
     // A negative force would pull, which a cam cannot do.
     let pulls = found.round.iter().any(|[_, force]| *force < 0.0);
     Figure {
-        note: if pulls { "below 0 the cam would have to pull: they part".into() } else { String::new() },
+        note: if pulls { "below 0 the cam would have to pull: they separate".into() } else { String::new() },
         ..figure
     }
 }

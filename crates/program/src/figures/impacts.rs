@@ -29,9 +29,8 @@ pub(crate) const SLOW_IMPACTS: Entry = Entry {
             _ => "Horizontal lines are the cam's corners.",
         };
         let caption = format!(
-            "Where on the cam impacts fall, speed by speed, in {} revolutions after {}. A curve is an impact that repeats, \
-             scattered points are of motions that do not; curves crowd where impacts accumulate before the follower comes to \
-             rest. {lines}",
+            "Cam angles of the impacts at each speed, in {} revolutions after {}. A curve is an impact that repeats, and scattered \
+             points are motions that do not; curves crowd where impacts accumulate before the follower rests. {lines}",
             subject.slow_effort.record, subject.slow_effort.transient,
         );
         drawn(impact_diagram(title, points, &corners, None), caption)
@@ -77,7 +76,7 @@ impl Shown {
 /// Range of cam angles, degrees.
 pub(crate) const WHOLE_CAM: [f64; 2] = [0.0, 360.0];
 /// Note below a diagram in which some exponent cannot be drawn.
-const FORGETS: &str = "λ = −∞, not drawn, where the follower came to stick to the cam: every deviation is lost there";
+const FORGETS: &str = "λ = −∞, not drawn, where the follower sticks to the cam: every deviation is lost there";
 
 /// Impact phases in degrees against speed in rpm, with the cam's corners as lines. A second panel has
 /// `[rpm, Lyapunov exponent per revolution]`.

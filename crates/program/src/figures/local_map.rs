@@ -19,7 +19,7 @@ pub(crate) const LOCAL_MAP: Entry = Entry {
         let shown = subject.next_to_corner()?;
         let caption = format!(
             "Orbits of the local map of period one{} against the change δT of the machine's period: rays from the corner \
-             impact, stable unbroken, unstable broken. Grey are the machine's own orbits.",
+             impact, solid if stable, broken if unstable. Grey lines are the machine's own orbits.",
             if shown.rays.iter().any(|ray| ray.positions.len() == 2) { " and two" } else { "" }
         );
         drawn(figure(title, &shown), caption)
@@ -51,7 +51,7 @@ fn figure(title: &str, shown: &NextToCorner) -> Figure {
     let flattest = sizes().filter(|size| *size > 0.0).fold(f64::INFINITY, f64::min);
     let (low, high) = (slopes().fold(0.0, f64::min) * shown.reach, slopes().fold(0.0, f64::max) * shown.reach);
     let room = 0.15 * (high - low);
-    let mut panels = vec![panel(shown, [low - room, high + room], "position less that of x*", true)];
+    let mut panels = vec![panel(shown, [low - room, high + room], "position minus that of x*", true)];
     if flattest < SEEN * steepest {
         let side = slopes().find(|slope| slope.abs() * shown.reach == flattest).map_or(1.0, f64::signum);
         let ends = [-0.4 * side * flattest, 1.6 * side * flattest];
@@ -61,7 +61,7 @@ fn figure(title: &str, shown: &NextToCorner) -> Figure {
     let x = FigureAxis::new("change of the period δT; faster to the left", unit).over([-reach, reach]);
     Figure {
         marks: vec![Mark { at: 0.0, label: format!("{middle:.4} rpm") }],
-        note: format!("At the left end the cam turns at {left:.4} rpm, at the right end at {right:.4}."),
+        note: format!("The cam turns at {left:.4} rpm at the left end, at {right:.4} rpm at the right end."),
         ..Figure::new(title, x, panels)
     }
 }

@@ -19,7 +19,7 @@ pub(crate) const SLOW_PHASE_PLANE: Entry = Entry {
         let run = subject.settled(subject.shown.slow.clone()?.chattering, SLOW_TURNS)?;
         let rests = match run.count(EventKind::Stick) {
             0 => "",
-            _ => "; loops that shrink into the origin are bounces that end with the follower at rest on the cam",
+            _ => "; loops that shrink into the origin are bounces before the follower rests on the cam",
         };
         let kinks = match subject.cam.corners().iter().any(|corner| corner.jump_order <= 2) {
             true => " A kink elsewhere is where a corner of the cam passes below the follower.",

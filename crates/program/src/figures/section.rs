@@ -28,7 +28,7 @@ pub(crate) const FAST_SECTION: Entry = Entry {
         let crossings = subject.crossings(subject.branches()?)?;
         let at = &subject.found()?.at;
         let caption = format!(
-            "The same runs and orbits, looked at once a revolution: the position of the follower when the cam is at {:.2}°, \
+            "The same runs and orbits, once a revolution: the position of the follower when the cam is at {:.2}°, \
              half a turn from the corner.",
             at.section_angle().to_degrees()
         );
@@ -42,8 +42,8 @@ pub(crate) const BEYOND_ATTRACTOR: Entry = Entry {
     place: "",
     takes_rpm: false,
     title: |subject| {
-        subject.fast_title("what the motion settles on beyond the corner impact", |fast| {
-            format!("what the motion settles on at {} rpm", fast.beyond)
+        subject.fast_title("the attractor beyond the corner impact", |fast| {
+            format!("the attractor at {} rpm", fast.beyond)
         })
     },
     draw: |subject, title| {
@@ -51,8 +51,8 @@ pub(crate) const BEYOND_ATTRACTOR: Entry = Entry {
         let states = subject.section_states(rpm, STATES)?;
         let star = subject.found()?.at.state;
         let caption = format!(
-            "The states at the section of the map, half a turn from the corner, in {STATES} revolutions of the motion at {rpm} \
-             rpm: one that repeats is a few points. The orbit of the corner impact has q = {:.4} m, q' = {:.4} m/s there.",
+            "States at the section of the map, half a turn from the corner, in {STATES} revolutions of the motion at {rpm} \
+             rpm; a periodic motion has only a few points. The orbit of the corner impact has q = {:.4} m, q' = {:.4} m/s there.",
             star.position, star.velocity
         );
         drawn(attractor(title, &states, star), caption)

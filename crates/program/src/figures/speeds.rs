@@ -107,7 +107,7 @@ fn with_folded(found: &SpeedSurvey, corners: &[CornerMark], across: f64) -> (Fig
     let axis = over.axis();
     let placed = placed(found, &colours, across, folding);
     let folded = (!short.is_empty()).then(|| {
-        format!("small grey dots: {} more, each over less than {} of the range", short.len(), folding.words())
+        format!("small grey dots: {} more motions, each over less than {} of the range", short.len(), folding.words())
     });
     let mut figure = Figure::new(&title, axis, vec![impacts, bars(&over, placed), shares]);
     let several = (!found.coexistence.is_empty()).then(|| "grey: several attractors, each reached by runs".to_owned());

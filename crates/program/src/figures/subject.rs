@@ -123,7 +123,7 @@ impl ShownSpeeds {
 
 /// Reason for the missing corner impact if the model has no `[study]`.
 pub(crate) const NO_STUDY: &str =
-    "the model file has no [study], which says at which speeds to look for a corner impact";
+    "the model file has no [study], the range of speeds in which to look for a corner impact";
 
 /// Rounds to four digits, as a person would choose a speed.
 fn rounded(rpm: f64) -> f64 {
@@ -156,8 +156,8 @@ impl FigureContext {
             let leaves = Contact::new(&cam, model.follower).separation().speed();
             (slowest < leaves && leaves <= fastest).then(|| ShownSpeeds::slow(leaves)).ok_or_else(|| {
                 format!(
-                    "from {slowest} to {fastest} rpm there is no speed at which the follower begins to leave the cam: it leaves it at \
-                     each, or at none"
+                    "from {slowest} to {fastest} rpm the follower does not begin to leave the cam: it leaves the cam at every speed, \
+                     or at none"
                 )
             })
         };

@@ -20,8 +20,8 @@ pub(crate) const SLOW_TRACE: Entry = Entry {
         subject.slow_title("a slow motion", |slow| format!("{what} at {} rpm", slow.chattering))
     },
     draw: |subject, title| {
-        let paper = "The follower leaves the cam at P, comes down, and bounces lower and lower in less and less time until \
-                     it stays on the cam: the chattering that the paper describes.";
+        let paper = "The follower leaves the cam at P, comes down, and bounces lower and faster until it stays on the cam: \
+                     the chattering that the paper describes.";
         let run = subject.settled(subject.shown.slow.clone()?.chattering, SLOW_TURNS)?;
         let what = if subject.is_paper { paper } else { &in_words(&run) };
         drawn(time_trace(title, &run), format!("Follower and cam above, the gap between them below. {what}"))
@@ -40,7 +40,7 @@ pub(crate) const INTERRUPTED_TRACE: Entry = Entry {
         let run = subject.settled(subject.shown.slow.clone()?.interrupted, SLOW_TURNS)?;
         let caption = if subject.is_paper {
             "Follower, cam and gap at the speed of the paper's second trace. The follower comes down onto the base circle and \
-             bounces there; before the bounces have died out the flank begins to rise, and the chattering ends on it, shortly \
+             bounces there. The flank begins to rise before the bounces die out, so the chattering ends on the flank, shortly \
              before the follower leaves the cam at P."
         } else {
             &format!("Follower, cam and gap at another speed. {}", in_words(&run))
@@ -56,7 +56,7 @@ pub(crate) const CORNER_ORBIT: Entry = Entry {
     takes_rpm: false,
     title: |subject| {
         let at = subject.found().map(|found| format!(" at {:.6} rpm", found.at.speed_rpm())).unwrap_or_default();
-        format!("{}: the orbit whose impact is at the corner{at}", subject.model.name)
+        format!("{}: the orbit with its impact at the corner{at}", subject.model.name)
     },
     draw: corner_orbit,
 };
@@ -75,7 +75,7 @@ pub(crate) const BEYOND_TRACE: Entry = Entry {
             "The motion at {} rpm, {} than the corner impact{}, after {TRANSIENT} revolutions from a start at rest on the cam.",
             run.rpm,
             if run.rpm < subject.found()?.at.speed_rpm() { "slower" } else { "faster" },
-            if subject.is_fold() { ", where the two orbits that meet there are gone" } else { "" }
+            if subject.is_fold() { ", where the two orbits that meet there no longer exist" } else { "" }
         );
         drawn(time_trace(title, &run), caption)
     },
@@ -160,7 +160,7 @@ fn corner_orbit(subject: &FigureContext, title: &str) -> Result<Captioned, Strin
         figure,
         format!(
             "One revolution of the periodic orbit with an impact at the corner at {:.2}°, from the section on. At this \
-             one speed the law of the cam before the corner and the law after it both hold at the impact.",
+             speed alone, the cam's law before the corner and its law after it both hold at the impact.",
             corner.to_degrees()
         ),
     )

@@ -7,7 +7,7 @@ use crate::show::words;
 use corner_impact::study::basins::{Basin, Basins, BasinsOver, Summary};
 
 /// Head of the lines below it.
-const HEAD: &str = "  share of the starts, motion that they end on (number of starts)";
+const HEAD: &str = "  share of the starts, motion that they settle on (number of starts)";
 
 impl Paged for Summary {
     fn blocks(&self) -> Vec<Block> {

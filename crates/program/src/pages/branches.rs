@@ -71,7 +71,7 @@ fn on_curve(kind: SpecialKind) -> String {
             let side = match after_corner {
                 Some(true) => "with the law after the corner",
                 Some(false) => "with the law before the corner",
-                None => "of the orbit without the touch",
+                None => "of the orbit without the graze",
             };
             format!("a multiplier {side} is {multiplier}")
         }
@@ -81,13 +81,15 @@ fn on_curve(kind: SpecialKind) -> String {
         }
         SpecialKind::Class(UndecidedGraze::Resonance(passages)) => {
             let passages = words::many(passages, "passage");
-            format!("resonance: {passages} of the cam's top after an impact the follower is at its equilibrium again")
+            format!("resonance: {passages} of the cam's top after an impact, the follower is back at its equilibrium")
         }
         SpecialKind::Place => "the follower leaves the cam at two places at once".into(),
         SpecialKind::Turn => "the curve turns round".into(),
         SpecialKind::Corner { impact, .. } => format!("impact {} of the orbit is at a corner", impact + 1),
-        SpecialKind::Graze { before, after, .. } => format!("a flight touches: from {before} to {after} impacts"),
-        _ => "where the events were looked for".into(),
+        SpecialKind::Graze { before, after, .. } => {
+            format!("a flight touches the cam: from {before} to {after} impacts")
+        }
+        _ => "the place where the search for events began".into(),
     }
 }
 
@@ -119,7 +121,7 @@ pub(crate) fn curve(
         }
         SpecialKind::Graze { .. } => format!("from {impacts} to {} impacts, at {angle:.4} deg", impacts + 1),
         SpecialKind::Detachment => format!("at {angle:.4} deg"),
-        SpecialKind::Chatter => format!("where the cam lets go at {angle:.4} deg"),
+        SpecialKind::Chatter => format!("where the cam releases the follower at {angle:.4} deg"),
         _ => of_orbit(),
     };
     let mut lines = vec![
@@ -158,7 +160,7 @@ fn rounding(curve: &EventCurve, sharp: &[(f64, RoundedCorner)]) -> Option<String
     let followed = (least.rpm - rpm) / least.value;
     let within = tolerance::ROUNDED_AWAY.value;
     Some(format!(
-        "  from the corner impact at {rpm:.9} rpm by {followed:.6} rpm a degree, by the closed form {rpm_per_degree:.6}: \
-         no more than {within} rpm up to {degrees:.4} deg"
+        "  moves from the corner impact at {rpm:.9} rpm by {followed:.6} rpm per degree (closed form: {rpm_per_degree:.6}), \
+         at most {within} rpm up to {degrees:.4} deg"
     ))
 }

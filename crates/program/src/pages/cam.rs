@@ -39,7 +39,7 @@ pub(crate) fn follower(geometry: Option<&CamGeometry>, lever_ratio: f64) -> Bloc
         ],
     };
     let Some(of) = geometry else {
-        let own = "follower: the lift is the follower's own, whatever end of it touches the cam";
+        let own = "follower: the lift is that of the follower, whatever its end on the cam";
         return Block::paragraph(words![own, lever]);
     };
     let length = |length: f64| words![(length, Digits::Significant(6)), " ", Span::Unit("m")];
@@ -118,7 +118,7 @@ pub(crate) fn measured(measured: &Measured) -> Vec<Block> {
     };
     let (digits, error) = with_error(measured.curvature_error);
     blocks.push(Block::paragraph(words![
-        format!("accuracy: {accuracy}; about a smooth motion the rows spread by "),
+        format!("accuracy: {accuracy}; the rows scatter about a smooth motion by "),
         told(measured.noise_m),
         "; the second derivative, ",
         (measured.largest_curvature, digits),
@@ -151,8 +151,8 @@ pub(crate) fn measured(measured: &Measured) -> Vec<Block> {
             Block::paragraph(words![
                 "doubtful corners: ",
                 list(at),
-                " (deg): a jump of the acceleration fits the rows better than a steep rise, but not by enough to be certain, and the cam is \
-                 drawn without it; in [cam] ",
+                " (deg): a jump of the acceleration fits the rows better than a steep rise, but not by enough to be certain. The cam is \
+                 drawn without it. In [cam], ",
                 &doubtful.ruled_out_by,
                 " rules it out, and ",
                 &doubtful.ruled_in_by,
@@ -204,13 +204,13 @@ fn corners(sheet: &CamSheet) -> Vec<Block> {
     let mut blocks = vec![Block::Heading(title.as_str().into())];
     if sheet.own_corners.is_empty() {
         let order = sheet.highest_order;
-        let none = format!("No derivative of the lift up to order {order} jumps as far as can be told.");
+        let none = format!("No jump was found in the derivatives of the lift up to order {order}.");
         blocks.push(Block::paragraph(none));
         return blocks;
     }
     blocks.push(Block::paragraph(words![
-        "order: of the lowest derivative of the lift that jumps (1 velocity, 2 acceleration, 3 jerk); jump: of that \
-         derivative, after less before, ",
+        "order: order of the lowest derivative of the lift that jumps (1 velocity, 2 acceleration, 3 jerk); jump: its jump, \
+         after minus before, in ",
         Span::Unit("m/rad^order"),
         "; slopes in ",
         Span::Unit("m/rad"),
@@ -234,7 +234,7 @@ fn corners(sheet: &CamSheet) -> Vec<Block> {
         let count = of_order(order).count();
         brief.push(Block::paragraph(words![
             count,
-            format!(" of order {order}, the largest jump "),
+            format!(" of order {order}, with the largest jump "),
             jump,
             " at ",
             at,

@@ -23,7 +23,7 @@ impl Paged for Certified {
             Block::Title(format!("Certificates of corner impacts of {}", self.model.name).into()),
             Block::paragraph(words![
                 format!(
-                    "{low} to {high} rpm: {count}, with {} bits. Of every number below each digit is proved, but for one unit of the last. \
+                    "{low} to {high} rpm: {count}, with {} bits. Every digit below is proved, up to one unit of the last. \
                      Positions are in ",
                     self.bits
                 ),
@@ -62,8 +62,8 @@ impl Paged for ProvedOrbits {
         for count in [1, 2] {
             let impacts = words::many(count as u64, "impact");
             page.push(Block::paragraph(match self.complete.contains(&count) {
-                true => format!("Orbits of {impacts} in 1 revolution: there are no others, which is proved."),
-                false => format!("Orbits of {impacts} in 1 revolution: there may be others, that is not decided."),
+                true => format!("Orbits of {impacts} in 1 revolution: it is proved that there are no others."),
+                false => format!("Orbits of {impacts} in 1 revolution: it is not decided whether there are others."),
             }));
             let places: Vec<_> = self.undecided.iter().filter(|one| one.impacts == count).collect();
             page.extend(some_of(&places, "place", |one| {
@@ -112,7 +112,7 @@ impl Paged for ProvedCounts {
         }
         let undecided = self.undecided.iter().map(|[low, high]| format!("{low} to {high} rpm").as_str().into());
         page.push(Block::paragraph(match self.undecided[..] {
-            [] => "There are no others at any speed of the range, which is proved. Each digit of an event is, but for one unit of the last.".into(),
+            [] => "It is proved that there are no others at any speed of the range. The digits of each event are proved, up to one unit of the last.".into(),
             _ => words!["The number is not decided from ", Words::joined(undecided, ", from "), "."],
         }));
         page.extend(words::hypotheses(&self.hypotheses()).map(Block::paragraph));
@@ -127,8 +127,8 @@ impl Paged for ProvedResting {
             vec![Block::Title(format!("Motions that rest on the cam at {} rpm, proved", self.speed_rpm).into())];
         if self.releases.is_empty() {
             page.push(Block::paragraph(match self.pressed_rad.is_empty() {
-                true => "The cam presses against the follower nowhere: no motion rests on it.",
-                false => "The cam presses against the follower everywhere: one that rests on it stays on it.",
+                true => "The cam nowhere presses against the follower: no motion rests on it.",
+                false => "The cam presses against the follower everywhere: a follower at rest on it stays on it.",
             }));
             page.extend(words::hypotheses(&self.hypotheses()).map(Block::paragraph));
             return page;
@@ -137,12 +137,18 @@ impl Paged for ProvedResting {
         page.push(Block::paragraph(words![
             "The cam presses against a follower that rests on it from ",
             Words::joined(pressed, " deg, from "),
-            " deg. Where it lets go, one motion alone goes on, whatever came before:"
+            " deg. Where the cam releases it, exactly one motion follows, whatever came before:"
         ]));
         let mut table = Table::new(
-            "From where the cam lets go to where it does again",
-            [("let go (deg)", 12), ("impacts", 8), ("rests by (deg)", 14), ("let go (deg)", 12), ("revolutions", 11)]
-                .map(|(head, least)| Column { gap: 2, ..Column::right(head, least) }),
+            "From one release to the next",
+            [
+                ("released (deg)", 14),
+                ("impacts", 8),
+                ("rests by (deg)", 14),
+                ("released (deg)", 14),
+                ("revolutions", 11),
+            ]
+            .map(|(head, least)| Column { gap: 2, ..Column::right(head, least) }),
         );
         let angle = |release: &ProvedRelease| degrees(release.cam_angle_rad.value());
         for release in &self.releases {
@@ -158,20 +164,20 @@ impl Paged for ProvedResting {
         }
         page.push(Block::Table(table));
         let all = match self.all_repeat() {
-            true => "So every motion that rests once is periodic some time later".to_owned(),
+            true => "So every motion that rests once becomes periodic".to_owned(),
             false => {
-                format!("A motion that is not at rest again within {} impacts was followed no further", self.looked_at)
+                format!("Motions that do not rest again within {} impacts were not followed further", self.looked_at)
             }
         };
         let round = |round: &Round| {
             let (impacts, turns) = (words::many(round.impacts, "impact"), words::many(round.revolutions, "revolution"));
-            format!("{turns}, with {impacts} and those without end by which it comes to rest").as_str().into()
+            format!("{turns}, with {impacts} and the endless sequence by which it comes to rest").as_str().into()
         };
         page.push(Block::paragraph(match self.periodic[..] {
             [] => words![all, "."],
             _ => words![
                 all,
-                ". What is let go at the same place again repeats after ",
+                ". A motion that is released at the same place again repeats after ",
                 Words::joined(self.periodic.iter().map(round), ", or after "),
                 "."
             ],
@@ -187,7 +193,7 @@ fn kinds(all: &[Option<OrbitKind>]) -> Words {
         return "none".into();
     }
     let parts = all.chunk_by(|one, other| one == other).map(|same| {
-        let kind = same[0].map_or("of a kind not decided".into(), |kind| kind.to_string());
+        let kind = same[0].map_or("of undecided kind".into(), |kind| kind.to_string());
         format!("{} {kind}", same.len()).as_str().into()
     });
     Words::joined(parts, ", ")
@@ -224,17 +230,17 @@ fn certificate(of: &Certificate) -> Vec<Block> {
     let within = |side: &ProvedSide| side.followed.as_ref().map(|followed| Digits::Size.text(followed.period_within_s));
     let how_far = match (within(&of.sides.minus), within(&of.sides.plus)) {
         (Some(minus), Some(plus)) => format!(
-            "This is proved for all periods within {minus} s of T* for the one, and within {plus} s for the other: there each side's \
-             law, continued past the corner, has one fixed point near x*. At the speeds that are told its flights are clear of the cam; \
-             at the others its impact is beyond the corner, where that law does not hold."
+            "This is proved for all periods within {minus} s of T* for the first, and within {plus} s for the second. There each side's \
+             law, continued past the corner, has one fixed point near x*. At the speeds named, its flights are clear of the cam. \
+             At other speeds its impact is beyond the corner, where that law does not hold."
         ),
-        _ => "This holds for all speeds near enough to omega*, by the implicit function theorem, applied to the map of each side with \
-              the cam's law continued past the corner; how near is not proved."
+        _ => "This holds for all speeds near enough to omega*; how near is not proved. It follows from the implicit function theorem for \
+              the map of each side, with the cam's law continued past the corner."
             .into(),
     };
     let others = match (of.impacts.len(), of.revolutions) {
         (1, 1) => {
-            " How many orbits of one impact in one revolution there are at every speed of a range, `certify --orbits --rpm LO:HI` proves."
+            " `certify --orbits --rpm LO:HI` proves the number of orbits of one impact in one revolution at every speed of a range."
         }
         _ => "",
     };
@@ -243,9 +249,9 @@ fn certificate(of: &Certificate) -> Vec<Block> {
             format!("{} rpm, on the corner at {degrees} deg", Digits::Fixed(6).text(of.speed_rpm.value())).into(),
         ),
         Block::paragraph(format!(
-            "Theorem. There is a periodic orbit of {impacts} in {turns} with one of them on this corner, and no other whose period \
-             and impacts differ from its own by up to {} of them. Each impact is on its piece of the cam; each flight leaves the \
-             cam, is clear of it and ends in a blow. Its map is the one below, found by two routes that agree in every entry.",
+            "Theorem. There is a periodic orbit of {impacts} in {turns} with an impact on this corner. There is no other orbit whose period \
+             and impacts differ from its own by up to {} of their size. Each impact is on its piece of the cam. Each flight leaves the \
+             cam, is clear of it, and ends in an impact at a speed above 0. Its map is given below; two routes agree in every entry.",
             of.alone_within
         )),
         Block::Entries(20, entries),
@@ -255,8 +261,8 @@ fn certificate(of: &Certificate) -> Vec<Block> {
             words![
                 (TextMark::Strong, of.verdict.to_string().as_str()),
                 format!(
-                    ": {}. Next to omega* the machine has the fixed point with the impact before the corner {}, and the one with the \
-                     impact after it {}. {how_far}{others}",
+                    ": {}. Next to omega*, the machine has the fixed point with its impact before the corner at speeds {}. It has the one with \
+                     its impact after the corner at speeds {}. {how_far}{others}",
                     words::meaning(of.verdict, of.sides.minus.stable || of.sides.plus.stable, None),
                     near(&of.sides.minus),
                     near(&of.sides.plus),

@@ -21,10 +21,10 @@ impl Paged for Chaos {
             all if low == high => {
                 page.extend(all.iter().map(|theorem| Block::Table(strips(theorem))));
                 page.push(Block::Note(words![
-                    "x and y are coordinates in a parallelogram of impacts, of cam angle in deg and velocity after the impact \
-                     relative to the cam in ",
+                    "x and y are coordinates without a unit in a parallelogram of impacts. Its axes are the cam angle in deg and the velocity \
+                     after the impact relative to the cam in ",
                     Span::Unit("m/s"),
-                    "; they have no unit. --json has its centre and its sides."
+                    ". --json has its centre and its sides."
                 ]));
             }
             _ => page.push(Block::Table(ranges(self))),
@@ -60,7 +60,7 @@ pub(crate) fn statement(found: &Chaos) -> String {
     let where_at = match (found.rpm[0] < found.rpm[1], found.open.is_empty()) {
         (false, _) => "",
         (true, true) => " at every speed of this range",
-        (true, false) => " at every speed of this range but for those below",
+        (true, false) => " at every speed of this range, except those listed below",
     };
     let symbols = |theorem: &Theorem| -> Vec<u64> { theorem.set.strips.iter().map(|strip| strip.impacts).collect() };
     let entropy = |theorem: &Theorem| at_least(theorem.set.entropy(), 5);
@@ -71,7 +71,7 @@ pub(crate) fn statement(found: &Chaos) -> String {
     let shift = match told {
         [_] => format!(
             "For every sequence of the numbers {}, endless in both directions, there is {cones} that passes through the strips of these numbers \
-             in this order: from each strip it comes to the next one after as many impacts as the strip's number.",
+             in this order. From each strip it reaches the next after as many impacts as the strip's number.",
             words::listed(&symbols(least))
         ),
         _ => format!(
@@ -81,14 +81,14 @@ pub(crate) fn statement(found: &Chaos) -> String {
     };
     let more = more.iter().map(|theorem| {
         format!(
-            " A motion, which need not be one alone, there is for every sequence of {}, with an entropy of at least {}.",
+            " For every sequence of {} there is also a motion, perhaps more than one, with an entropy of at least {}.",
             words::listed(&symbols(theorem)),
             entropy(theorem)
         )
     });
     format!(
-        "Proved: a set of chaotic motions exists{where_at}. {shift} The topological entropy of a revolution is at least {}.{} It is not \
-         said that other motions come to this set.",
+        "Proved: a set of chaotic motions exists{where_at}. {shift} The topological entropy per revolution is at least {}.{} The proof \
+         does not state that other motions converge to this set.",
         entropy(least),
         more.collect::<String>()
     )
@@ -98,13 +98,13 @@ pub(crate) fn statement(found: &Chaos) -> String {
 fn trapped(found: &Trapped, rpm: f64) -> Words {
     let Region { cells, velocities_m_s, part, angles_deg, .. } = found.region;
     let chaos = match found.holds_chaos {
-        true => " All strips lie in it, and so the set of chaotic motions does.",
+        true => " All strips lie in it, and so does the set of chaotic motions.",
         false => "",
     };
     let parted = found.parted.map_or_else(String::new, |growth| {
         format!(
-            " Some deviations of every motion in it grow at each impact, by a factor of at least {}: no periodic orbit in it is stable, and \
-             the largest Lyapunov exponent of no motion is below {} an impact.",
+            " For every motion in it, some deviations grow at each impact by a factor of at least {}. So no periodic orbit in it is stable, and \
+             every motion has a largest Lyapunov exponent of at least {} per impact.",
             at_least(growth, 4),
             // The logarithm has an error below one ulp.
             at_least(elementary::ln(growth).next_down().next_down(), 4)
@@ -113,15 +113,15 @@ fn trapped(found: &Trapped, rpm: f64) -> Words {
     let percent = 100.0 * part;
     words![
         format!(
-            "Proved: a region traps motions at {rpm} rpm. After an impact in one of its {}, all impacts are in them: the follower flies and \
-             hits for ever, and never rests on the cam. They are from {} deg and {} ",
+            "Proved: a region traps motions at {rpm} rpm. After an impact in one of its {}, all later impacts are in them: the follower flies and \
+             hits for ever, and never rests on the cam. The cells lie at {} deg and {} ",
             words::many(cells as u64, "cell"),
             words::range(outwards(angles_deg), Digits::UpTo(4)),
             words::range(outwards(velocities_m_s), Digits::UpTo(4)),
         ),
         Span::Unit("m/s"),
         format!(
-            " relative to the cam, {} % of all angles and velocities up to there.{chaos}{parted}",
+            " relative to the cam, and are {} % of all angles and velocities up to there.{chaos}{parted}",
             if percent < 0.01 { Digits::Size } else { Digits::Significant(2) }.text(percent),
         ),
     ]
@@ -142,13 +142,13 @@ fn escaped(escapes: &[OpenRegion], rpm: f64) -> Words {
                 Span::Unit("m/s"),
                 format!(" {}", words::unproved(flight))
             ],
-            None if escape.cells == 0 => "there was no impact to begin with".into(),
-            None => "there were too many".into(),
+            None if escape.cells == 0 => "no impact was found to begin with".into(),
+            None => "the cells were too many".into(),
         };
         let size = words::many(escape.squares_per_degree.into(), "square");
         words![format!("with {size} a degree, after {}, ", words::many(escape.cells as u64, "cell")), why]
     });
-    words![format!("No region that traps is proved at {rpm} rpm: "), Words::joined(each, "; "), "."]
+    words![format!("No trapping region is proved at {rpm} rpm: "), Words::joined(each, "; "), "."]
 }
 
 /// Table of the strips, with what is proved about each.
@@ -210,11 +210,12 @@ fn open(open: &Open) -> Block {
     let speeds = if low < high { format!("{low} to {high} rpm") } else { format!("{low} rpm") };
     let short = &open.short;
     let tried = match (short.saddles, short.strips) {
-        (0, _) => "there is no saddle of few impacts to begin with".to_owned(),
-        (saddles, 0) => {
-            format!("about {} no two strips come back across", words::many(saddles as u64, "impact of a saddle"))
-        }
-        (_, strips) => format!("{} came back across as sampled", words::many(strips as u64, "strip")),
+        (0, _) => "no saddle of few impacts was found to begin with".to_owned(),
+        (saddles, 0) => format!(
+            "no two strips return across the h-set, around {} of saddles",
+            words::many(saddles as u64, "impact")
+        ),
+        (_, strips) => format!("by sampling, {} returned across the h-set", words::many(strips as u64, "strip")),
     };
     let refused: Vec<String> = short.refused.iter().map(refused).collect();
     Block::paragraph(format!("Not proved at {speeds}: {tried}. {}", refused.join(" ")))

@@ -10,8 +10,8 @@ use corner_impact::published::Verdict;
 
 /// The page for a terminal.
 pub(crate) fn terminal(found: &Claims) -> Vec<Block> {
-    let title = format!("What the paper states, held against {}", found.model);
-    let about = format!("All of it is about {}.", found.source);
+    let title = format!("What the paper states, checked with {}", found.model);
+    let about = format!("The statements are from {}.", found.source);
     let mut blocks =
         vec![Block::Paragraph(0, (TextMark::Heading, title.as_str()).into()), Block::Paragraph(0, about.into())];
     for (verdict, held) in found.groups().filter(|(_, held)| !held.is_empty()) {
@@ -19,7 +19,7 @@ pub(crate) fn terminal(found: &Claims) -> Vec<Block> {
         let count = format!(" ({})", count(found, verdict, held.len()));
         blocks.extend([Block::Gap, Block::Paragraph(0, words![(mark(verdict), name.as_str()), count])]);
         for claim in held {
-            let otherwise = (TextMark::Bad, "OTHERWISE THAN THE LEDGER SAYS");
+            let otherwise = (TextMark::Bad, "THE CHECK CONTRADICTS THE LEDGER");
             let mut head = words![format!("{} [{}]", claim.id, claim.place)];
             if !claim.as_found {
                 head.push(words![": ", otherwise]);
@@ -31,7 +31,7 @@ pub(crate) fn terminal(found: &Claims) -> Vec<Block> {
         }
     }
     let agreement = if found.agrees {
-        (TextMark::Good, "Every check comes to the ledger's verdict.")
+        (TextMark::Good, "Every check confirms the ledger's verdict.")
     } else {
         (TextMark::Bad, "A CHECK DISAGREES WITH THE LEDGER.")
     };
@@ -50,7 +50,7 @@ fn count(found: &Claims, verdict: Verdict, all: usize) -> String {
 /// Errors in other statements that make a statement wrong.
 fn by_slip(claim: &Held) -> Option<String> {
     let others: Vec<&str> = claim.slips.iter().filter(|slip| **slip != claim.id).map(String::as_str).collect();
-    (!others.is_empty()).then(|| format!("By the slip of: {}", others.join("; ")))
+    (!others.is_empty()).then(|| format!("Wrong because of the error in: {}", others.join("; ")))
 }
 
 /// The page under `docs/`: its introduction and its sections.
@@ -61,18 +61,23 @@ pub fn document(found: &Claims) -> Result<(Vec<Block>, Vec<PageSection>), Explai
     let about = words![
         "Written by ",
         Span::Code("make claims".into()),
-        format!("; a test keeps it fresh. All of it is about {}; the printed article was not at hand. ", found.source),
-        "Statements are in words of this project. ",
+        format!(
+            "; a test keeps it up to date. The statements are from {}; the printed article was not available. They are reworded here. ",
+            found.source
+        ),
+        "The verdicts are these. ",
+        term("Holds"),
+        ": the statement is right. ",
         term("Misprint"),
-        ": a slip in what is written, on which no result rests; ",
-        term("refuted"),
-        ": what is said is wrong; ",
-        term("in part"),
-        ": right in part or roughly, and the row says what is not; ",
-        term("definition"),
-        ": there is nothing to check; ",
-        term("open"),
-        ": not decided here yet. How a verdict is known: ",
+        ": an error in print on which no result depends. ",
+        term("Refuted"),
+        ": the statement is wrong. ",
+        term("In part"),
+        ": the statement is right in part or roughly, and its row says what is wrong. ",
+        term("Definition"),
+        ": there is nothing to check. ",
+        term("Open"),
+        ": not decided here yet. The kinds of evidence are these: ",
         term("proved"),
         " by computer algebra, ",
         term("computed"),
@@ -86,8 +91,8 @@ pub fn document(found: &Claims) -> Result<(Vec<Block>, Vec<PageSection>), Explai
         found.groups().map(|(verdict, held)| format!("{} {}", held.len(), verdict_word(verdict))).collect();
     let of = |verdict| words::slips(found.slips_and_consequences(verdict));
     let counts = format!(
-        "{} statements: {}. What is refuted is {}, what is misprinted {}: a consequence has the slip of a statement before it, and none of \
-         its own.",
+        "There are {} statements: {}. The refuted ones are {}. The misprints are {}. A slip is an error that a statement makes itself; a \
+         consequence is wrong only because of a slip in an earlier statement.",
         found.claims.len(),
         counts.join(", "),
         of(Verdict::Refuted),
@@ -123,20 +128,20 @@ fn by_knowledge(found: &Claims) -> PageSection {
         table.row([vec![verdict_word(verdict).into()], ways.map(|known| count(known).into()).to_vec()].concat());
     }
     let filter = Words::prose(
-        "`corner-impact claims --verdict refuted --known computed` lists those of a kind, and `corner-impact explain` with an id says \
-         what is behind one.",
+        "`corner-impact claims --verdict refuted --known computed` lists the statements of one kind. `corner-impact explain` with an id \
+         explains one.",
         [],
     );
     PageSection {
         id: "",
-        title: "How each is known".into(),
+        title: "Evidence by verdict".into(),
         blocks: vec![Block::Table(table), Block::paragraph(filter)],
     }
 }
 
 /// Each error, with the statements that it makes wrong.
 fn slips(found: &Claims) -> PageSection {
-    let heads = ["made in", "verdict", "where", "right instead", "wrong by it as well"];
+    let heads = ["made in", "verdict", "where", "right instead", "also wrong because of it"];
     let mut table = Table::new("", heads.map(|head| Column::left(head, 0, 0)));
     for (maker, others) in found.slips() {
         let correct = maker.correct.as_deref().unwrap_or_default();

@@ -21,7 +21,7 @@ impl Paged for ModelComparison {
         let others = self.changes.iter().filter(is_word).count();
         let verdict = match self.verdict_changed() {
             false if others > 0 => {
-                words!["the same: ", a, format!("; but {} of another kind", words::many(others as u64, "finding"))]
+                words!["the same: ", a, format!("; but {} changed in kind", words::many(others as u64, "finding"))]
             }
             false => words!["the same: ", (TextMark::Good, a.as_str())],
             true => {
@@ -32,30 +32,32 @@ impl Paged for ModelComparison {
             [("verdict", verdict), ("first", (&self.models.a.name).into()), ("second", (&self.models.b.name).into())];
         let entries = entries.into_iter().map(|(name, words)| (name.into(), words)).collect();
         let mut page =
-            vec![Block::Title("What moved from the first model to the second".into()), Block::Entries(9, entries)];
+            vec![Block::Title("What changed from the first model to the second".into()), Block::Entries(9, entries)];
         page.extend(fields(self));
         let (alone, both): (Vec<&Change>, Vec<_>) =
             self.changes.iter().partition(|change| change.a.is_none() || change.b.is_none());
         let (numbers, words): (Vec<&Change>, Vec<_>) = both.into_iter().partition(|change| change.difference.is_some());
         page.extend(kinds(&words));
         let (known, unknown): (Vec<&Change>, Vec<_>) = numbers.into_iter().partition(|change| change.error.is_some());
-        page.extend(moved("Numbers that moved", &known));
-        page.extend(moved("Numbers that moved, and whose error is not known", &unknown));
+        page.extend(moved("Numbers that changed", &known));
+        page.extend(moved("Numbers that changed, with an unknown error", &unknown));
         if known.is_empty() && unknown.is_empty() {
-            page.extend([Block::Gap, Block::paragraph("No number that both have moved by more than its error.")]);
+            page.extend([
+                Block::Gap,
+                Block::paragraph("No number that both models have changed by more than its error."),
+            ]);
         } else {
             // The column appears only if it has informative values.
             let is_told = known.iter().filter_map(|change| change.times_error).any(|times| times <= MANY);
-            let times = if is_told { "times error: the difference over how far it may be off. " } else { "" };
+            let times = if is_told { "times error: the difference over its error. " } else { "" };
             page.extend(speeds(self));
             let sources = Sources::of(&self.measured, self.errors).if_any();
             let open = sources.map_or("a measured cam", Sources::name);
-            let leave = if self.errors.are_none() { "leaves" } else { "leave" };
             let note = format!(
-                "The speeds of the corner impact and of separation come first, then what moved most. moved: the difference over \
-                 the size of the first. {times}Errors are how far routes differ, or an estimate's own, and what {open} \
-                 {leave} open, of both models. Quantities with the same digits in both models share a line. All are computed. Where no unit \
-                 is named, positions are in "
+                "The speeds of the corner impact and of separation come first, then the numbers that changed most. moved: the difference \
+                 over the size of the first number. {times}The error has two parts, of both models: the difference between routes or the \
+                 error of an estimate, and the uncertainty from {open}. Quantities with the same digits in both models share a line. All \
+                 numbers are computed. Unless a unit is named, positions are in "
             );
             page.push(Block::Note(words![
                 note,
@@ -65,16 +67,19 @@ impl Paged for ModelComparison {
                 ", times in s and speeds of linear ranges in rpm."
             ]));
             let note = sources.filter(|sources| !sources.errors.are_none()).map(|sources| {
-                format!("{} A number with the same value and error in both models moves both alike.", sources.note())
+                format!(
+                    "{} The error of a number with the same value and error in both models acts on both alike.",
+                    sources.note()
+                )
             });
             page.extend(note.map(|note| Block::Note(note.into())));
         }
-        page.extend(named("The first alone has", alone.iter().copied().filter(|change| change.b.is_none())));
-        page.extend(named("The second alone has", alone.iter().copied().filter(|change| change.a.is_none())));
+        page.extend(named("Only in the first", alone.iter().copied().filter(|change| change.b.is_none())));
+        page.extend(named("Only in the second", alone.iter().copied().filter(|change| change.a.is_none())));
         let (same, within): (Vec<&Change>, Vec<_>) =
             self.unchanged.iter().partition(|change| change.difference.is_none_or(|difference| difference == 0.0));
         page.extend(named("Different, but by no more than their errors", within.into_iter()));
-        let same = format!("Numbers and words alike in all digits: {}; --json lists them.", same.len());
+        let same = format!("Numbers and words that are the same in all digits: {}; --json lists them.", same.len());
         page.extend([Block::Gap, Block::paragraph(same)]);
         page
     }
@@ -93,14 +98,14 @@ fn told(value: Option<&Value>) -> Words {
 
 fn fields(found: &ModelComparison) -> Vec<Block> {
     if found.fields.is_empty() {
-        return vec![Block::Gap, Block::paragraph("The fields of both models are the same.")];
+        return vec![Block::Gap, Block::paragraph("Both models have the same fields.")];
     }
     let columns = [Column::words("field"), Column::words("first"), Column::words("second")];
     let mut table = Table::new("Fields that differ", columns);
     for field in &found.fields {
         table.row([field.field.as_str().into(), told(field.a.as_ref()), told(field.b.as_ref())]);
     }
-    vec![Block::Heading("What differs in the files".into()), Block::Table(table)]
+    vec![Block::Heading("Fields that differ in the files".into()), Block::Table(table)]
 }
 
 /// Fields with changed words.
@@ -112,7 +117,7 @@ fn kinds(changes: &[&Change]) -> Vec<Block> {
     for change in changes {
         table.row([change.quantity.as_str().into(), told(change.a.as_ref()), told(change.b.as_ref())]);
     }
-    vec![Block::Heading("What is of another kind".into()), Block::Table(table)]
+    vec![Block::Heading("Findings that changed in kind".into()), Block::Table(table)]
 }
 
 /// Groups changes whose two numbers look alike in the displayed digits, ordered by the first change of each group.

@@ -59,7 +59,7 @@ fn exact(found: &Design) -> String {
     varied.dedup();
     let varied = varied.into_iter().map(|name| format!(" Where {0} varies, {0} is exact.", spoken(name)));
     let is_sought = found.needs.iter().any(|answer| is_uncertain(&answer.lever.to_string()));
-    let sought = is_sought.then(|| " A number that is sought has no error of its own.".to_owned());
+    let sought = is_sought.then(|| " A number that is solved for has no error of its own.".to_owned());
     varied.chain(sought).collect()
 }
 
@@ -101,10 +101,12 @@ pub(crate) fn leaves(
                 sources.speed(rpm, Digits::Fixed(6), error),
                 ". ",
                 match places {
-                    [one] =>
-                        words![format!("Each of {} likely {} lets go at ", one.cams, sources.machines()), angles(one)],
+                    [one] => words![
+                        format!("On each of {} equally likely {}, it leaves at ", one.cams, sources.machines()),
+                        angles(one)
+                    ],
                     _ => words![
-                        "Where is open: ",
+                        "The angle is uncertain: ",
                         Words::joined(places.iter().map(|it| place(it, sources.machines())).collect::<Vec<_>>(), ", ")
                     ],
                 },
@@ -124,7 +126,7 @@ pub(crate) fn leaves(
         },
         Separation::NotPressed { cam_angle } => {
             words![
-                "The follower leaves the cam however slow that turns: nothing presses it on at ",
+                "The follower leaves the cam at every speed, however low: nothing presses it onto the cam at ",
                 degrees(cam_angle),
                 " deg."
             ]
@@ -135,7 +137,7 @@ pub(crate) fn leaves(
             " deg."
         ],
         Separation::Never => {
-            "The follower leaves the cam at no speed: the cam nowhere accelerates away from it.".into()
+            "The follower stays on the cam at every speed: the cam nowhere accelerates away from it.".into()
         }
     }
 }
@@ -143,7 +145,7 @@ pub(crate) fn leaves(
 /// One of the places that the follower may leave first.
 fn place(place: &SeparationPlace, machines: &str) -> Words {
     let share = (100.0 * place.share, Digits::Fixed(0));
-    words![angles(place), " for ", share, format!(" % of {} likely {machines}", place.cams)]
+    words![angles(place), " for ", share, format!(" % of {} equally likely {machines}", place.cams)]
 }
 
 /// The angles of a place.
@@ -169,7 +171,7 @@ pub(crate) fn margin(found: &Design) -> Option<Words> {
     let force = with_open(found.force(last.least.value), last.error.map(|error| found.force(error.total())), SIX);
     let (rpm, angle) = ((last.place.rpm, SIX), (last.least.angle.to_degrees(), Digits::Fixed(3)));
     let unit = found.units.force.name();
-    Some(words!["At ", rpm, " rpm the cam presses with ", force, format!(" {unit} at least, at "), angle, " deg."])
+    Some(words!["At ", rpm, " rpm the least contact force is ", force, format!(" {unit}, at "), angle, " deg."])
 }
 
 pub(crate) fn speeds(found: &Design) -> Vec<Block> {
@@ -231,15 +233,15 @@ pub(crate) fn speeds(found: &Design) -> Vec<Block> {
     let heading = if found.over.is_speed() { "Speeds".into() } else { format!("Over {}", found.over.at_speed("")) };
     let mut blocks = vec![Block::Heading(heading.as_str().into()), Block::Table(table)];
     blocks.push(Block::Note(
-        "least force: of the cam on the follower while they touch, computed. Where it is below 0, they separate."
+        "least force: least force of the cam on the follower in contact, computed. Where it is below 0, they separate."
             .into(),
     ));
     if !found.loads.is_empty() {
         let transient = found.budget.transient;
         let words = format!(
-            "The other columns are the largest values of runs from four starts, unless others are given, over 8 revolutions after at most \
-             {transient}. They are sampled: another motion may reach more. impact: speed of the follower relative to the cam. lost: energy \
-             that impacts take. most force: of the cam on the follower between impacts."
+            "The other columns are the largest values over 8 revolutions, after at most {transient} revolutions to settle. They are sampled \
+             by runs from four starts, unless others are given: another motion may reach more. impact: speed of the follower relative to \
+             the cam. lost: energy lost in impacts. most force: largest force of the cam on the follower between impacts."
         );
         blocks.push(Block::Note(words.as_str().into()));
         if found.loads.iter().any(|loads| loads.errors.is_some()) {
@@ -248,12 +250,12 @@ pub(crate) fn speeds(found: &Design) -> Vec<Block> {
                     "from runs with cams that fit the rows".to_owned()
                 }
                 Some(sources) => {
-                    format!("the uncertainty of {}, from runs with machines that are as likely", sources.name())
+                    format!("the uncertainty from {}, found by runs with equally likely machines", sources.name())
                 }
                 None => String::new(),
             };
             let words = format!(
-                "± is {words}. A load that may be 0 shows its upper bound. The last three columns are rounded to their ±, which --json has."
+                "± is {words}. A load that may be 0 shows its upper bound. The last three columns are rounded to their ±; --json has the ±."
             );
             blocks.push(Block::Note(words.as_str().into()));
             blocks.extend(hardest(found).map(Block::Note));
@@ -281,7 +283,7 @@ fn hardest(found: &Design) -> Option<Words> {
 fn limits(found: &Design) -> Vec<Block> {
     let open = match table_sources(found) {
         Some(Sources { cam: Some(_), errors }) if errors.are_none() => "; for the cam as drawn, with the ± above",
-        Some(_) => "; for the machine as it is given, with the ± above",
+        Some(_) => "; for the machine as given, with the ± above",
         None => "",
     };
     let sentence = |passed: &corner_impact::study::design::Passed| {
@@ -300,7 +302,7 @@ fn limits(found: &Design) -> Vec<Block> {
                     if lowest == Some(at.across()) {
                         format!(" already, the lowest of the {values} with loads")
                     } else {
-                        format!(" first, among the {values} above")
+                        format!(", the first of the {values} above")
                     },
                     open
                 ]
@@ -362,7 +364,7 @@ fn needs(found: &Design) -> Vec<Block> {
         }
         blocks.push(Block::Heading(of_need[0].need.as_str().into()));
         blocks.push(Block::Table(table));
-        blocks.push(Block::Note("Each alone, with the others kept.".into()));
+        blocks.push(Block::Note("Each change alone suffices, with the other numbers unchanged.".into()));
         if let Some(sources) = sources.filter(|sources| !sources.errors.are_none()) {
             let part = |answer: &Answer| {
                 let error = answer.error.filter(|error| error.total() > 0.0)?;
@@ -394,9 +396,9 @@ fn rounded(found: &Design) -> Vec<Block> {
         let speed = at.separation_rpm.map_or("".into(), speed);
         table.row([words![(at.corner_rounding_deg, SIX)], speed, change, words![(at.jerk, SIX)]]);
     }
-    let words = "The acceleration of the cam jumps, so that its jerk is infinite. Rounding the corners (corner_rounding_deg) gains a finite jerk, \
-                 which is the smaller the wider the rounding. It costs or gains speed: the rounded acceleration goes beyond both sides of the \
-                 jump by a twelfth of it, but over a short angle.";
+    let words = "The acceleration of the cam jumps, so its jerk is infinite. Rounding the corners (corner_rounding_deg) makes the jerk finite. \
+                 A wider rounding gives a smaller jerk. The separation speed falls or rises: the rounded acceleration overshoots both \
+                 sides of the jump by a twelfth of it, but over a short angle.";
     vec![Block::Heading("Jumps of the acceleration".into()), Block::paragraph(words), Block::Table(table)]
 }
 

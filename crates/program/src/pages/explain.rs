@@ -36,7 +36,7 @@ pub(crate) fn explained(it: &Explanation) -> Vec<Block> {
         say("from", Words::joined(inputs, ", "));
     }
     if !it.also.is_empty() {
-        say("also", words!["the label is of these as well: ", it.also.join("; ")]);
+        say("also", words!["the label also belongs to: ", it.also.join("; ")]);
     }
     let parts = it.value.as_ref().and_then(parts);
     if let (Some(found), true, None) = (&it.value, it.routes.is_empty(), &parts) {

@@ -25,20 +25,20 @@ pub(crate) fn conditions(found: &Verification) -> Vec<(Words, Words)> {
     let (holding, count) =
         (found.conditions.iter().filter(|condition| condition.holds()).count(), found.conditions.len());
     let nearest = found.conditions.iter().min_by(|a, b| a.distance.total_cmp(&b.distance)).map(|nearest| {
-        let words = format!("{holding} of {count} hold; nearest to failing, by ");
+        let words = format!("{holding} of {count} hold; closest to failing, by ");
         ("conditions".into(), about("conditions", words![words, (nearest.distance, Digits::Size), ": ", nearest.name]))
     });
     let failing = found.conditions.iter().filter(|condition| !condition.holds()).map(|failing| {
-        let rests = format!(": {}; the {} rests on it", failing.meaning, words::decides(failing.decides));
+        let rests = format!(": {}; the {} depends on it", failing.meaning, words::decides(failing.decides));
         ("fails".into(), about("conditions", words![failing.name, " = ", (failing.value, Digits::Size), rests]))
     });
     nearest.into_iter().chain(failing).collect()
 }
 
 pub(crate) fn every_condition(found: &Verification) -> Table {
-    let mut columns = vec![Column::words("looked at")];
+    let mut columns = vec![Column::words("condition on")];
     columns.extend(["value", "distance from failing"].map(Column::number));
-    columns.extend(["holds", "decides", "or else"].map(Column::words));
+    columns.extend(["holds", "decides", "if it fails"].map(Column::words));
     let mut table = Table::new("Conditions of the classification", columns);
     for condition in &found.conditions {
         let [value, distance] = [(condition.value, Digits::Significant(6)), (condition.distance, Digits::Size)];
@@ -57,7 +57,7 @@ pub(crate) fn blocks(found: &Verification) -> Vec<Block> {
         return Vec::new();
     }
     let mut blocks = vec![
-        Block::Heading("What the local map does by itself, next to the corner impact".into()),
+        Block::Heading("Motions of the local map, next to the corner impact".into()),
         Block::Entries(COLUMN, found.outcomes.iter().flat_map(motions).collect()).about("local_map"),
     ];
     for outcome in found.outcomes.iter().filter(|outcome| outcome.mu != 0.0 && outcome.orbits.len() > SHOWN) {
@@ -69,7 +69,7 @@ pub(crate) fn blocks(found: &Verification) -> Vec<Block> {
         blocks.push(Block::Details(title.into(), vec![Block::paragraph(Words::joined(orbits, ", "))]));
     }
     if !found.ranges.is_empty() {
-        blocks.push(Block::Heading("How far it holds: within 10 % of the simulated machine".into()));
+        blocks.push(Block::Heading("Range of the local map: within 10 % of the simulated machine".into()));
         blocks.push(Block::Entries(COLUMN, held(found, |range| range.order == 1).collect()).about("linear_range"));
     }
     if let Some(curved) = &found.second_order {
@@ -88,7 +88,7 @@ pub(crate) fn blocks(found: &Verification) -> Vec<Block> {
         let [moved, degrees, within] =
             [rpm_per_degree, degrees, tolerance::ROUNDED_AWAY.value].map(|value| words![(value, Digits::Power(2))]);
         blocks.push(Block::Heading("If the corner is rounded".into()));
-        let told = "the fold is smooth, and {} rpm from omega* for each degree that it is rounded over: no more than {} rpm up to {} deg";
+        let told = "the fold is smooth and lies {} rpm from omega* per degree of rounding, at most {} rpm up to {} deg";
         let told = vec![("by a polynomial".into(), Words::prose(told, [moved, within, degrees]))];
         blocks.push(Block::Entries(COLUMN, told).about("rounded_corner"));
     }
@@ -122,11 +122,11 @@ fn theorem(chaos: &RobustChaos) -> Words {
         return words!["no robust chaos: phi must be positive", rests];
     }
     words![
-        "theorem: the local map has robust chaos, an attractor and no stable orbit of any period, each exponent at least ",
+        "theorem: the local map has robust chaos: an attractor, no stable orbit of any period, and each exponent at least ",
         (chaos.least_exponent, four),
-        " a turn",
+        " per turn",
         rests,
-        "; the follower too near enough to omega*, which is cited: over how many rpm is not known"
+        "; by a cited theorem the follower has it too, near enough to omega*, but over how many rpm is not known"
     ]
 }
 

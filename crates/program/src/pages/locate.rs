@@ -43,7 +43,7 @@ impl Paged for Located {
         page.push(Block::Heading("What happens there".into()));
         page.extend(meanings(&self.found));
         page.extend(rejected(self));
-        page.extend([Block::Heading("What was looked at".into()), Block::paragraph(searched(self))]);
+        page.extend([Block::Heading("What was searched".into()), Block::paragraph(searched(self))]);
         page.extend(words::hypotheses(&self.hypotheses).map(Block::paragraph));
         page
     }
@@ -90,7 +90,8 @@ fn meanings(found: &[LocatedImpact]) -> Vec<Block> {
             Happens::BorderCollision(Ok(Classification { minus, plus, .. })) => {
                 let scenario = words::verdict_with(&scenario, impact.danger.as_ref());
                 meanings.push(Block::paragraph(format!(
-                    "{}: {scenario}. Fixed points: impacts before the corner at speeds {}, {}; after it {}, {}.",
+                    "{}: {scenario}. The fixed point with its impact before the corner exists at {} speeds and is {}. The one with its impact \
+                     after the corner exists at {} speeds and is {}.",
                     index + 1,
                     minus.exists_for,
                     words::stability(minus.stability),
@@ -140,24 +141,28 @@ fn searched(found: &Located) -> String {
         _ => format!(", {left_out} knots of its spline left out"),
     };
     let mut words = if corners == 0 && *left_out == 0 {
-        "The cam has no corner: no derivative of its lift jumps as far as can be told.".to_owned()
+        "The cam has no corner: no jump of a derivative of its lift was found.".to_owned()
     } else if corners == 0 {
         format!(
-            "No corner is looked at: {left_out} knots of the cam's spline, or ends of dwells that its rows show, are no part of what was measured."
+            "No corner was searched: {left_out} knots of the cam's spline, or ends of dwells that its rows show, are not part of the measurement."
         )
     } else {
         format!(
-            "{} of the cam{knots}. Orbits of one impact: {}. Orbits of several impacts were looked for in two independent ways. The first \
-             follows branches of the orbits that a search finds at {} speeds, each {:.0} % faster than the one before, and the branches of \
-             twice the period that begin there ({} stretches of branches). The second fires {VELOCITIES} shots from each corner at speeds \
-             {:.1} % apart. {} Both look for orbits of up to {MOST_IMPACTS} impacts a revolution with no other impact within {:.2} deg of the \
-             corner. A search of a part of the range finds the same there. Orbits on which the follower sticks are left out: their motion does \
-             not depend on where they hit before.",
+            "{} of the cam{knots}. Orbits of one impact: {}. Orbits of several impacts were searched for in two independent ways. The first \
+             follows branches of orbits, and the branches of twice the period that begin on them ({2} stretches of branches). They start from \
+             the orbits that a search finds at {3} speeds, each {4:.0} % above the one before. The second fires {VELOCITIES} shots from each \
+             corner, at speeds {5:.1} % apart. {6} Both look for orbits of up to {MOST_IMPACTS} impacts a revolution, with no other impact \
+             within {7:.2} deg of the corner. A search of a part of the range finds the same there. Orbits on which the follower sticks are \
+             left out: their motion does not depend on earlier impacts.",
             words::many(corners as u64, "corner"),
-            if undecided.is_empty() { "all, which is proved" } else { "all but for what is not decided" },
+            if undecided.is_empty() {
+                "the list is proved to be complete"
+            } else {
+                "the list is complete, except where it is not decided"
+            },
+            searched.branches,
             searched.speeds.len(),
             100.0 * (GRID_RATIO - 1.0),
-            searched.branches,
             100.0 * (SHOT_RATIO - 1.0),
             found_by(found),
             NEAREST_OTHER.to_degrees(),
@@ -169,7 +174,7 @@ fn searched(found: &Located) -> String {
         words += &format!(" Not decided at {angle} deg: {speeds} rpm.");
     }
     if let Some(error) = &searched.failed {
-        words += &format!(" A search could not go on: {error}.");
+        words += &format!(" A search stopped: {error}.");
     }
     words
 }
@@ -184,12 +189,9 @@ fn found_by(found: &Located) -> String {
     let missing = match recaptured.values().map(Recaptured::missing).sum::<f64>() {
         _ if both < TELLING => "too few for an estimate of how many both missed".to_owned(),
         some if some >= 0.1 => {
-            format!(
-                "the overlap gives an estimate of {some:.1} that both missed, or more of those that are hard to find"
-            )
+            format!("by the overlap, both missed an estimated {some:.1}, or more if some are hard to find")
         }
-        _ => "the overlap gives an estimate of none that both missed, except those that are hard to find both ways"
-            .to_owned(),
+        _ => "by the overlap, both missed an estimated 0, except those that are hard to find in both ways".to_owned(),
     };
     let alone = |way: Way| {
         let numbers =
@@ -201,7 +203,7 @@ fn found_by(found: &Located) -> String {
     if branches + shots == 0 {
         return "Neither found any.".into();
     }
-    format!("The first found {branches}, the second {shots}, and {both} are in both: {missing}.{on_branches}{by_shots}")
+    format!("The first found {branches}, the second {shots}, and both found {both}: {missing}.{on_branches}{by_shots}")
 }
 
 /// Agreement of the routes, in a word or two.

@@ -26,7 +26,7 @@ impl Paged for Orbits {
         }
         if self.orbits.iter().any(|orbit| orbit.impacts().next().is_some()) {
             page.push(Block::paragraph(
-                "q and v are the follower's position and velocity, v before and after an impact; v is not relative to the cam.",
+                "q and v are the follower's position and velocity. At an impact, v is given before and after it, not relative to the cam.",
             ));
         }
         page.extend(self.complete.iter().map(complete));
@@ -35,7 +35,7 @@ impl Paged for Orbits {
         page.extend(words::hypotheses(&self.hypotheses).map(Block::paragraph));
         page.extend(sources(self).map(|sources| Block::paragraph(sources.note())));
         if self.measured.is_some() && !self.complete.is_empty() {
-            page.push(Block::paragraph("What is proved is proved of the cam as it is drawn through the rows."));
+            page.push(Block::paragraph("The proofs are for the cam as it is drawn through the rows."));
         }
         page
     }
@@ -45,8 +45,8 @@ impl Paged for Orbits {
 fn complete(of: &Complete) -> Block {
     let (impacts, turns) = (words::many(of.impacts as u64, "impact"), words::many(of.revolutions, "revolution"));
     let others = match of.known {
-        Evidence::Proved => "there are no others, which is proved",
-        _ => "there may be others where it is not decided",
+        Evidence::Proved => "it is proved that there are no others",
+        _ => "there may be others where the proof does not decide",
     };
     Block::paragraph(format!("Orbits of {impacts} in {turns}: {others}."))
 }
@@ -62,7 +62,7 @@ fn how_known(orbits: &[PeriodicOrbit]) -> Option<Block> {
     let judged = orbits.iter().filter(|orbit| orbit.judgement.known == Evidence::Proved).count();
     (proved > 0).then(|| {
         Block::paragraph(format!(
-            "Proved: the existence of {proved} of these orbits, and the stability or instability of {judged}. All digits are computed."
+            "Proved: the existence of {proved} of these orbits, and the stability or instability of {judged}. The digits are computed."
         ))
     })
 }
@@ -77,13 +77,13 @@ fn left_open(sources: Sources<'_>, error: Option<&OrbitUncertainty>) -> Block {
     let (why, machines) = (sources.why(), sources.machines());
     let Some(OrbitUncertainty { total: error, cam, numbers }) = error else {
         return Block::paragraph(format!(
-            "How far that is off is not known: {machines} that are as likely have no such orbit nearby ({why})."
+            "The uncertainty is unknown: equally likely {machines} have no such orbit nearby ({why})."
         ));
     };
     let of = |error: f64| Digits::Aligned(2).text(error);
     let [position, velocity] = error.state.map(of);
     let mut text = words![
-        format!("± {} of a multiplier, {position} ", of(error.multiplier)),
+        format!("± {} in a multiplier, {position} ", of(error.multiplier)),
         Span::Unit("m"),
         format!(" and {velocity} "),
         Span::Unit("m/s"),
@@ -94,7 +94,7 @@ fn left_open(sources: Sources<'_>, error: Option<&OrbitUncertainty>) -> Block {
         text.push(words![
             format!(", {angle} deg and {velocity} "),
             Span::Unit("m/s"),
-            " where it meets the cam or leaves it"
+            " where it meets or leaves the cam"
         ]);
     }
     text.push(format!(": {why}."));
@@ -128,7 +128,7 @@ fn one(number: usize, orbit: &PeriodicOrbit, error: Option<&OrbitErrors>) -> Vec
     let stable = match stability {
         Stability::Neutral => (TextMark::Doubtful, words::stability(stability)),
         _ if error.is_some_and(|error| (largest - 1.0).abs() <= error.multiplier) => {
-            (TextMark::Doubtful, "stable or unstable, which its ± leaves open")
+            (TextMark::Doubtful, "stable or unstable: its ± does not decide")
         }
         Stability::Stable => (TextMark::Good, words::stability(stability)),
         Stability::Unstable => (TextMark::Doubtful, words::stability(stability)),

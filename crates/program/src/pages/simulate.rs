@@ -68,9 +68,9 @@ impl Paged for Swept {
                     "  each run followed for {}{}",
                     words::many(self.followed, "revolution"),
                     if self.is_judged {
-                        ", and longer where growth or attractors are asked for"
+                        ", and longer for growth rates or attractors"
                     } else {
-                        "; what they settle on is not classified"
+                        "; the motions are not classified"
                     }
                 )
                 .into(),

@@ -94,15 +94,15 @@ pub(crate) fn detachment(found: &SpeedSurvey) -> Words {
                 let value = (value, Digits::Significant(9));
                 Sources::of(&found.measured, found.errors).value(value, &unit(found), found.detachment_error())
             }
-            None => "no value in between was located".into(),
+            None => "no value in the range was located".into(),
         };
     };
     match found.detachment() {
         Some([rpm, _]) => {
             Sources::of(&found.measured, found.errors).speed(rpm, Digits::Fixed(6), found.detachment_error())
         }
-        None if separation.speed() > found.range[1] => "no speed in between".into(),
-        None => format!("{} rpm already, or below", found.range[0]).into(),
+        None if separation.speed() > found.range[1] => "no speed in the range".into(),
+        None => format!("{} rpm or below", found.range[0]).into(),
     }
 }
 
@@ -113,8 +113,8 @@ fn sources(found: &SpeedSurvey) -> Option<Sources<'_>> {
 
 /// Method of the search, and what it can miss.
 pub(crate) fn how(found: &SpeedSurvey) -> String {
-    const LOCATED: &str = " A speed with six decimals was located by its equations; others are known from runs alone, to the digits shown.";
-    const VALUE_LOCATED: &str = " A value with nine digits was located by its equations; others are known from runs alone, to the \
+    const LOCATED: &str = " A speed with six decimals was located by its equations. Other speeds come from runs alone, to the digits shown.";
+    const VALUE_LOCATED: &str = " A value with nine digits was located by its equations. Other values come from runs alone, to the \
                                  digits shown.";
     let located = match (sources(found), found.over.is_speed()) {
         (Some(_), _) => "",
@@ -124,20 +124,21 @@ pub(crate) fn how(found: &SpeedSurvey) -> String {
     let value = found.over.value();
     let Budget { transient, patience, .. } = found.budget;
     let followed = format!(
-        " Runs that do not settle within {transient} revolutions are followed for {patience} more, shared by all runs of a {value}, \
-         before the motion is called chaotic: a rest that is rarer is not seen."
+        " Runs that do not settle within {transient} revolutions are followed for {patience} more, shared by all runs of a {value}. \
+         Only then is the motion called chaotic; rarer rests are not seen."
     );
     let unit = if found.over.spacing == Spacing::Logarithmic { " decades".into() } else { unit(found) };
-    let step = format!("at each of the {value}s {}{unit} apart", found.step);
+    let step = format!("at {value}s {}{unit} apart", found.step);
     if let Sample::Given(starts) = &found.sample {
         let starts = words::many(starts.len() as u64, "start");
         return format!("Sampled: {step}, runs begin from the given {starts}.{followed}{located}");
     }
-    let listed = if found.two_impacts { ", and of two in one that a search by intervals finds" } else { "" };
+    let listed =
+        if found.two_impacts { ", and on those of two in one revolution that a search by intervals finds" } else { "" };
     format!(
-        "Sampled: {step}, runs begin from {} starts on the cam (any angle, up to the velocity that impacts sustain), from rest wherever \
-         the cam releases a follower, and on the stable orbits of one impact in up to three revolutions{listed}. An attractor with a basin \
-         of less than {:.1} % of the starts may be missed at a {value}, and so may one that exists only between two {value}s.{followed}{located}",
+        "Sampled: {step}, runs begin from {} starts on the cam (any angle, up to the velocity that impacts sustain). Runs also begin from \
+         rest wherever the cam releases a follower, and on the stable orbits of one impact in up to three revolutions{listed}. An attractor \
+         with a basin of less than {:.1} % of the starts may be missed at a {value}. So may one that exists only between two {value}s.{followed}{located}",
         found.sample.count(),
         100.0 * found.missed(),
     )
@@ -149,10 +150,9 @@ pub(crate) fn uncertainty(found: &SpeedSurvey) -> Vec<Block> {
     let mut blocks: Vec<Block> = unknown.map(|why| Block::paragraph(words::noise_unknown(why))).into_iter().collect();
     let Some(sources) = sources(found) else { return blocks };
     let (name, machines) = (sources.name(), sources.machines());
-    let leave = if machines == "cams" { "leaves" } else { "leave" };
     blocks.push(Block::paragraph(format!(
-        "± is what {name} {leave} open, {}: how far the event moves among {machines} that are as likely. It is ? where that is not known: the \
-         event is not there on each of those {machines}, or runs could not tell.",
+        "± is the uncertainty from {name}, {}: how far the event moves among equally likely {machines}. ? means that it is unknown: the \
+         event is missing on some of those {machines}, or runs could not decide.",
         sources.why()
     )));
     if !sources.errors.are_none() {
@@ -184,11 +184,11 @@ fn rests(attractor: &AttractorRow) -> Option<String> {
     };
     Some(match rests.rate_error {
         Some(error) => format!(
-            "{id} rests on the cam once in {:.0} ± {:.0} revolutions where it is chaotic in between ({} rests in {} revolutions): \
-             what looks like chaos there is on its way to a rest, and repeats from then on.",
+            "Where {id} is chaotic between rests, it rests on the cam once in {:.0} ± {:.0} revolutions ({} in {} revolutions). \
+             The apparent chaos ends with a rest, and the motion repeats from then on.",
             1.0 / rests.rate,
             error / rests.rate.powi(2),
-            rests.rests,
+            words::many(rests.rests, "rest"),
             rests.revolutions
         ),
         None => format!(

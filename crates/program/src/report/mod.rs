@@ -298,7 +298,7 @@ fn overview(model: &Model, cam: &Cam, found: &SpeedSurvey) -> RenderedFigure {
     let title = figure.title.clone();
     let [low, high] = found.range;
     let caption = format!(
-        "Where on the cam the follower of {} hits it, {low} to {high} rpm. Grey: speeds with several motions, each of which runs come to.",
+        "Cam angles at which the follower of {} hits the cam, {low} to {high} rpm. Grey marks speeds at which runs settle on several motions.",
         model.name
     );
     let command = command("speeds", model, &format!("--rpm {low}:{high} --out impacts.svg"));
@@ -310,8 +310,8 @@ fn loads(model: &Model, found: &Design, [low, high]: [f64; 2]) -> RenderedFigure
     let figure = design_figure(found).in_units(|unit| model.units.spelled(unit));
     let title = figure.title.clone();
     let caption = format!(
-        "The least and the greatest force between cam and follower of {}; above the separation the most of what four starts come to: \
-         greatest force, impacts, gap, time off the cam and energy.",
+        "The least and the greatest force between cam and follower of {}. Above the separation speed, force, impacts, gap, time off the cam \
+         and energy are the largest values of runs from four starts.",
         model.name
     );
     let command = command("design", model, &format!("--rpm {low}:{high} --out loads.svg"));
@@ -322,8 +322,8 @@ fn loads(model: &Model, found: &Design, [low, high]: [f64; 2]) -> RenderedFigure
 fn attractors(model: &Model, cam: &Cam, found: &SpeedSurvey) -> RenderedFigure {
     let figure = speeds_figure(found, &corner_marks(cam), WIDTH);
     let title = figure.title.clone();
-    let caption = "What runs end on against the speed: where its impacts are on the cam, a bar for each attractor, and the share of \
-                   the starts that end on it."
+    let caption = "Motions on which runs settle, against the speed: the cam angles of the impacts, a bar for each attractor, and the share of \
+                   the starts that settle on it."
         .to_owned();
     let [low, high] = found.range;
     let command = command("speeds", model, &format!("--rpm {low}:{high} --out attractors.svg"));
@@ -349,11 +349,11 @@ fn commands(model: &Model, [low, high]: [f64; 2], verified: bool) -> Vec<(String
     let again = |name: &str, what| (command(name, model, ""), what);
     let mut commands = vec![again("report", "writes this page")];
     if verified {
-        commands.push(again("verify", "finds the corner impact, its map by every route, and compares"));
-        commands.push(again("claims", "holds the statements of the paper that this program checks against it"));
+        commands.push(again("verify", "finds the corner impact, computes its map by every route, and compares"));
+        commands.push(again("claims", "checks the statements of the paper with this model"));
     }
     commands.push(again("cam", "lists segments and corners of the cam"));
     let speeds = command("speeds", model, &format!("--rpm {low}:{high}"));
-    commands.push((speeds, "what the follower does at each speed, with more speeds than here"));
+    commands.push((speeds, "finds the motions at each speed, with more speeds than here"));
     commands
 }

@@ -18,8 +18,8 @@ pub fn notes(model: &Model, rpm: Option<[f64; 2]>) -> Result<Vec<String>, ModelE
     notes.extend(slips(profile, &strays));
     notes.extend(loose.map(|[within, spread]| {
         format!(
-            "cam.tolerance: {} {unit} is far more than the rows spread by, some {} {unit}; the spline may leave out what the cam has, and ± \
-             does not know of that",
+            "cam.tolerance: {} {unit} is far more than the spread of the rows, about {} {unit}; the spline may smooth features of the cam away, \
+             and ± does not include that",
             told(within),
             told(spread),
             unit = reading.unit
@@ -27,7 +27,7 @@ pub fn notes(model: &Model, rpm: Option<[f64; 2]>) -> Result<Vec<String>, ModelE
     }));
     notes.extend(smoothed_away.map(|[distance, allowed]| {
         format!(
-            "cam.tolerance: the smoothed cam is up to {} {unit} from the rows, far more than their decimals; if the rows are that good, say \
+            "cam.tolerance: the smoothed cam is up to {} {unit} from the rows, far more than their decimals; if the rows are that accurate, set \
              tolerance = {} in [cam]",
             told(distance),
             told(allowed),
@@ -36,7 +36,7 @@ pub fn notes(model: &Model, rpm: Option<[f64; 2]>) -> Result<Vec<String>, ModelE
     }));
     notes.extend(contradicted.map(|row| {
         format!(
-            "{}: the rows are otherwise: at {} deg the cam is {} {} from them",
+            "{}: the rows contradict it: at {} deg the cam is {} {} from them",
             row.field,
             row.cam_angle_deg,
             told(row.off_m),
@@ -57,8 +57,8 @@ fn slips(profile: &TableProfile, strays: &[Stray]) -> Vec<String> {
         let side = if off < 0.0 { "below" } else { "above" };
         let off = Digits::Aligned(2).text(off.abs());
         format!(
-            "{place}: {} {lift} at {cam_angle_deg} deg is {off} {unit} {side} what the rows beside it tell: a slip, or does the cam turn \
-             sharply there?",
+            "{place}: {} {lift} at {cam_angle_deg} deg is {off} {unit} {side} the trend of the rows beside it: is it a slip, or does the cam \
+             turn sharply there?",
             reading.holds.value()
         )
     };
@@ -75,7 +75,7 @@ pub fn as_drawn(model: &Model) -> Result<Option<String>, ModelError> {
     let exact = (!numbers.is_empty()).then(|| {
         let numbers = listed(&numbers);
         format!(
-            "what follows is of the values of {numbers}, whose errors give it no ±: `speeds`, `design`, `locate`, `verify` and `orbit` have one"
+            "the results take {numbers} as exact and have no ± from their errors: `speeds`, `design`, `locate`, `verify` and `orbit` give a ±"
         )
     });
     let drawn = cam_as_drawn(model)?;
@@ -90,13 +90,13 @@ fn cam_as_drawn(model: &Model) -> Result<Option<String>, ModelError> {
     let (accuracy, open) = match open {
         CamUncertainty::Told(cam) => {
             let percent = Digits::Aligned(2).text(100.0 * cam.curvature_error / cam.largest_curvature);
-            (accuracy(&cam), format!("to {percent} % of its largest value"))
+            (accuracy(&cam), format!("by {percent} % of its largest value"))
         }
         CamUncertainty::Unknown(why) => return Ok(Some(noise_unknown(&why))),
-        CamUncertainty::Noise(spread) => (known_to(&profile.reading, spread), "as far as `cam` tells".into()),
+        CamUncertainty::Noise(spread) => (known_to(&profile.reading, spread), "by an amount that `cam` prints".into()),
     };
     Ok(Some(format!(
-        "{accuracy}, which leaves the cam's second derivative open {open}; what follows is of the cam as it is drawn through the rows, \
-         without a ±: `speeds`, `design` and `orbit` tell theirs"
+        "{accuracy}, so the cam's second derivative is uncertain {open}; the results are for the cam as it is drawn through the rows, \
+         without a ±: `speeds`, `design` and `orbit` give a ±"
     )))
 }

@@ -88,11 +88,11 @@ impl<'a> Sources<'a> {
         };
         let numbers = self.numbers();
         match (self.cam, self.errors.are_none()) {
-            (Some(_), true) => "± is of the cam alone: the model gives no error of the follower's numbers.".into(),
+            (Some(_), true) => "± is from the cam alone: the model gives no error of the follower's numbers.".into(),
             (Some(_), false) => format!(
-                "± is the root of the sum of two squares: the part of the cam, and two standard deviations by the errors of {numbers}.{others}"
+                "± is the root of the sum of two squares: the part from the cam, and two standard deviations from the errors of {numbers}.{others}"
             ),
-            (None, _) => format!("± is two standard deviations, by the errors of {numbers}.{others}"),
+            (None, _) => format!("± is two standard deviations, from the errors of {numbers}.{others}"),
         }
     }
 
@@ -126,7 +126,7 @@ impl<'a> Sources<'a> {
                 words![(value, digits), " ± ", (total, digits), format!("{unit}{}", sources.from(&error))]
             }
             (None, Some(sources)) => {
-                words![(value, digits), format!("{unit}, and how far off is not known: {}", sources.why())]
+                words![(value, digits), format!("{unit}, with an unknown uncertainty: {}", sources.why())]
             }
             _ => words![(value, digits), unit],
         }

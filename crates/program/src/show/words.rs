@@ -59,15 +59,17 @@ pub(crate) fn first_touch(touch: FirstTouch, units: &Units) -> String {
             let (passages, depth) = (many(passages, "passage"), Digits::Significant(2).text(depth));
             let unit = units.spelled("m");
             format!(
-                "nothing nearby attracts, since {passages} of the cam's top later an impact is followed by a harder one, \
-                 up to a depth of some {depth} {unit}"
+                "no attractor is nearby: {passages} of the cam's top after an impact, a harder one follows, \
+                 up to a depth of about {depth} {unit}"
             )
         }
         (GrazeClass::PeriodAdding, ..) => {
-            "stable orbits of one impact in ever more revolutions towards the graze, with ranges that overlap".into()
+            "stable orbits of one impact, in more and more revolutions towards the graze, with ranges that overlap"
+                .into()
         }
         (GrazeClass::PeriodAddingChaos, ..) => {
-            "stable orbits of one impact in ever more revolutions towards the graze, with chaos between them".into()
+            "stable orbits of one impact, in more and more revolutions towards the graze, with chaos between them"
+                .into()
         }
         (GrazeClass::Chaos, ..) => "chaos of impacts that shrink towards the graze".into(),
         (_, _, doubt) => doubt.map_or("", doubted).to_owned(),
@@ -84,9 +86,9 @@ pub(crate) fn touch_side(larger: bool) -> &'static str {
 fn doubted(doubt: Doubt) -> &'static str {
     match doubt {
         Doubt::Sharp => "the cam's velocity jumps at its top",
-        Doubt::Flat => "the cam does not fall away from its top as a parabola does",
-        Doubt::Places => "the cam is as high at several places that are not alike",
-        Doubt::Unheld => "nothing returns the follower to where it was",
+        Doubt::Flat => "the cam's top is not a parabola",
+        Doubt::Places => "the cam is highest at several places that are not alike",
+        Doubt::Unheld => "nothing returns the follower to its place",
         Doubt::Resonance => "the follower's oscillation is in resonance with the cam",
         Doubt::Boundary => "the eigenvalue is at the boundary of two classes",
     }
@@ -163,11 +165,11 @@ pub(crate) fn meaning(scenario: Scenario, has_stable: bool, danger: Option<&Dang
         }
         Scenario::Persistence => "the fixed point crosses from one side to the other",
         Scenario::NonsmoothFold if has_stable => {
-            "the two fixed points meet at omega* = 60/T* rpm and vanish: a motion that follows one of them has nowhere to go"
+            "the two fixed points meet at omega* = 60/T* rpm and vanish: beyond it, a motion has no fixed point to follow"
         }
         Scenario::NonsmoothFold => {
-            "the two fixed points meet at omega* = 60/T* rpm and vanish. Both are unstable: what ends there for a follower is not \
-             one of them but what else the local map keeps beside them"
+            "the two fixed points meet at omega* = 60/T* rpm and vanish. Both are unstable: a follower loses there not a fixed point \
+             but any other attractor that the local map has beside them"
         }
         Scenario::NonsmoothFlip => {
             "the fixed point crosses from one side to the other, and an orbit of period two is born"
@@ -208,7 +210,7 @@ pub(crate) fn danger(danger: &Danger) -> Words {
             let sides: Vec<String> = [Speeds::Faster, Speeds::Slower].into_iter().filter_map(at).collect();
             let known = danger.known;
             format!(
-                "several attractors meet at omega* ({known}), {}; near omega* the smallest disturbance decides between them",
+                "several attractors meet at omega* ({known}), {}; near omega* the smallest disturbance selects one of them",
                 sides.join("; ")
             )
             .into()
@@ -229,9 +231,9 @@ pub(crate) fn returns(danger: &Danger) -> Vec<Words> {
             Some(size) => words![(size, Digits::Power(3)), " ", Span::Unit(unit)],
             None => "any size".into(),
         };
-        let name = format!("{} {}", speeds(Some(attractor.speeds)), local_attractor(attractor));
+        let name = format!("{}, {}", speeds(Some(attractor.speeds)), local_attractor(attractor));
         Some(Words::prose(
-            "{} regains a disturbance of its position of {}, of its velocity of {}, of both of {}, for each rpm from omega* (sampled)",
+            "{} recovers from a disturbance of {} in position, {} in velocity, or {} in both, for each rpm from omega* (sampled)",
             [name.into(), size(position, "m"), size(velocity, "m/s"), size(any, "m")],
         ))
     };
@@ -241,21 +243,21 @@ pub(crate) fn returns(danger: &Danger) -> Vec<Words> {
 /// Condition on a strip.
 pub(crate) fn relation(relation: Relation) -> &'static str {
     match relation {
-        Relation::Apart => "that N is a parallelogram above the cam, and its strips are in it and apart,",
-        Relation::Flight => "that each flight ends with an impact that is the first",
-        Relation::Edges => "that its edges are carried beyond N",
-        Relation::Height => "that nothing of it is carried above or below N",
-        Relation::Cones => "that cones are kept",
-        Relation::Losses => "that impacts or flights have losses",
+        Relation::Apart => "the condition that N is a parallelogram above the cam, with its strips inside and apart,",
+        Relation::Flight => "the condition that each flight ends with the first impact",
+        Relation::Edges => "the condition that the images of its edges lie beyond N",
+        Relation::Height => "the condition that no part of its image lies above or below N",
+        Relation::Cones => "the condition that cones are mapped into cones",
+        Relation::Losses => "the condition that impacts or flights have losses",
     }
 }
 
 /// Reason why nothing is proved about a flight.
 pub(crate) fn unproved(why: UnprovedFlight) -> &'static str {
     match why {
-        UnprovedFlight::NoImpact => "the follower may stay on the cam, or not come back to it for long",
+        UnprovedFlight::NoImpact => "the follower may stay on the cam, or not return to it for long",
         UnprovedFlight::NotTransversal => "the next impact may be a graze",
-        UnprovedFlight::NotFirst => "the follower may meet the cam before",
+        UnprovedFlight::NotFirst => "the follower may meet the cam earlier",
     }
 }
 
@@ -317,7 +319,7 @@ pub(crate) fn ends(ends: Ends) -> &'static str {
     match ends {
         Ends::Differs => "",
         Ends::OtherMotion => ", where the real motion ends",
-        Ends::Nothing => ", as far as was tried",
+        Ends::Nothing => ", the furthest that was tried",
     }
 }
 
@@ -325,7 +327,7 @@ pub(crate) fn ends(ends: Ends) -> &'static str {
 pub(crate) fn end(end: &LocalLongRun) -> Words {
     let growth = |what: &str, value, error| {
         let four = Digits::Fixed(4);
-        words![what, ", Lyapunov exponent ", (value, four), " +- ", (error, four), " a turn"]
+        words![what, ", Lyapunov exponent ", (value, four), " +- ", (error, four), " per turn"]
     };
     match end {
         LocalLongRun::Periodic(orbit) if end.fixed_on().is_some() => {
@@ -412,7 +414,9 @@ pub(crate) fn followed_for(each: impl Iterator<Item = u64>) -> String {
 pub(crate) fn transient_chaos(wandering: &Wandering) -> Option<String> {
     let Wandering { revolutions, left, .. } = *wandering;
     (left > 0).then(|| {
-        format!("transient chaos: {left} of the runs that wandered left it for good in {revolutions} revolutions, so that all do sooner or later")
+        format!(
+            "transient chaos: {left} of the runs that did not settle left the chaos for good in {revolutions} revolutions, so all of them do sooner or later"
+        )
     })
 }
 
@@ -445,8 +449,8 @@ pub(crate) fn range(ends: [f64; 2], digits: Digits) -> String {
 /// States that the noise of the rows of a table is unknown, and why.
 pub(crate) fn noise_unknown(why: &str) -> String {
     format!(
-        "How far the rows are from a smooth motion is unknown, since none could be fitted to them (it {why}). The cam is the spline through \
-         the rows; what is said of it has no ± of the table."
+        "The noise of the rows is unknown: no smooth motion could be fitted to them (it {why}). The cam is the spline through \
+         the rows, and its results have no ± from the table."
     )
 }
 
@@ -484,7 +488,7 @@ pub(crate) fn reading(reading: &Reading) -> [String; 3] {
             Separator::Blanks => "blanks",
         };
         let decimals = if layout.decimal_comma { ", with decimal commas" } else { "" };
-        table.push(format!("columns parted by {parted}{decimals}"));
+        table.push(format!("columns separated by {parted}{decimals}"));
         table.push(match &layout.header {
             Some(header) => format!("the header is \"{header}\""),
             None => "there is no header".into(),
@@ -508,7 +512,7 @@ pub(crate) fn reading(reading: &Reading) -> [String; 3] {
         angles.push("they fall, and are read backwards".into());
     }
     if reading.first_deg != 0.0 {
-        angles.push(format!("they begin at {} deg, of whatever turn", Digits::UpTo(6).text(reading.first_deg)));
+        angles.push(format!("they begin at {} deg, apart from whole turns", Digits::UpTo(6).text(reading.first_deg)));
     }
     if reading.merged > 0 {
         angles.push(format!("{} of them repeat the row before", reading.merged));
@@ -534,7 +538,7 @@ pub(crate) fn reading(reading: &Reading) -> [String; 3] {
             true => format!(
                 "{number} is read as {whole}, as the whole numbers beside it show; if it is {decimal}, write them with decimals, too"
             ),
-            false => format!("{number} is read as {decimal}; if {signs} part thousands, it is {whole}, and they must go"),
+            false => format!("{number} is read as {decimal}; if {signs} separate thousands, it is {whole}: remove them"),
         });
     }
     let [first, second] = if are_points { ["x", "y"] } else { ["angles", reading.holds.values()] };

@@ -20,13 +20,13 @@ pub enum StoreError {
     #[error("{folder}: holds another chart: {how}")]
     Another { folder: String, how: String },
     /// The folder holds no store.
-    #[error("{folder}: no store of a chart: {why}")]
+    #[error("{folder}: holds no store of a chart: {why}")]
     None { folder: String, why: String },
     /// The sides of a block are not allowed.
-    #[error("blocks of {columns} x {rows} points: they have 1 or more on each side, and {most} or fewer in all")]
+    #[error("blocks of {columns} x {rows} points: they must have 1 or more on each side, and {most} or fewer in all")]
     Sides { columns: usize, rows: usize, most: usize },
     /// The chart has too many blocks.
-    #[error("{blocks} blocks: a store has {most} or fewer; larger blocks or fewer points make fewer")]
+    #[error("{blocks} blocks: a store can have {most} or fewer; use larger blocks or fewer points")]
     TooMany { blocks: usize, most: usize },
     /// The store has more blocks than can be checked in time.
     #[error(

@@ -77,7 +77,8 @@ impl<'a> Store<'a> {
         let there = match described(folder)? {
             None if store.begin()? => None,
             None => {
-                let words = "it has arrays and no zarr.json, which says of which chart they are; another folder takes a new chart";
+                let words =
+                    "it has arrays but no zarr.json, which describes their chart; use another folder for a new chart";
                 Some(described(folder)?.ok_or_else(|| none(folder, words.into()))?)
             }
             there => there,
@@ -332,8 +333,8 @@ fn difference(there: &Value, asked: &Value, chart: &Chart) -> Option<String> {
     };
     // A model's text and the attributes of arrays are too long to be shown.
     let long = || match there["attributes"]["model_toml"] == asked["attributes"]["model_toml"] {
-        true => "what is said of its arrays is something else".into(),
-        false => "numbers of its model are others".into(),
+        true => "the description of its arrays differs".into(),
+        false => "numbers of its model differ".into(),
     };
     let is_other = |index: &usize| there["attributes"]["axes"][*index] != asked["attributes"]["axes"][*index];
     let axis = |index: usize| other_values([&chart.x, &chart.y][index].parameter.name());

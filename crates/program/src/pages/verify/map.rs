@@ -20,14 +20,13 @@ pub(crate) fn map(found: &Verification) -> Vec<Block> {
             Span::Unit("m"),
             ", velocity in ",
             Span::Unit("m/s"),
-            ") from x*, dT that of the period from T* (s), dx' the deviation one revolution later. minus holds where the impact comes before the corner, plus where it comes \
-             after it. C = h (A+ - A-), D = h (B+ - B-), h = [1 0]: the sides meet where C dx + D dT = 0.",
+            ") from x*. dT is the deviation of the period from T* (s), and dx' is dx one revolution later. minus holds if the impact comes before the \
+             corner, plus if it comes after it. The sides meet where C dx + D dT = 0, with C = h (A+ - A-), D = h (B+ - B-), h = [1 0].",
         ]),
         Block::Full(vec![Block::paragraph(
-            "Each column is computed on its own: no two share a formula for A and B. Finite difference and least squares run \
-             the same simulator; symbolic and scipy run no code of this program, and certificate proves what it is \
-             told where to look for. Digits in which a column leaves the closed \
-             form are underlined.",
+            "The columns are independent: no two share a formula for A and B. Finite difference and least squares run \
+             the same simulator. Symbolic and scipy run no code of this program. Certificate is given the place of the orbit, \
+             and proves the rest. Digits that differ from the closed form are underlined.",
         )]),
         Block::Gap,
     ];
@@ -99,9 +98,9 @@ fn left_open((open, sources): (&LeftOpen, Sources<'_>)) -> Vec<Block> {
     };
     let title = match sources {
         Sources { cam: Some(cam), errors } if errors.are_none() => {
-            format!("What the measured cam leaves open of each entry, {}:", words::accuracy(cam))
+            format!("Uncertainty of each entry from the measured cam, {}:", words::accuracy(cam))
         }
-        sources => format!("What {} leave open of each entry, {}:", sources.name(), sources.why()),
+        sources => format!("Uncertainty of each entry from {}, {}:", sources.name(), sources.why()),
     };
     let mut blocks: Vec<Block> = table(title, &error.total()).into();
     if !sources.errors.are_none() {
@@ -112,7 +111,7 @@ fn left_open((open, sources): (&LeftOpen, Sources<'_>)) -> Vec<Block> {
             _ => true,
         };
         let names = parts.keys().copied().filter(of_one);
-        blocks.extend(names.flat_map(|name| table(format!("Part of {}:", source(name)), &parts[name])));
+        blocks.extend(names.flat_map(|name| table(format!("Part from {}:", source(name)), &parts[name])));
     }
     blocks.extend([Block::paragraph(sources.note()), Block::Gap]);
     blocks
@@ -148,7 +147,7 @@ fn known_to(route: &Route) -> Option<[Block; 2]> {
             (Words::prose("error estimate up to {} in A, {} in B", [size(a), size(b)]), errors(&error))
         }
     };
-    let title = format!("How well {name} knows its entries");
+    let title = format!("Errors that {name} estimates for its entries");
     let entries = Block::Entries(name.len() + 2, vec![(format!("{name}:").into(), words)]);
     Some([entries, Block::Details(title.into(), vec![Block::Table(table)])].map(|block| block.about("uncertainty")))
 }
@@ -205,9 +204,9 @@ pub(crate) fn agreement(found: &Verification) -> Vec<Block> {
             table.row_bad_where(!agrees, [name, count, differ, allowed, share, between]);
         }
     }
-    let title = "Do the routes agree? Every pair, in every quantity; shown is the pair closest to its bound";
+    let title = "Do the routes agree? For each quantity, the pair of routes closest to its bound";
     let follow = found.comparisons.iter().any(|pair| pair.follows).then(|| {
-        let note = "After a +: pairs that follow, both routes taking the quantity from their A and B by one function.";
+        let note = "After a + are the pairs whose agreement follows: one function computes the quantity from the A and B of both routes.";
         Block::Note(note.into())
     });
     let all = format!("All {} comparisons, with the reason of each bound", found.comparisons.len());
@@ -218,7 +217,7 @@ pub(crate) fn agreement(found: &Verification) -> Vec<Block> {
 fn comparisons(found: &Verification) -> Table {
     let mut columns = ["quantity", "between"].map(Column::words).to_vec();
     columns.extend(["differ by", "in parts", "allowed"].map(Column::number));
-    columns.extend(["verdict", "why so much is allowed"].map(Column::words));
+    columns.extend(["verdict", "reason of the bound"].map(Column::words));
     let mut table = Table::new("All comparisons", columns);
     for pair in &found.comparisons {
         let [differ, parts] = [pair.max_abs_diff, pair.max_rel_diff].map(|value| words![(value, Digits::Size)]);

@@ -84,22 +84,21 @@ pub(crate) fn orbit(found: &Verification) -> Vec<Block> {
     }
     if let Some(certificate) = &found.certificate {
         let words = format!(
-            "this orbit exists, and its speed, state, A and B are proved to {} digits: `certify` has them",
+            "this orbit exists; its speed, state, A and B are proved to {} digits, which `certify` prints",
             certificate.digits()
         );
         entries.push(("proved".into(), words.into()));
     }
     let taken = found.certificate.as_ref().and_then(|certificate| words::hypotheses(&certificate.hypotheses()));
     let close = Words::prose(
-        "_T^∗_ lies between {} and {} s; one simulated revolution ends within {} of where it started, in parts of the orbit's \
-         size.",
+        "_T^∗_ lies between {} and {} s. One simulated revolution ends within {} of its start, in parts of the orbit's size.",
         [
             about("period_bracket", significant(at.bracket[0], 16)),
             about("period_bracket", significant(at.bracket[1], 16)),
             about("closure", words![(at.closure, Digits::Size)]),
         ],
     );
-    let title = Block::Heading("The orbit, solved for from the model".into());
+    let title = Block::Heading("The orbit, computed from the model".into());
     let mut page = vec![title, Block::Entries(9, entries)];
     page.extend(taken.map(Block::paragraph));
     page.push(Block::Full(vec![Block::Note(close)]));
@@ -154,10 +153,10 @@ fn left_open(found: &Verification, open: &LeftOpen, sources: Sources<'_>) -> Opt
         .collect();
     let (why, machines) = (sources.why(), sources.machines());
     let said = match others.is_empty() {
-        true => format!("the same of {all} {machines} that are as likely ({why})").into(),
+        true => format!("the same verdict for {all} equally likely {machines} ({why})").into(),
         false => words![
             (TextMark::Doubtful, "not known"),
-            format!(": of {all} {machines} that are as likely ({why}) {}", others.join(", "))
+            format!(": of {all} equally likely {machines} ({why}), {}", others.join(", "))
         ],
     };
     (all > 0).then(|| (format!("on likely {machines}").into(), said))
@@ -226,8 +225,7 @@ fn fixed_points(kind: &Classification) -> [Block; 2] {
             [*determinant, fixed_point[0], fixed_point[1]].map(|value| words![(value, Digits::Significant(8))]);
         table.row([words::side(side).into(), determinant, Words::prose("({}, {})", [position, velocity])]);
     }
-    let odd =
-        "An odd number of eigenvalues above 1 on both sides together is a fold; an odd number below -1 is a flip.";
+    let odd = "An odd number of eigenvalues above 1 on both sides together means a fold; an odd number below -1 means a flip.";
     [Block::Table(table).about("fixed_point"), Block::Note(odd.into())]
 }
 
@@ -323,13 +321,13 @@ pub(crate) fn tally(found: &Verification) -> Vec<Words> {
     let shares = words::shared(shared_decimals);
     let follow = match following {
         0 => String::new(),
-        _ => format!(", and {following_agreeing} of {following} that follow from them"),
+        _ => format!(", and so do {following_agreeing} of {following} that follow from them"),
     };
     let compared =
-        format!("{agreeing} of {comparisons} comparisons agree{follow}; every entry of A and B shares {shares}{more}.");
+        format!("{agreeing} of {comparisons} comparisons agree{follow}. Every entry of A and B shares {shares}{more}.");
     let numbers = format!(
-        "Of the {printed} numbers printed in the paper's source on arXiv {printed_right} hold, {printed_wrong} are wrong as \
-         listed, {printed_otherwise} came out otherwise than found."
+        "Of the {printed} numbers printed in the paper's source on arXiv, {printed_right} hold, {printed_wrong} are wrong as \
+         listed, and {printed_otherwise} differ from the recorded verdict."
     );
     [Some(compared), (printed > 0).then_some(numbers)].into_iter().flatten().map(Words::from).collect()
 }

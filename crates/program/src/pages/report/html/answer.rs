@@ -34,12 +34,13 @@ fn separates(report: &Report) -> Words {
             leaves(report.separation, &report.separation_places, sources(report).if_any(), report.separation_error)
         }
         (Separation::Never, _) => {
-            "The follower stays on the cam at every speed: nowhere does the cam fall away from it.".into()
+            "The follower stays on the cam at every speed: the cam nowhere falls away from it.".into()
         }
         (Separation::Kink { .. }, _) => {
-            "The follower leaves the cam however slow that turns: its velocity jumps.".into()
+            "The follower leaves the cam at every speed, however low: the cam's velocity jumps.".into()
         }
-        _ => "The follower leaves the cam however slow that turns: the spring does not press it on all of it.".into(),
+        _ => "The follower leaves the cam at every speed, however low: the spring does not press it onto the cam everywhere."
+            .into(),
     };
     headed("Separation.", "separation", sentence)
 }
@@ -50,11 +51,11 @@ fn margin(report: &Report) -> Option<Words> {
     let sentence = words![
         "At four fifths of that speed, ",
         (margin.speed_rpm, Digits::Fixed(1)),
-        " rpm, the cam still presses with ",
+        " rpm, the least contact force is still ",
         there,
-        format!(" {} at least, at ", margin.force_unit),
+        format!(" {}, at ", margin.force_unit),
         (margin.cam_angle_deg, Digits::Fixed(1)),
-        "°; standing still, with ",
+        "°. At standstill it is ",
         still,
         format!(" {}.", margin.force_unit)
     ];
@@ -66,21 +67,22 @@ fn impacts(report: &Report) -> Option<Words> {
     let [low, high] = found.range;
     let open = match sources(report).if_any() {
         Some(sources) => {
-            let loads = if report.loads.is_some() { "; the loads below have their ±" } else { "" };
+            let loads = if report.loads.is_some() { ". The loads below have their ±" } else { "" };
             let drawn = if sources.cam.is_some() { "cam as it is drawn" } else { "machine as it is given" };
-            format!(" It is of the {drawn} ({}){loads}.", sources.why())
+            format!(" It is for the {drawn} ({}){loads}.", sources.why())
         }
         None => String::new(),
     };
     let sentence = match found.hardest() {
         Some([speed, rpm]) => words![
-            "The hardest impact that was seen, ",
+            "The hardest impact seen from ",
+            format!("{low} to {high} rpm is "),
             (speed, Digits::Significant(3)),
             " ",
             Span::Unit("m/s"),
-            " between follower and cam, is at ",
+            " between follower and cam, at ",
             (rpm, Digits::Significant(4)),
-            format!(" rpm (looked at: {low} to {high} rpm)."),
+            " rpm.",
             open
         ],
         None => format!("None was seen from {low} to {high} rpm.").into(),
@@ -91,8 +93,8 @@ fn impacts(report: &Report) -> Option<Words> {
 fn coexistence(report: &Report) -> Option<Words> {
     let found = report.speeds.as_ref().ok()?;
     let sentence = match together(found) {
-        ranges if ranges.is_empty() => "At no speed were two motions found that runs come to.".into(),
-        ranges => words!["Which motion a run comes to depends on its start at ", several(ranges), "."],
+        ranges if ranges.is_empty() => "No speed was found at which runs settle on two motions.".into(),
+        ranges => words!["Runs settle on one of several motions, depending on their start, at ", several(ranges), "."],
     };
     Some(headed("Coexistence.", "attractors", sentence))
 }
@@ -121,12 +123,12 @@ fn proved(report: &Report) -> Words {
     let all: Vec<Words> = corner.into_iter().chain(chaos).collect();
     let sentence = match all.is_empty() {
         true => {
-            "Nothing on this page: what it says of speeds comes from runs at some of them, and from some starts.".into()
+            "Nothing on this page: its results over the speeds come from runs at some speeds, from some starts.".into()
         }
         false => words![
             "It is proved ",
             Words::joined(all, ", and "),
-            "; what is said of other speeds comes from runs at some of them. ",
+            ". The results at other speeds come from runs at some of them. ",
             taken.as_deref().unwrap_or_default()
         ],
     };

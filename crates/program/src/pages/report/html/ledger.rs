@@ -79,7 +79,7 @@ pub(crate) fn section(report: &Report) -> Result<Option<PageSection>, HtmlError>
                     p { (sentence(&claim.statement)) }
                     @if let Some(correct) = &claim.correct { p.correct { "Right: " (sentence(correct)) } }
                     @for slip in claim.slips.iter().filter(|slip| **slip != claim.id) {
-                        p { "By the slip of " a href={ "#" (anchor_of(slip)) } { (slip) } "." }
+                        p { "Wrong because of the error in " a href={ "#" (anchor_of(slip)) } { (slip) } "." }
                     }
                     details {
                         summary { "Evidence, " (claim.known) }
@@ -87,7 +87,7 @@ pub(crate) fn section(report: &Report) -> Result<Option<PageSection>, HtmlError>
                         @let behind = behind_of(&claim.id);
                         @if !behind.is_empty() { p.behind { (words(&behind)) } }
                     }
-                    @if !claim.as_found { p.disagrees { "This is otherwise than the ledger says." } }
+                    @if !claim.as_found { p.disagrees { "The check contradicts the ledger." } }
                 }
             }
         }

@@ -22,7 +22,7 @@ pub(crate) fn section(report: &Report, figures: &DrawnFigures) -> Option<PageSec
     // More starts find more motions, and a rare one may hit hardest.
     if let Some([speed, rpm]) = hardest.filter(|[speed, _]| *speed > SHARED * most) {
         let harder = words![
-            "A motion that the four starts do not come to, or at a speed between theirs, hits harder: with ",
+            "Another motion, which the four starts do not reach or which is at a speed between theirs, hits harder: with ",
             (speed, Digits::Significant(3)),
             " ",
             Span::Unit("m/s"),
@@ -32,5 +32,5 @@ pub(crate) fn section(report: &Report, figures: &DrawnFigures) -> Option<PageSec
         ];
         blocks.push(Block::Note(about("impact_speed", harder)));
     }
-    Some(PageSection { id: "loads", title: "How hard it presses and hits".into(), blocks })
+    Some(PageSection { id: "loads", title: "Contact force and impacts".into(), blocks })
 }

@@ -8,8 +8,8 @@ use crate::show::digits::Digits;
 
 pub(crate) fn section(report: &Report, figures: &DrawnFigures) -> PageSection {
     let sheet = &report.model;
-    let motion = "A follower of mass $m$ on a spring, slack at $q0$, flies above a cam of lift $c$($theta$), hits it with $v-$ where the \
-                  cam has the velocity $c'$, and leaves it with $v+$:";
+    let motion = "A follower of mass $m$ on a spring, slack at $q0$, flies above a cam of lift $c$($theta$). It hits the cam with the \
+                  velocity $v-$, where the cam has the velocity $c'$, and leaves it with $v+$:";
     let source = Span::Quoted(sheet.source.clone());
     let laws = ["m q'' + b q' + k (q - q0) = -m g", "v+ = (1 + r) c' - r v-"];
     let mut blocks = vec![Block::paragraph(source), Block::paragraph(motion)];
@@ -31,7 +31,7 @@ fn numbers(report: &Report) -> Table {
     let mut table = Table::new("Numbers of the model", columns);
     for quantity in &report.model.quantities {
         let (digits, field) = match quantity.field.as_str() {
-            "" => (Digits::Significant(12), "follows".into()),
+            "" => (Digits::Significant(12), "derived".into()),
             field => (Digits::All, Span::Code(field.into()).into()),
         };
         let mut value = words![(quantity.value, digits)];

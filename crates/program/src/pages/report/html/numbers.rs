@@ -16,9 +16,8 @@ pub(crate) fn section(report: &Report, sections: &[PageSection]) -> Result<PageS
     let (links, found) = (Links::read()?, report.verification.as_ref().ok());
     let findings = Findings::new(&report.parsed, found)?;
     let mut parts = vec![Block::paragraph(Words::prose(
-        "Click on a number of this page, and what it stands for is shown: formula, inputs, value by every route, how it is known, \
-         and the code, the proof and the tests behind it. The same is folded away here under each name, and `corner-impact explain` \
-         prints it.",
+        "Click on a number of this page to see its meaning: formula, inputs, value by every route, evidence, code, proof and tests. \
+         The same text is folded here under each name, and `corner-impact explain` prints it.",
         [],
     ))];
     for name in names {

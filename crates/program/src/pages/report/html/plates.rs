@@ -86,8 +86,8 @@ pub(crate) fn section(report: &Report, figures: &DrawnFigures) -> Option<PageSec
     }
     let still = still(report).map(|picture| picture.id);
     let drawn = there.into_iter().map(|plate| match plate.id {
-        CAM => Block::Markup(elsewhere(plate, report, " stands with the model.")),
-        id if Some(id) == still => Block::Markup(elsewhere(plate, report, " stands above.")),
+        CAM => Block::Markup(elsewhere(plate, report, " is shown with the model.")),
+        id if Some(id) == still => Block::Markup(elsewhere(plate, report, " is shown above.")),
         _ => self::plate(plate, report, figures),
     });
     Some(PageSection { id: "figures", title: "Figures".into(), blocks: drawn.collect() })

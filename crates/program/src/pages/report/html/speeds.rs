@@ -14,7 +14,7 @@ pub(crate) fn section(report: &Report, figures: &DrawnFigures) -> PageSection {
     if let Some(picture) = &report.attractors {
         let is_still = still(report).is_some_and(|still| still.id == picture.id);
         blocks.push(if is_still {
-            Block::Markup(elsewhere(picture, report, " stands above."))
+            Block::Markup(elsewhere(picture, report, " is shown above."))
         } else {
             plate(picture, report, figures)
         });
@@ -26,11 +26,15 @@ fn attractors(found: &SpeedSurvey) -> Vec<Block> {
     let together = match found.coexistence.is_empty() {
         true => Words::from("No two attractors were found at one speed."),
         false => {
-            words!["Which one a run ends on depends on its start at ", Words::joined(together(found), ", "), " rpm."]
+            words![
+                "Several attractors coexist at ",
+                Words::joined(together(found), ", "),
+                " rpm; the start of a run decides between them."
+            ]
         }
     };
     let separation = block::about("separation", detachment(found));
-    let about = words!["The follower leaves the cam for the first time at ", separation, ". ", together];
+    let about = words!["The follower first leaves the cam at ", separation, ". ", together];
     let mut blocks = vec![Block::paragraph(about), Block::Table(table(found))];
     blocks.extend(remarks(found));
     blocks.extend(dangers(found));

@@ -53,11 +53,11 @@ fn findings(report: &Report, found: &Verification) -> Vec<Words> {
                 .map(|verdict| Words::from(count(verdict)));
         let hold = strong(&format!("{} hold", count(Verdict::Holds)));
         let checks = match report.claims_otherwise() {
-            0 => "every check comes to the ledger's verdict".into(),
-            some => words![some, " came out otherwise than the ledger says"],
+            0 => "every check confirms the ledger's verdict".into(),
+            some => words![some, " of the checks contradict the ledger"],
         };
         findings.push(Words::prose(
-            "Of the {} statements in {} {}, {} in part, {} are misprints, {} refuted ({}), {} open and {} definitions; {}.",
+            "Of the {} statements in {}, {}, {} in part, {} are misprints, {} are refuted ({}), {} are open and {} are definitions; {}.",
             [
                 ledger.claims.len().into(),
                 ledger.source.into(),
@@ -82,16 +82,16 @@ fn disagreements(report: &Report, found: &Verification) -> Vec<Words> {
             quantity(pair.quantity),
             format!(" by {one} and {other} differs by "),
             about("agreement", (pair.max_abs_diff, Digits::Size)),
-            ", allowed is ",
+            ", but the bound is ",
             about("bound", (pair.bound.value, Digits::Size))
         ]
     });
     let numbers = found.published.iter().filter(|number| !number.as_found).map(|number| {
         let name = quantity(number.agreement.quantity);
-        words![name, format!(" in print ({}) came out otherwise", number.place)]
+        words![name, format!(" in print ({}) contradicts its recorded verdict", number.place)]
     });
     let claims = report.claims.iter().flat_map(|ledger| &ledger.claims).filter(|claim| !claim.as_found);
-    let claims = claims.map(|claim| format!("the claim {} came out otherwise", claim.id).into());
+    let claims = claims.map(|claim| format!("the check of the claim {} contradicts the ledger", claim.id).into());
     pairs.chain(numbers).chain(claims).collect()
 }
 
