@@ -161,7 +161,8 @@ def test_speeds_are_a_range_or_any_sequence(paper: Model) -> None:
 
 def test_angles_are_in_rad_or_in_deg_by_name(paper: Model) -> None:
     plain = paper.simulate(670, 20, cam_angle=1.0)
-    for angle in ({"start_angle_rad": 1.0}, {"start_angle_deg": np.degrees(1.0)}):
+    angles: list[dict[str, Any]] = [{"start_angle_rad": 1.0}, {"start_angle_deg": np.degrees(1.0)}]
+    for angle in angles:
         assert np.allclose(paper.simulate(670, 20, **angle).time_s, plain.time_s, rtol=1e-9)
     assert not np.allclose(paper.simulate(670, 1, start_angle_deg=1.0).time_s[0], plain.time_s[0])
     assert np.array_equal(plain.cam_angle_deg, np.degrees(plain.cam_angle_rad))

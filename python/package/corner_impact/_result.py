@@ -47,7 +47,7 @@ class Result(dict[str, Any]):
             for unit, other, turn in (("_deg", "_rad", np.degrees), ("_rad", "_deg", np.radians)):
                 if own.endswith(unit) and (turned := own.removesuffix(unit) + other) in self:
                     angle = _object(self[turned], None)
-                    return turn(angle) if isinstance(angle, np.ndarray) else float(turn(angle))
+                    return float(turn(angle)) if isinstance(angle, float | int) else turn(angle)
         raise AttributeError(f"{type(self).__name__} has no {name!r}; it has: {', '.join(self)}")
 
     def __dir__(self) -> list[str]:
