@@ -57,16 +57,19 @@ struct LocalOrbits {
     orbits: Vec<MapOrbit>,
 }
 
+/// Deviations with changes of the period, and the shape in which they came.
+type Points = (Vec<([f64; 2], f64)>, Vec<usize>);
+
+/// Arguments with which a map was made.
+type Arguments = (Py<Model>, Option<(f64, f64)>, u64);
+
 impl Local {
     fn matrix<'py>(py: Python<'py>, side: &SideMap) -> PyResult<Bound<'py, PyArray2<f64>>> {
         PyArray1::from_slice(py, &side.entries()[..4]).reshape([2, 2])
     }
 
     /// Evaluates something at every point of (..., 2) and at every change of the period.
-    fn at<'py>(
-        dx: &Bound<'py, PyAny>,
-        change: &Bound<'py, PyAny>,
-    ) -> PyResult<(impl Iterator<Item = ([f64; 2], f64)> + use<>, Vec<usize>)> {
+    fn at<'py>(dx: &Bound<'py, PyAny>, change: &Bound<'py, PyAny>) -> PyResult<Points> {
         let points = dx.py().import("numpy")?.call_method1("asarray", (dx,))?;
         let (all, shape) = broadcast(["dx"], [&points])?;
         let Some((2, shape)) = shape.split_last() else {
@@ -75,7 +78,7 @@ impl Local {
         let part = |index: usize| PyArray1::from_iter(dx.py(), all.iter().skip(index).step_by(2).map(|[value]| *value));
         let (one, two) = (part(0).reshape(shape)?, part(1).reshape(shape)?);
         let (rows, shape) = broadcast(["dx[..., 0]", "dx[..., 1]", "dT"], [one.as_any(), two.as_any(), change])?;
-        Ok((rows.into_iter().map(|[one, two, change]| ([one, two], change)), shape))
+        Ok((rows.into_iter().map(|[one, two, change]| ([one, two], change)).collect(), shape))
     }
 }
 
@@ -175,7 +178,7 @@ impl Local {
         #[pyo3(from_py_with = count)] steps: u64,
     ) -> PyResult<Bound<'py, PyAny>> {
         let (points, shape) = Self::at(dx, dT)?;
-        let carried = points.map(|(x, change)| (0..steps).fold(x.into(), |x, _| self.map.apply(x, change)));
+        let carried = points.into_iter().map(|(x, change)| (0..steps).fold(x.into(), |x, _| self.map.apply(x, change)));
         let values: Vec<f64> = carried.flat_map(|x| [x[0], x[1]]).collect();
         let shape = [shape.as_slice(), &[2]].concat();
         Ok(PyArray1::from_vec(dx.py(), values).reshape(shape)?.into_any())
@@ -190,7 +193,7 @@ impl Local {
         let (points, shape) = Self::at(dx, dT)?;
         let sign =
             |(x, change): ([f64; 2], f64)| if self.map.side(x.into(), change) == Side::Minus { -1_i8 } else { 1 };
-        Ok(PyArray1::from_vec(dx.py(), points.map(sign).collect()).reshape(shape)?.into_any())
+        Ok(PyArray1::from_vec(dx.py(), points.into_iter().map(sign).collect()).reshape(shape)?.into_any())
     }
 
     /// Returns the orbit that repeats a sequence of sides, such as "LLR", for a change `dT` of the period, s: L before the corner, R after.
@@ -244,7 +247,7 @@ impl Local {
         Ok(format!("LocalMap('{}', {rpm} rpm)", self.model.get().model.name.escape_default()))
     }
 
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> (Bound<'py, PyAny>, (Py<Model>, Option<(f64, f64)>, u64)) {
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> (Bound<'py, PyAny>, Arguments) {
         let it = slf.get();
         (slf.get_type().into_any(), (it.model.clone_ref(slf.py()), it.rpm, it.revolutions))
     }
