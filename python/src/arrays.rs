@@ -1,4 +1,4 @@
-//! What runs show, in columns.
+//! Records of runs, in columns.
 
 use std::mem::take;
 
@@ -11,10 +11,10 @@ use pyo3::types::PyDict;
 /// Kinds of events in the order of their codes.
 const EVENTS: [EventKind; 3] = [EventKind::Impact, EventKind::Stick, EventKind::Release];
 
-/// The code of what stands in a diagram for a speed whose run could not go on.
+/// Code of the row of a diagram for a run that failed.
 const FAILED: i8 = EVENTS.len() as i8;
 
-/// The names of the codes in a column `event`.
+/// Returns the names of the codes in a column `event`.
 #[pyfunction]
 pub(crate) fn events() -> Vec<&'static str> {
     EVENTS.iter().map(|kind| kind.name()).chain(["failed"]).collect()
@@ -32,7 +32,6 @@ macro_rules! columns {
         columns
     }};
 }
-pub(crate) use columns;
 
 /// The events of one run, column by column.
 #[derive(Default)]

@@ -1,4 +1,4 @@
-//! A grid over two numbers of a model: its blocks as arrays, and the store that processes fill together.
+//! Grids over two numbers of a model: blocks as arrays, and the store that processes fill together.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -14,24 +14,26 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
 use crate::error::OrRaise;
-use crate::model::Model;
-use crate::values::{budget, count, document, numbers, refused, start, thread_count};
+use crate::model::{Model, start_angle};
+use crate::values::{budget, count, document, numbers, refused, result, start, thread_count};
 use crate::work::shared;
 
-/// A grid over two numbers of a model: what one run comes to at each of its points.
+/// A grid over two numbers of a model, with one run at each point: its class, period, growth rate and fastest impact.
 ///
-/// `axes` is a dict of two: a name as for `Model.with_number`, or `rpm`, and its values, in any order; the first runs along the rows of
-/// arrays (down), the second along their columns. `rpm` says the speed where neither is it. Each run starts as for `Model.simulate`, is to
-/// settle within `transient` revolutions on a motion of up to `longest`, and else is followed for `patience` and told by `record` more, as
-/// `corner-impact chart` does.
+/// `axes` is a dict of two: a name as for `Model.with_number`, or `rpm`, and its values, in any order. The first runs along the rows of
+/// arrays, the second along their columns. `rpm` is the speed if no axis is. Each run starts as for `Model.simulate`. It settles within
+/// `transient` revolutions on a motion of a period up to `longest`; otherwise it is followed for `patience` and judged by `record` more,
+/// as `corner-impact chart` does. Raises ValueError if an argument is wrong.
 ///
 /// >>> from corner_impact import Chart, Model
 /// >>> chart = Chart(Model.paper(), {"restitution": [0.7, 0.8], "rpm": [660.0, 700.0, 720.0]})
 /// >>> chart.shape
 /// (2, 3)
-/// >>> chart.compute()["class"]
+/// >>> chart.compute().class_
 /// array([[3, 1, 1],
 ///        [3, 1, 1]], dtype=int8)
+/// >>> chart.sel(restitution=0.7, rpm=700).revolutions.item()
+/// 1
 #[pyclass(frozen, name = "Chart", module = "corner_impact")]
 pub(crate) struct Grid {
     chart: Chart,
@@ -47,8 +49,8 @@ type Named<'py> = (Py<Model>, Bound<'py, PyDict>);
 #[pymethods]
 impl Grid {
     #[new]
-    #[pyo3(signature = (model, axes, *, rpm=None, transient=300, record=100, longest=32, patience=0, cam_angle=0.0,
-        relative_velocity=None, position=None, velocity=None))]
+    #[pyo3(signature = (model, axes, *, rpm=None, transient=300, record=100, longest=32, patience=0, start_angle_rad=None,
+        start_angle_deg=None, cam_angle=None, relative_velocity=None, position=None, velocity=None))]
     #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
     fn new(
         model: Bound<'_, Model>,
@@ -58,11 +60,14 @@ impl Grid {
         #[pyo3(from_py_with = count)] record: u64,
         #[pyo3(from_py_with = count)] longest: u64,
         #[pyo3(from_py_with = count)] patience: u64,
-        cam_angle: f64,
+        start_angle_rad: Option<f64>,
+        start_angle_deg: Option<f64>,
+        cam_angle: Option<f64>,
         relative_velocity: Option<f64>,
         position: Option<f64>,
         velocity: Option<f64>,
     ) -> PyResult<Self> {
+        let cam_angle = start_angle([cam_angle, start_angle_rad, start_angle_deg])?;
         let of = &model.get().model;
         let axis = |(name, values): (Bound<'_, PyAny>, Bound<'_, PyAny>)| -> PyResult<Axis> {
             let name: String = name.extract()?;
@@ -85,7 +90,7 @@ impl Grid {
         self.model.clone_ref(py)
     }
 
-    /// The values of both axes, by the whole names of the numbers.
+    /// Values of both axes, by the dotted paths of the numbers.
     #[getter]
     fn axes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let axes = PyDict::new(py);
@@ -95,66 +100,69 @@ impl Grid {
         Ok(axes)
     }
 
-    /// How many rows and columns.
+    /// Numbers of rows and columns.
     #[getter]
     fn shape(&self) -> (usize, usize) {
         (self.chart.y.values.len(), self.chart.x.values.len())
     }
 
-    /// Revolutions within which a run is to settle.
+    /// Revolutions within which a run settles.
     #[getter]
     fn transient(&self) -> u64 {
         self.chart.budget.transient
     }
 
-    /// Revolutions that are looked at where it does not.
+    /// Revolutions over which the growth of a run is measured that does not settle.
     #[getter]
     fn record(&self) -> u64 {
         self.chart.budget.record
     }
 
-    /// The longest period looked for, revolutions.
+    /// Longest period of a motion on which a run settles, revolutions.
     #[getter]
     fn longest(&self) -> u64 {
         self.chart.budget.longest
     }
 
-    /// Revolutions for which a run that settles on nothing is followed before its growth is looked at.
+    /// Revolutions for which a run is followed that does not settle, before its growth is measured.
     #[getter]
     fn patience(&self) -> u64 {
         self.chart.budget.patience
     }
 
-    /// The speed of all points, rpm; None where it varies.
+    /// Speed of all points, rpm; None if the speed is an axis.
     #[getter]
     fn rpm(&self) -> Option<f64> {
         self.chart.speed()
     }
 
-    /// What a dataset says of where it comes from, with CF's conventions: the model's whole text, the start, the lengths, the version.
+    /// Attributes of a dataset by the CF conventions: the text of the model, the start, the numbers of revolutions, the version.
     #[getter]
     fn attributes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         document(py, &attributes(&self.chart), &Units::default())
     }
 
-    /// What the runs of some rows and columns, (first, end) each, come to, without them of all: two-dimensional arrays by name,
-    /// as `chart_variables` describes them. The points are the same in whatever parts and on however many `threads`.
+    /// Computes the points of some rows and columns, (first, end) each; without them, all points.
+    ///
+    /// Returns a `ChartPoints`: arrays of shape (rows, columns) by name, as `chart_variables` describes them. The points do not depend on
+    /// the part or on the number of `threads`. Raises ValueError if a part is outside the grid.
     #[pyo3(signature = (rows=None, columns=None, *, threads=None))]
     fn compute<'py>(
-        &self,
-        py: Python<'py>,
+        slf: &Bound<'py, Self>,
         rows: Option<(usize, usize)>,
         columns: Option<(usize, usize)>,
         #[pyo3(from_py_with = thread_count)] threads: Option<usize>,
-    ) -> PyResult<Bound<'py, PyDict>> {
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let (py, it) = (slf.py(), slf.get());
         let part = |name: &str, part: Option<(usize, usize)>, all: usize| match part.unwrap_or((0, all)) {
             (first, end) if first <= end && end <= all => Ok(first..end),
             (first, end) => refused(format!("{name} = ({first}, {end}) is no part of {all}")),
         };
-        let (high, wide) = self.shape();
+        let (high, wide) = it.shape();
         let (rows, columns) = (part("rows", rows, high)?, part("columns", columns, wide)?);
         let shape = [rows.len(), columns.len()];
-        let (points, _) = shared(py, || self.chart.part([columns, rows], threads, &Unwatched))?.or_raise()?;
+        let part = [columns.clone(), rows.clone()];
+        let (points, _) = shared(py, || it.chart.part(part, threads, &Unwatched))?.or_raise()?;
         let found = PyDict::new(py);
         for variable in &VARIABLES {
             let values = points.iter().map(|point| variable.of(point));
@@ -170,18 +178,53 @@ impl Grid {
                 }
             }
         }
+        let found = result("ChartPoints", found)?;
+        let axes = PyDict::new(py);
+        for (axis, part) in [(&it.chart.y, rows), (&it.chart.x, columns)] {
+            axes.set_item(axis.parameter.name(), PyArray1::from_slice(py, &axis.values[part]))?;
+        }
+        found.setattr("axes", axes)?;
+        found.setattr("chart", slf)?;
         Ok(found)
     }
 
-    /// Begins the zarr store at `path`, of blocks with so many rows and columns, or finds it begun: how many blocks there are down and
-    /// across. Another chart's store is refused.
+    /// Computes the chart and selects from it by the values of its axes, which may be named by their ends: `chart.sel(restitution=0.7)`.
+    ///
+    /// Returns an xarray Dataset; other options, such as `method="nearest"`, are those of `xarray.Dataset.sel`. Raises KeyError if an
+    /// axis has no such value, and ValueError if there is no such axis.
+    #[pyo3(signature = (**values))]
+    fn sel<'py>(slf: &Bound<'py, Self>, values: Option<&Bound<'py, PyDict>>) -> PyResult<Bound<'py, PyAny>> {
+        Self::compute(slf, None, None, None)?.call_method("sel", (), values)
+    }
+
+    /// Computes the chart and returns it as an xarray Dataset, with units and the meanings of codes as CF attributes.
+    fn to_xarray<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        Self::compute(slf, None, None, None)?.call_method0("to_xarray")
+    }
+
+    /// Computes the chart and writes it to a netCDF file, which `xarray.open_dataset` reads.
+    fn to_netcdf(slf: &Bound<'_, Self>, path: PathBuf) -> PyResult<()> {
+        Self::compute(slf, None, None, None)?.call_method1("to_netcdf", (path,)).map(|_| ())
+    }
+
+    /// Computes the chart and draws one of its variables with matplotlib; arguments are those of `ChartPoints.plot`. Returns the Axes.
+    #[pyo3(signature = (**how))]
+    fn plot<'py>(slf: &Bound<'py, Self>, how: Option<&Bound<'py, PyDict>>) -> PyResult<Bound<'py, PyAny>> {
+        Self::compute(slf, None, None, None)?.call_method("plot", (), how)
+    }
+
+    /// Begins the zarr store at `path`, in blocks of `chunks` (rows, columns), or continues it.
+    ///
+    /// Returns the numbers of blocks down and across. Raises ValueError if the store holds another chart or cannot be written.
     #[pyo3(signature = (path, chunks=(SIDES[1], SIDES[0])), text_signature = "($self, path, chunks=(100, 100))")]
     fn begin(&self, py: Python<'_>, path: PathBuf, chunks: (usize, usize)) -> PyResult<(usize, usize)> {
         let store = py.detach(|| Store::open(&path, &self.chart, [chunks.1, chunks.0]).map(|store| store.blocks()));
         store.or_raise().map(|[across, up]| (up, across))
     }
 
-    /// Computes block number `block` of the store at `path`, counted row by row from 0, if it is not done: whether it was not.
+    /// Computes block number `block` of the store at `path`, counted row by row from 0, unless it is done. Returns whether it computed.
+    ///
+    /// Raises ValueError if there is no such block, or if the store holds another chart or cannot be written.
     #[pyo3(signature = (path, block, chunks=(SIDES[1], SIDES[0]), *, threads=Some(1)),
         text_signature = "($self, path, block, chunks=(100, 100), *, threads=1)")]
     fn fill(
@@ -218,14 +261,17 @@ impl Grid {
     }
 }
 
-/// Which blocks of the store at `path` are done, row by row.
+/// Returns which blocks of the store at `path` are done, row by row: a bool array of shape (blocks,).
+///
+/// Raises ValueError if there is no store.
 #[pyfunction]
 pub(crate) fn blocks_done(py: Python<'_>, path: PathBuf) -> PyResult<Bound<'_, PyArray1<bool>>> {
     Ok(PyArray1::from_vec(py, py.detach(|| blocks_of(&path)).or_raise()?))
 }
 
-/// The arrays of a chart: a dict for each with `name`, `dtype` and `attributes`, those of the store; `class` has the meanings of its
-/// codes as `flag_meanings`. Units are those of a `chart`'s model, without one the SI's.
+/// Describes the arrays of a chart: a dict for each with `name`, `dtype` and `attributes`.
+///
+/// The attributes of `class` have the meanings of its codes as `flag_meanings`. Units are those of the model of `chart`, or SI units.
 #[pyfunction]
 #[pyo3(signature = (chart=None))]
 pub(crate) fn chart_variables<'py>(py: Python<'py>, chart: Option<&Grid>) -> PyResult<Bound<'py, PyList>> {

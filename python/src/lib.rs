@@ -3,8 +3,10 @@
 mod arrays;
 mod error;
 mod grid;
+mod local;
 mod model;
 mod page;
+mod studies;
 mod values;
 mod work;
 
@@ -19,6 +21,8 @@ mod _native {
     #[pymodule_export]
     use crate::grid::{Grid, blocks_done, chart_variables};
     #[pymodule_export]
+    use crate::local::Local;
+    #[pymodule_export]
     use crate::model::Model;
     #[pymodule_export]
     use crate::page::Page;
@@ -26,7 +30,7 @@ mod _native {
     #[pymodule_export]
     use crate::arrays::events;
 
-    /// Runs the command `corner-impact` with these words, its name first: its exit code.
+    /// Runs the command `corner-impact` with the words of a command line, its name first, and returns the exit code.
     #[pyfunction]
     fn main(py: Python<'_>, words: Vec<OsString>) -> u8 {
         py.detach(|| {

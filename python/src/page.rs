@@ -8,9 +8,7 @@ use pyo3::prelude::*;
 
 use crate::model::Model;
 
-/// The live page of a model: HTML that needs no server and no other file. A notebook shows it.
-///
-/// `Model.explore` makes it.
+/// Live page of a model: HTML that needs no server and no other file. `Model.explore` makes it, and a notebook shows it.
 #[pyclass(frozen, module = "corner_impact")]
 pub(crate) struct Page {
     /// The whole page as HTML.
@@ -27,7 +25,7 @@ impl Page {
 
 #[pymethods]
 impl Page {
-    /// Writes the page to a file, which a browser opens.
+    /// Writes the page to a file for a browser.
     fn save(&self, path: PathBuf) -> PyResult<()> {
         Ok(std::fs::write(path, &self.html)?)
     }

@@ -5,9 +5,10 @@ use corner_impact::flight::State;
 use corner_impact::json;
 use corner_impact::model::{Model, Units};
 use corner_impact::orbit::Parameter;
+use corner_impact::orbit::branch::Following;
 use corner_impact::orbit::long_run::Budget;
 use corner_impact::study::survey::{Axis, Placed, Spacing, Start, Values, limits};
-use numpy::{AllowTypeChange, PyArrayLike1};
+use numpy::{AllowTypeChange, PyArray1, PyArrayLike1, PyArrayLikeDyn, PyArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyString};
@@ -55,18 +56,122 @@ pub(crate) fn speed_range((low, high): (f64, f64)) -> PyResult<[f64; 2]> {
     limits::range(range).or_else(|words| refused(format!("rpm: {words}")))
 }
 
-/// The values of an axis; `what` is the word for one of them.
-fn checked(name: &str, (low, high, count): (f64, f64, usize), log: bool, what: &str) -> PyResult<Values> {
-    let spacing = if log { Spacing::Logarithmic } else { Spacing::Linear };
-    let values = Values { low, high, count, spacing }.checked(what);
-    values.or_else(|words| refused(format!("{name}: ({low}, {high}, {count}): {words}")))
-}
-
-/// One speed, or what a survey goes over.
+/// One speed, or a range of them.
 #[derive(FromPyObject)]
 pub(crate) enum Rpm<Range> {
     One(f64),
     Range(Range),
+}
+
+/// The values of an axis as a caller gives them.
+pub(crate) enum AxisValues {
+    /// Lowest, highest, and how many.
+    Spaced(f64, f64, usize),
+    /// Each of them.
+    Each(Vec<f64>),
+}
+
+impl AxisValues {
+    /// The axis of a number, with checked values.
+    fn axis(self, parameter: Parameter, log: bool) -> PyResult<Axis> {
+        let (name, is_speed) = (parameter.name().to_owned(), parameter == Parameter::Speed);
+        let checked = |value: f64| match value {
+            value if is_speed => speed(value),
+            value if value.is_finite() => Ok(value),
+            value => refused(format!("{name} = {value} must be a finite number")),
+        };
+        let spacing = if log { Spacing::Logarithmic } else { Spacing::Linear };
+        match self {
+            Self::Spaced(low, high, count) => {
+                let values = Values { low: checked(low)?, high: checked(high)?, count, spacing };
+                let values = values.checked(if is_speed { "speed" } else { "value" });
+                let values = values.or_else(|words| refused(format!("{name}: ({low}, {high}, {count}): {words}")))?;
+                Ok(Axis::new(parameter, &values))
+            }
+            Self::Each(values) => {
+                let values: Vec<f64> = values.into_iter().map(checked).collect::<PyResult<_>>()?;
+                let Some(least) = values.iter().copied().reduce(f64::min) else {
+                    return refused(format!("{name}: there must be 1 value or more"));
+                };
+                let spacing = self::spacing(log, least)?;
+                Ok(Axis { spacing, ..Axis::of(parameter, values.into()) })
+            }
+        }
+    }
+}
+
+/// One speed, or the speeds of a survey.
+pub(crate) enum Speeds {
+    One(f64),
+    Axis(AxisValues),
+}
+
+/// Reads a number, a tuple (lowest, highest, how many), or any other sequence as each of the speeds.
+pub(crate) fn speeds(value: &Bound<'_, PyAny>) -> PyResult<Speeds> {
+    // An array of one value converts to a number, too.
+    if value.len().is_err() {
+        return Ok(Speeds::One(value.extract()?));
+    }
+    let spaced = value.extract().map(|(low, high, count)| AxisValues::Spaced(low, high, count));
+    Ok(Speeds::Axis(spaced.or_else(|_| numbers("rpm", value).map(AxisValues::Each))?))
+}
+
+/// The name of a number, and the values that it takes.
+pub(crate) type NamedValues = (String, AxisValues);
+
+/// Reads (name, lowest, highest, how many) or (name, values), if any.
+pub(crate) fn over(value: &Bound<'_, PyAny>) -> PyResult<Option<NamedValues>> {
+    if value.is_none() {
+        return Ok(None);
+    }
+    if let Ok((name, low, high, count)) = value.extract() {
+        return Ok(Some((name, AxisValues::Spaced(low, high, count))));
+    }
+    let Ok((name, values)) = value.extract::<(String, Bound<'_, PyAny>)>() else {
+        return refused(format!("over = {value} must be (name, lowest, highest, how many) or (name, values)"));
+    };
+    let values = numbers(&name, &values)?;
+    Ok(Some((name, AxisValues::Each(values))))
+}
+
+/// The range over which orbits or events are followed.
+pub(crate) fn followed(
+    model: &Model,
+    (name, low, high): (String, f64, f64),
+    longest_step: f64,
+    most_points: u64,
+) -> PyResult<Following> {
+    let parameter = Parameter::named(model, &name).or_raise()?;
+    let range = match parameter {
+        Parameter::Speed => speed_range((low, high))?,
+        Parameter::Field(_) => limits::range([low, high]).or_else(|words| refused(format!("{name}: {words}")))?,
+    };
+    if !(longest_step > 0.0 && longest_step.is_finite()) {
+        return refused(format!("step = {longest_step} must be a finite number above 0"));
+    }
+    let most_points = within("points", most_points, [1, 1_000_000])? as usize;
+    Ok(Following { parameter, range, longest_step, most_points })
+}
+
+/// An angle in rad by one of its three names: plain, in rad, or in degrees.
+pub(crate) fn angle(name: &str, plain: &str, given: [Option<f64>; 3]) -> PyResult<Option<f64>> {
+    if given.iter().flatten().count() > 1 {
+        return refused(format!("the angle is given more than once: {plain}, {name}_rad and {name}_deg are one"));
+    }
+    let [plain, rad, deg] = given;
+    Ok(plain.or(rad).or(deg.map(f64::to_radians)))
+}
+
+/// Angles in any shape by one of their three names, and whether they are in degrees.
+pub(crate) fn angles<'a, 'py>(
+    name: &str,
+    given: [Option<&'a Bound<'py, PyAny>>; 3],
+) -> PyResult<(&'a Bound<'py, PyAny>, bool)> {
+    match given {
+        [Some(angles), None, None] | [None, Some(angles), None] => Ok((angles, false)),
+        [None, None, Some(angles)] => Ok((angles, true)),
+        _ => refused(format!("one of {name}, {name}_rad and {name}_deg has the angles")),
+    }
 }
 
 /// How the values of an axis lie.
@@ -74,25 +179,17 @@ pub(crate) fn spacing(log: bool, low: f64) -> PyResult<Spacing> {
     limits::spaced(low, if log { Spacing::Logarithmic } else { Spacing::Linear }).or_else(refused)
 }
 
-/// The one speed, where there is one, and what a diagram goes over.
-pub(crate) fn axis(
-    model: &Model,
-    rpm: Rpm<(f64, f64, usize)>,
-    over: Option<(String, f64, f64, usize)>,
-    log: bool,
-) -> PyResult<(Option<f64>, Axis)> {
+/// The one speed, if there is one, and the axis of a survey.
+pub(crate) fn axis(model: &Model, rpm: Speeds, over: Option<NamedValues>, log: bool) -> PyResult<(Option<f64>, Axis)> {
     match (rpm, over) {
-        (Rpm::Range(range), None) => {
-            let values = checked("rpm", (speed(range.0)?, speed(range.1)?, range.2), log, "speed")?;
-            Ok((None, Axis::new(Parameter::Speed, &values)))
+        (Speeds::Axis(values), None) => Ok((None, values.axis(Parameter::Speed, log)?)),
+        (Speeds::One(rpm), Some((name, values))) => {
+            let parameter = Parameter::named(model, &name).or_raise()?;
+            Ok((Some(speed(rpm)?), values.axis(parameter, log)?))
         }
-        (Rpm::One(rpm), Some((name, low, high, count))) => {
-            let values = checked(&name, (low, high, count), log, "value")?;
-            Ok((Some(speed(rpm)?), Axis::new(Parameter::named(model, &name).or_raise()?, &values)))
-        }
-        (Rpm::One(rpm), None) => refused(format!("rpm = {rpm} is one speed: over says what varies then")),
-        (Rpm::Range(_), Some((name, ..))) => {
-            refused(format!("rpm and {name} are both ranges: with over, rpm is one speed"))
+        (Speeds::One(rpm), None) => refused(format!("rpm = {rpm} is one speed: over says what varies then")),
+        (Speeds::Axis(_), Some((name, ..))) => {
+            refused(format!("rpm and {name} both have several values: with over, rpm is one speed"))
         }
     }
 }
@@ -131,17 +228,57 @@ pub(crate) fn numbers(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Vec<f64>
     }
 }
 
-/// Arrays of one length.
-pub(crate) fn pairs(
-    [one, two]: [&str; 2],
-    first: &Bound<'_, PyAny>,
-    second: &Bound<'_, PyAny>,
-) -> PyResult<Vec<[f64; 2]>> {
-    let (first, second) = (numbers(one, first)?, numbers(two, second)?);
-    if first.len() != second.len() {
-        return refused(format!("{one} has {} numbers, and {two} {}", first.len(), second.len()));
+/// Arrays of numbers broadcast against each other by the rules of numpy: their values side by side, and the common shape.
+pub(crate) fn broadcast<const N: usize>(
+    names: [&str; N],
+    values: [&Bound<'_, PyAny>; N],
+) -> PyResult<(Vec<[f64; N]>, Vec<usize>)> {
+    let mut arrays = Vec::with_capacity(N);
+    for (name, value) in names.iter().zip(values) {
+        match value.extract::<PyArrayLikeDyn<'_, f64, AllowTypeChange>>() {
+            Ok(array) => arrays.push(array),
+            Err(error) => return refused(format!("{name} must be numbers: {}", error.value(value.py()))),
+        }
     }
-    Ok(first.into_iter().zip(second).map(|(first, second)| [first, second]).collect())
+    let views: Vec<_> = arrays.iter().map(|array| array.as_array()).collect();
+    let depth = views.iter().map(|view| view.ndim()).max().unwrap_or(0);
+    let mut shape = vec![1; depth];
+    for view in &views {
+        for (size, other) in shape.iter_mut().rev().zip(view.shape().iter().rev()) {
+            match (*size, *other) {
+                (1, other) => *size = other,
+                (size, other) if size == other || other == 1 => {}
+                _ => {
+                    let told: Vec<_> =
+                        names.iter().zip(&views).map(|(name, view)| format!("{name} {:?}", view.shape())).collect();
+                    return refused(format!("the shapes do not broadcast: {}", told.join(", ")));
+                }
+            }
+        }
+    }
+    let mut rows = vec![[0.0; N]; shape.iter().product()];
+    for (index, view) in views.iter().enumerate() {
+        let whole = view.broadcast(shape.as_slice());
+        for (row, value) in rows.iter_mut().zip(whole.iter().flatten()) {
+            row[index] = *value;
+        }
+    }
+    Ok((rows, shape))
+}
+
+/// Columns of so many rows as arrays of a shape, by name.
+pub(crate) fn shaped<'py, const N: usize>(
+    py: Python<'py>,
+    names: [&str; N],
+    rows: &[[f64; N]],
+    shape: &[usize],
+) -> PyResult<Bound<'py, PyDict>> {
+    let columns = PyDict::new(py);
+    for (index, name) in names.into_iter().enumerate() {
+        let column = PyArray1::from_vec(py, rows.iter().map(|row| row[index]).collect());
+        columns.set_item(name, column.reshape(shape)?)?;
+    }
+    Ok(columns)
 }
 
 /// Columns under their names in the units of a model, with the values that those make others.
@@ -159,6 +296,21 @@ pub(crate) fn in_units<'py>(columns: Bound<'py, PyDict>, units: &Units) -> PyRes
         told.set_item(units.field(&name), values)?;
     }
     Ok(told)
+}
+
+/// An object of a class of `corner_impact.results` with these entries.
+pub(crate) fn result<'py>(class: &str, entries: Bound<'py, PyDict>) -> PyResult<Bound<'py, PyAny>> {
+    entries.py().import("corner_impact.results")?.getattr(class)?.call1((entries,))
+}
+
+/// A document as the command prints it about a model in these units, as an object of a class of `corner_impact.results`.
+pub(crate) fn answer<'py>(
+    py: Python<'py>,
+    class: &str,
+    found: &impl Serialize,
+    units: &Units,
+) -> PyResult<Bound<'py, PyAny>> {
+    result(class, document(py, found, units)?)
 }
 
 /// A document as the command prints it about a model in these units, as a dict.

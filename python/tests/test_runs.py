@@ -9,7 +9,7 @@ import pytest
 from conftest import Command
 from numpy.typing import ArrayLike, NDArray
 
-from corner_impact import EVENTS, Model
+from corner_impact import EVENTS, LocalMap, Model
 
 Columns = dict[str, NDArray[Any]]
 
@@ -121,12 +121,59 @@ def test_starts_of_every_kind(paper: Model) -> None:
         assert found["position_m"][0] == plain["position_m"][0]
     empty = paper.strobe_map(700, [], [], jacobian=True)
     assert empty["position_m"].shape == (0,) and empty["jacobian"].shape == (0, 2, 2)
-    with pytest.raises(ValueError, match="position has 2 numbers, and velocity 3"):
+    with pytest.raises(ValueError, match=r"the shapes do not broadcast: position \[2\], velocity \[3\]"):
         paper.strobe_map(700, [4.0, 5.0], [1.0, 0.0, -1.0])
-    with pytest.raises(ValueError, match="position must be numbers in one dimension"):
-        paper.strobe_map(700, [[4.0]], [1.0])
-    with pytest.raises(ValueError, match="velocity must be numbers in one dimension"):
+    with pytest.raises(ValueError, match="velocity must be numbers"):
         paper.strobe_map(700, [4.0], ["fast"])
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+def test_starts_broadcast_as_in_numpy(paper: Model, threads: int) -> None:
+    position, velocity = np.linspace(2.0, 6.0, 3)[:, None], np.linspace(-20.0, 20.0, 4)
+    found = paper.strobe_map(700, position, velocity, jacobian=True, threads=threads)
+    assert found.position_m.shape == found.velocity_m_s.shape == (3, 4) and found.jacobian.shape == (3, 4, 2, 2)
+    for row, column in [(0, 3), (2, 1)]:
+        one = paper.strobe_map(700, position[row, 0], velocity[column], jacobian=True)
+        assert one.position_m.shape == () and one.position_m == found.position_m[row, column]
+        assert np.array_equal(one.jacobian, found.jacobian[row, column])
+    angle, leaving = np.linspace(2.0, 3.0, 3), np.linspace(10.0, 80.0, 2)[:, None, None]
+    next_one = paper.impact_map(670, angle, leaving, threads=threads)
+    assert {column.shape for column in next_one.values()} == {(2, 1, 3)}
+    assert next_one.cam_angle_rad[1, 0, 2] == paper.impact_map(670, 3.0, 80.0).cam_angle_rad
+    lift = paper.cam(angle.reshape(3, 1))
+    assert lift.lift_m.shape == (3, 1) and lift.lift_m[2, 0] == paper.cam(3.0).lift_m
+    assert paper.strobe_map(700, np.zeros((0, 4)), 0.0).position_m.shape == (0, 4)
+
+
+def test_speeds_are_a_range_or_any_sequence(paper: Model) -> None:
+    spaced = paper.diagram((690, 710, 3), record=2)
+    sequences: list[Any] = [[690, 700, 710], (690.0, 700.0, 710.0), np.array([690.0, 700.0, 710.0]), range(690, 711, 10)]
+    for speeds in sequences:
+        found = paper.diagram(speeds, record=2)
+        assert all(np.array_equal(found[name], spaced[name]) for name in spaced)
+    assert paper.diagram(np.linspace(660, 750, 200), transient=3, record=1).rpm[[0, -1]].tolist() == [660, 750]
+    # Values in another order, and one alone.
+    assert np.unique(paper.diagram([710, 690], record=1).rpm).tolist() == [690, 710]
+    assert paper.diagram(np.array([700.0]), record=2).rpm.tolist() == [700, 700]
+    restitution = paper.diagram(700, over=("restitution", [0.8, 0.65]), record=1)
+    assert np.unique(restitution["follower.restitution"]).tolist() == [0.65, 0.8]
+
+
+def test_angles_are_in_rad_or_in_deg_by_name(paper: Model) -> None:
+    plain = paper.simulate(670, 20, cam_angle=1.0)
+    angles: list[dict[str, Any]] = [{"start_angle_rad": 1.0}, {"start_angle_deg": np.degrees(1.0)}]
+    for angle in angles:
+        assert np.allclose(paper.simulate(670, 20, **angle).time_s, plain.time_s, rtol=1e-9)
+    assert not np.allclose(paper.simulate(670, 1, start_angle_deg=1.0).time_s[0], plain.time_s[0])
+    assert np.array_equal(plain.cam_angle_deg, np.degrees(plain.cam_angle_rad))
+    degrees: list[tuple[Any, Any]] = [
+        (paper.diagram([670], record=3, strobe=1.0), paper.diagram([670], record=3, strobe_deg=np.degrees(1.0))),
+        (paper.strobe_map(670, 4.0, 1.0, cam_angle=1.0), paper.strobe_map(670, 4.0, 1.0, cam_angle_deg=np.degrees(1.0))),
+        (paper.impact_map(670, 2.0, 70.0), paper.impact_map(670, cam_angle_deg=np.degrees(2.0), relative_velocity=70.0)),
+        (paper.cam(2.0), paper.cam(angle_deg=np.degrees(2.0))),
+    ]
+    for one, other in degrees:
+        assert all(np.allclose(one[name], other[name], rtol=1e-9) for name in one)
 
 
 def test_the_impact_map_goes_from_impact_to_impact(paper: Model) -> None:
@@ -174,6 +221,25 @@ def test_the_cam_is_where_the_impacts_are(paper: Model) -> None:
         (lambda it: it.diagram((600, 700, 3), threads=0), "threads = 0 must be a whole number of threads from 1"),
         (lambda it: it.diagram((600, 700, 3), threads=100_000), "threads = 100000 must be"),
         (lambda it: it.strobe_map(700, [5.0], [0.0], threads=-1), "threads"),
+        (lambda it: it.diagram([]), "there must be 1 value or more"),
+        (lambda it: it.diagram([[600.0, 700.0]]), "rpm must be numbers in one dimension"),
+        (lambda it: it.diagram([600.0, -1.0]), "rpm = -1 must be a finite number above 0"),
+        (lambda it: it.diagram(700, over=("mass", [np.nan])), "follower.mass = NaN must be a finite number"),
+        (lambda it: it.diagram(700, over=("mass",)), "must be .name, lowest, highest, how many. or .name, values."),
+        (lambda it: it.simulate(700, start_angle_rad=1, start_angle_deg=1), "given more than once"),
+        (lambda it: it.impact_map(700, 1.0, 1.0, cam_angle_deg=1.0), "one of cam_angle, cam_angle_rad and cam_angle_deg"),
+        (lambda it: it.impact_map(700, 1.0), "relative_velocity is missing"),
+        (lambda it: it.basins(700), "the starts are a grid"),
+        (lambda it: it.basins(700, (0, 5)), "must have 1 to"),
+        (lambda it: it.basins(700, (5, 5), position=(1, 1)), "starts"),
+        (lambda it: it.continue_(700, ("rpm", 710, 690)), "is not below"),
+        (lambda it: it.continue_(700, ("rpm", 690, 710), step=0), "step = 0"),
+        (lambda it: it.continue_(700, ("rpm", 690, 710), doublings=11), "doublings = 11"),
+        (lambda it: it.curve((600, 700), ("restitution", 0.7, 0.8), events=["bang"]), "corner, fold, flip"),
+        (lambda it: it.chaos((700, 600)), "is not below"),
+        (lambda it: it.figure("nothing"), "no figure called .nothing.; there are: cam-shape, cam"),
+        (lambda it: it.explain("B_minos"), "did you mean B_minus"),
+        (lambda it: LocalMap(it, (600, 610)), "no corner impact from 600 to 610 rpm"),
         (lambda it: it.locate((700, 600)), "is not below"),
         (lambda it: it.orbits(700, 0), "revolutions = 0 must be from 1"),
         (lambda it: it.orbits(700, impacts=1, guess=(1.0, 1.0)), "guess and impacts"),

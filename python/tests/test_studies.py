@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from conftest import Command
+from test_runs import table
 
 from corner_impact import Model
 
@@ -36,12 +37,68 @@ from corner_impact import Model
         (lambda it: it.compare(it.with_number("restitution", 0.7), external=False), ["compare", "--set", "restitution=0.7", "--no-external"]),
         (lambda it: it.certify((670, 680)), ["certify", "--rpm", "670:680"]),
         (lambda it: it.certify((690, 700), orbits=True), ["certify", "--rpm", "690:700", "--orbits"]),
+        (lambda it: it.basins(678, (20, 15), strobe_rad=5.76), ["basins", "--rpm", "678", "--strobe", "5.76", "--grid", "20x15"]),
+        (
+            lambda it: it.basins(678, states=[(4.0, 1.0), (5.0, 0.0)], patience=5000, threads=1),
+            ["basins", "--rpm", "678", "--state", "4,1", "--state", "5,0", "--patience", "5000"],
+        ),
+        (
+            lambda it: it.basins(700, (5, 5), over=("restitution", 0.7, 0.8, 2)),
+            ["basins", "--rpm", "700", "--grid", "5x5", "--over", "restitution=0.7:0.8:2"],
+        ),
+        (lambda it: it.basins((700, 710, 2), (5, 5)), ["basins", "--rpm", "700:710:2", "--grid", "5x5"]),
+        (
+            lambda it: it.continue_(738, ("rpm", 735, 745), doublings=1, step=0.05),
+            ["continue", "--rpm", "738", "--over", "rpm=735:745", "--all=1", "--step", "0.05"],
+        ),
+        (
+            lambda it: it.curve((660, 690), ("restitution", 0.79, 0.81), events=["corner", "fold"], impacts=1),
+            ["curve", "--rpm", "660:690", "--over", "restitution=0.79:0.81", "--event", "corner", "--event", "fold", "--impacts", "1"],
+        ),
+        (lambda it: it.chaos(670), ["chaos", "--rpm", "670"]),
+        (lambda it: it.chaos((673, 673.1), trapping=True), ["chaos", "--rpm", "673:673.1", "--trapping"]),
+        (lambda it: it.figure(), ["figure"]),
+        (lambda it: it.figure("cam"), ["figure", "cam"]),
+        (lambda it: it.figure("slow-impacts", rpm=(100, 110)), ["figure", "slow-impacts", "--rpm", "100:110"]),
+        (lambda it: it.explain("B_minus", external=False), ["explain", "B_minus", "--no-external"]),
+        (lambda it: it.explain("CAM_JUMP"), ["explain", "CAM_JUMP"]),
     ],
 )
 def test_documents_are_those_of_the_command(paper: Model, command: Command, ask: Any, words: list[str]) -> None:
-    found = ask(paper)
-    assert found == json.loads(command(*words, "--json"))
+    found, expected = ask(paper), json.loads(command(*words, "--json"))
+    # How long it took is the one thing that differs.
+    assert ("wall_s" in found) == ("wall_s" in expected)
+    assert found.to_dict() | {"wall_s": 0} == expected | {"wall_s": 0} and json.loads(json.dumps(found)) == found
     assert found["schema"] == f"corner-impact/{words[0]}/1"
+
+
+def test_basins_have_the_motion_of_each_start(paper: Model, command: Command) -> None:
+    found = paper.basins(678, (20, 15), strobe_deg=330, position=(0.2, 8), velocity=(-60, 60))
+    rows = table(command("basins", "--rpm", "678", "--strobe", "330deg", "--grid", "20x15", "--position", "0.2:8", "--velocity=-60:60", "--out", "-"))
+    ending = found.ending.ravel()
+    assert found.ending.shape == (15, 20) and np.unique(ending).tolist() == [-1, 0, 1]
+    # A table has the starts that were run.
+    words = [found.endings[index].ending for index in ending if index >= 0]
+    column = next(cells for cells in rows.values() if set(cells) >= {"periodic", "chaotic"})
+    assert [cell for cell in column if cell in words] == words
+    position, velocity = np.meshgrid(found.positions, found.velocities)
+    assert np.isnan(paper.strobe_map(678, position, velocity, cam_angle_deg=330).position_m[found.ending < 0]).all()
+    assert (found.ending >= 0).sum() == found["starts"] and (found.ending == 0).sum() == found.endings[0].starts
+    assert "ending" not in vars(paper.basins(678, states=[(4.0, 1.0)]))
+
+
+def test_a_figure_has_its_picture(paper: Model) -> None:
+    found = paper.figure("cam")
+    assert found.svg.startswith("<svg") and found.title in found.svg
+    with pytest.raises(ValueError, match="no figure local-map: "):
+        Model.parse(paper.text.replace("rpm_max = 760.0", "rpm_max = 610.0")).figure("local-map")
+
+
+def test_an_explanation_without_values_warns(paper: Model) -> None:
+    without = Model.parse(paper.text.replace("rpm_max = 760.0", "rpm_max = 610.0"))
+    with pytest.warns(UserWarning, match="no values: .*corner impact"):
+        found = without.explain("B_minus", external=False)
+    assert found.value is None and found.label == "eq:PT"
 
 
 def test_a_model_with_another_number_is_that_of_the_command(paper: Model, command: Command) -> None:

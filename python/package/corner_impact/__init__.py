@@ -1,18 +1,20 @@
-"""Cam-follower impact oscillators: runs, maps, charts, orbits, corner impacts and their proofs.
+"""Cam-follower systems with impacts: runs, maps, charts, orbits, corner impacts and their proofs.
 
-Everything starts from a `Model`. Runs and maps come as dicts of numpy arrays, which pandas, polars and xarray take as they
-are; studies as the documents that `corner-impact NAME --json` prints, as dicts. Angles are in rad where a name does not end in
-`_deg`, cam angles in [0, 2 pi) with 0 at the middle of the base circle, positions in the cam's coordinates, and all units
-those of the model: names say m, s and kg.
+Start with a `Model`. Its methods return results: dicts with attributes, tables (`to_pandas`, `to_xarray`) and plots. Runs and maps are
+columns of numpy arrays; studies are the documents that `corner-impact NAME --json` prints. `corner_impact.results` lists the classes.
 
-Long calls release the interpreter, and Ctrl-C ends them. What is wrong with an argument is a `ValueError`; in the middle of
-many runs one that fails is NaN, or a class of its own.
+Angles are in rad or deg, as their names say. Cam angles lie in [0, 2 pi), with 0 at the middle of the base circle. Positions are in the
+cam's coordinates. Units are those of the model, by default m, s and kg.
+
+Long calls release the interpreter, and Ctrl-C ends them. A wrong argument raises `ValueError`. Among many runs, one that fails is NaN or
+has a class of its own.
 """
 
 from corner_impact._errors import ModelError
-from corner_impact._native import Chart, Model, Page, __version__, blocks_done, chart_variables, events
+from corner_impact._native import Chart, LocalMap, Model, Page, __version__, blocks_done, chart_variables, events
+from corner_impact._result import Result
 
 EVENTS: tuple[str, ...] = tuple(events())
-"""The kinds of events, in the order of the codes in columns `event`."""
+"""Kinds of events, in the order of the codes in columns `event`."""
 
-__all__ = ["EVENTS", "Chart", "Model", "ModelError", "Page", "__version__", "blocks_done", "chart_variables"]
+__all__ = ["EVENTS", "Chart", "LocalMap", "Model", "ModelError", "Page", "Result", "__version__", "blocks_done", "chart_variables"]

@@ -1,31 +1,34 @@
-"""Charts as xarray datasets: computed here, lazily by Dask, or in a store that many machines fill together.
+"""Charts as xarray datasets: computed here, lazily by Dask, or in a zarr store that many machines fill together.
 
-What is imported here comes with `pip install 'corner-impact[charts]'`. A store is read by `xarray.open_zarr`.
+`pip install 'corner-impact[charts]'` installs the packages for them. `xarray.open_zarr` reads a store.
 """
 
 from collections.abc import Generator
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
-from importlib import import_module
 from itertools import islice
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 
+from corner_impact._extras import need
 from corner_impact._native import Chart, blocks_done, chart_variables
+from corner_impact.results import described
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 __all__ = ["dataset", "fill", "lazy"]
 
 AHEAD = 1000
-"""Blocks that are handed to an executor before the first of them is done: more than any cluster here has workers."""
+"""Largest number of blocks that wait at an executor."""
 
 
-def dataset(chart: Chart, *, threads: int | None = None) -> xr.Dataset:
-    """What one run comes to at each point of `chart`, computed now, on all cores or so many `threads`.
+def dataset(chart: Chart, *, threads: int | None = None) -> "xr.Dataset":
+    """Compute `chart` on all cores or on `threads` threads, and return it as a dataset.
 
-    Variables are two-dimensional, with the units and the meanings of codes as CF attributes.
+    Variables have the shape of the chart, with units and the meanings of codes as CF attributes. Raises ImportError without xarray.
 
     >>> from corner_impact import Chart, Model
     >>> chart = Chart(Model.paper(), {"restitution": [0.7, 0.8], "rpm": [660.0, 700.0]})
@@ -34,18 +37,16 @@ def dataset(chart: Chart, *, threads: int | None = None) -> xr.Dataset:
     >>> [round(float(rate), 9) for rate in dataset(chart).growth_rate.sel(rpm=700)]    # ln 0.7 and ln 0.8
     [-0.356674944, -0.223143551]
     """
-    return _described(chart, dict(chart.compute(threads=threads)))
+    return chart.compute(threads=threads).to_xarray()
 
 
-def lazy(chart: Chart, chunks: tuple[int, int] = (100, 100)) -> xr.Dataset:
-    """The same, in Dask arrays of blocks with so many rows and columns, computed when they are asked for.
+def lazy(chart: Chart, chunks: tuple[int, int] = (100, 100)) -> "xr.Dataset":
+    """Return `chart` as a dataset of Dask arrays in blocks of `chunks` (rows, columns). Each block is computed when it is needed.
 
-    Raises ValueError where a block has no rows or columns.
+    Raises ValueError if a block has no rows or columns, and ImportError without Dask.
     """
-    # Dask is only for those who ask for it, and says nothing of its types.
-    array: Any = import_module("dask.array")
-    delayed: Any = import_module("dask").delayed
-
+    # Dask has no types.
+    array, delayed = need("dask.array", "charts"), need("dask", "charts").delayed
     if min(chunks) < 1:
         raise ValueError(f"chunks = {chunks}: must be 1 or more")
     down, across = (
@@ -61,14 +62,7 @@ def lazy(chart: Chart, chunks: tuple[int, int] = (100, 100)) -> xr.Dataset:
 
         return array.block([[part(row, column) for column in range(len(across))] for row in range(len(down))])
 
-    return _described(chart, {of["name"]: assembled(of["name"], of["dtype"]) for of in chart_variables()})
-
-
-def _described(chart: Chart, arrays: dict[str, Any]) -> xr.Dataset:
-    names, attributes = list(chart.axes), {of["name"]: of["attributes"] for of in chart_variables(chart)}
-    coordinates = {name: (name, values, {"units": "rpm"} if name == "rpm" else {}) for name, values in chart.axes.items()}
-    variables = {name: (names, values, attributes[name]) for name, values in arrays.items()}
-    return xr.Dataset(variables, coordinates, chart.attributes)
+    return described(chart, chart.axes, {of["name"]: assembled(of["name"], of["dtype"]) for of in chart_variables()})
 
 
 def fill(
@@ -78,15 +72,14 @@ def fill(
     *,
     chunks: tuple[int, int] = (100, 100),
 ) -> Generator[tuple[int, int], None, None]:
-    """Computes what the zarr store of `chart` lacks, and tells after each block how many are done, and of how many.
+    """Compute the missing blocks of the zarr store of `chart`, and yield after each block (blocks done, all blocks).
 
-    Blocks have so many rows and columns, and should take a second or more each. They go to the workers of `executor`: a
-    `ProcessPoolExecutor`, Dask's `client.get_executor()`, or whatever has that interface; every worker has to see the store's
-    folder, and has no need of the model's file. Without one, all cores of this machine are used. What is done already is not
-    done again, so that after an interruption the same line goes on; the bytes are the same however they came to be.
+    Blocks have `chunks` (rows, columns); each should take a second or more. They go to the workers of `executor`: a
+    `ProcessPoolExecutor`, Dask's `client.get_executor()`, or another object with that interface. Every worker must see the folder of the
+    store, but not the model's file. Without an executor, all cores of this machine work. After an interruption the same call continues;
+    the bytes do not depend on who computed them.
 
-    Raises ValueError where the store is another chart's or can't be written, and whatever the executor raises for a worker
-    that is lost.
+    Raises ValueError if the store holds another chart or cannot be written, and the executor's error if a worker is lost.
     """
     # A worker may be in another folder.
     place = Path(store).absolute()
@@ -115,5 +108,3 @@ def fill(
     finally:
         for future in running:
             future.cancel()
-
-

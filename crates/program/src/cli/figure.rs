@@ -2,13 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use serde::Serialize;
-
 use super::model::{Changes, is_file_name};
 use super::numbers::rpm_range;
 use super::progress::{Progress, watched};
 use super::{CommandError, Exit, ModelArgument, Session, picture};
-use crate::figures::{Entry, FIGURES, FigureContext, Listed, RenderedFigure, listed};
+use crate::figures::{Entry, FIGURES, FigureContext, FigureList, Listed, OneFigure, RenderedFigure};
 use crate::show::Page;
 use crate::show::block::{Block, Column, Table, Words};
 use crate::show::page::WIDTH;
@@ -42,23 +40,6 @@ pub(super) struct Arguments {
     #[arg(long)]
     json: bool,
 }
-
-#[derive(Serialize)]
-struct List {
-    schema: &'static str,
-    model: String,
-    figures: Vec<Listed>,
-}
-
-#[derive(Serialize)]
-struct One {
-    schema: &'static str,
-    model: String,
-    #[serde(flatten)]
-    plate: RenderedFigure,
-}
-
-const SCHEMA: &str = "corner-impact/figure/1";
 
 /// A model file, and a figure's name, from one or two words.
 fn named(words: &[String]) -> Result<(Option<&str>, Option<&str>), CommandError> {
@@ -127,16 +108,16 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
 }
 
 fn list(model: &Model, subject: &FigureContext, as_json: bool, session: &Session<'_>) -> Result<String, CommandError> {
-    let figures = listed(subject);
+    let found = FigureList::new(subject);
     if as_json {
-        return Ok(json::render(&List { schema: SCHEMA, model: model.name.clone(), figures }, &model.units)?);
+        return Ok(json::render(&found, &model.units)?);
     }
     // Titles fit into one line beside their names, or beside names and places.
     let has_places = session.width() >= WIDTH;
     let heads = ["figure", "in the paper", "shows"].into_iter().filter(|head| has_places || *head != "in the paper");
     let mut table = Table::new("Figures", heads.map(Column::words).collect::<Vec<_>>());
     let name = format!("{}: ", model.name);
-    for Listed { id, place, title } in figures {
+    for Listed { id, place, title } in found.figures {
         let title = title.strip_prefix(&name).unwrap_or(&title);
         let cells = [id, place, title].into_iter().filter(|cell| has_places || *cell != place);
         table.row(cells.map(Words::from).collect::<Vec<_>>());
@@ -152,10 +133,7 @@ fn one(
     session: &Session<'_>,
 ) -> Result<String, CommandError> {
     if arguments.json {
-        return Ok(json::render(
-            &One { schema: SCHEMA, model: subject.model.name.clone(), plate },
-            &subject.model.units,
-        )?);
+        return Ok(json::render(&OneFigure::new(subject, plate), &subject.model.units)?);
     }
     let of = match (plate.place, subject.is_paper) {
         ("", _) => String::new(),

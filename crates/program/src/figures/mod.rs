@@ -139,6 +139,41 @@ pub fn listed(subject: &FigureContext) -> Vec<Listed> {
     FIGURES.iter().map(|entry| Listed { id: entry.id, place: entry.place, title: (entry.title)(subject) }).collect()
 }
 
+const SCHEMA: &str = "corner-impact/figure/1";
+
+/// The figures of a model: the document of `figure --json`.
+#[derive(Clone, Debug, Serialize)]
+pub struct FigureList {
+    schema: &'static str,
+    model: String,
+    /// The figures, in order.
+    pub figures: Vec<Listed>,
+}
+
+impl FigureList {
+    /// Lists the figures of a model.
+    pub fn new(subject: &FigureContext) -> Self {
+        Self { schema: SCHEMA, model: subject.model.name.clone(), figures: listed(subject) }
+    }
+}
+
+/// One figure with every number that it shows: the document of `figure ID --json`.
+#[derive(Clone, Debug, Serialize)]
+pub struct OneFigure {
+    schema: &'static str,
+    model: String,
+    /// The figure.
+    #[serde(flatten)]
+    pub plate: RenderedFigure,
+}
+
+impl OneFigure {
+    /// Names the model of a figure.
+    pub fn new(subject: &FigureContext, plate: RenderedFigure) -> Self {
+        Self { schema: SCHEMA, model: subject.model.name.clone(), plate }
+    }
+}
+
 /// Draws every figure; `progress` gets the number done and the total.
 pub fn plates(subject: &FigureContext, progress: &mut dyn FnMut(usize, usize)) -> Vec<RenderedFigure> {
     let plates = FIGURES.iter().enumerate().map(|(index, entry)| {
