@@ -293,7 +293,7 @@ fn numbers_in_the_prose_are_computed_ones() {
 }
 
 /// Pages that are still to be rewritten. One that has become short enough must leave this list.
-const LONG_WINDED: &[&str] = &["docs/claims.md", "docs/python.md"];
+const LONG_WINDED: &[&str] = &[];
 
 /// A page is read at first sight: short sentences on the average, and none that must be read twice for its length.
 #[test]
