@@ -112,7 +112,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     if let Some(path) = &arguments.out {
         let table = || csv::basins(&basins, &model.units);
         let picture = || {
-            let title = format!("{} at {rpm} rpm: the motion that each start settles on", model.name);
+            let title = format!("{} at {rpm} rpm: what each start settles on", model.name);
             // Refused above where there is none.
             let grid = grid.ok_or_else(|| CommandError::Words("a picture needs a grid".into()))?;
             Ok(basins_figure(&title, &grid, &basins, &section.border(&grid, &basins)))

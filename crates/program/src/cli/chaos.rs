@@ -41,8 +41,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     match (canvas, found.theorems.first()) {
         (Some(canvas), Some(theorem)) => {
             let rpm = theorem.set.rpm[0];
-            let title =
-                format!("{} at {rpm} rpm: strips of N and their images after the numbers of impacts shown", model.name);
+            let title = format!("{} at {rpm} rpm: strips of N and their images", model.name);
             let figure = chaos_figure(&title, &theorem.set, &portrait(&model, &theorem.set)?);
             canvas.write(figure, &model.units)?;
         }
