@@ -246,7 +246,7 @@ fn the_page_fits_and_counts_what_it_does_not_list() {
         assert!(page.lines().all(|line| line.chars().count() <= 100 && !line.ends_with(' ')), "{page}");
         assert!(page.lines().count() < 60, "{page}");
     }
-    assert!(page("table-quintic.toml").contains("360 of order 5, the largest jump"));
+    assert!(page("table-quintic.toml").contains("360 of order 5, with the largest jump"));
     assert!(page("harmonic.toml").contains("No jump was found in the derivatives of the lift up to order 11"));
     assert!(
         page("program.toml")
