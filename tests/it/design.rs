@@ -205,7 +205,7 @@ fn the_document_has_the_fields_of_the_contract() {
     assert_eq!(needs.len(), 8);
     for need in needs {
         assert!(need["unit"].is_string() && need["parameter"].is_string() && need["need"].is_string());
-        assert!(need["value"].is_f64() || need["note"].as_str().unwrap().contains("does it"), "{need}");
+        assert!(need["value"].is_f64() || need["note"].as_str().unwrap().contains("suffices"), "{need}");
     }
     assert!(needs[..4].iter().all(|need| need["known"] == "computed"));
     assert!(needs[4..].iter().all(|need| need["known"] == "sampled"));

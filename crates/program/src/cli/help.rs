@@ -30,7 +30,7 @@ pub(super) fn plain() -> Command {
     whole().after_help(EXAMPLES)
 }
 
-/// The command line, with a full stop behind texts of several sentences, which clap takes away.
+/// The command line, with a full stop behind texts of several sentences, which clap takes away. It takes half a megabyte: for printing alone.
 fn whole() -> Command {
     let stopped = |argument: Arg| {
         let help = argument.get_help().map(ToString::to_string).unwrap_or_default();
@@ -77,8 +77,10 @@ const ESSENTIAL: &[&str] = &[
 ];
 
 /// The command line, laid out for so many columns: all of it, or what `-h` shows.
-pub(super) fn command(width: usize, is_short: bool) -> Command {
-    let mut command = whole().styles(STYLES).term_width(width).max_term_width(width);
+pub(super) fn command(width: usize, words: &[OsString]) -> Command {
+    let is_short = is_short(words);
+    let command = if prints_help(words) { whole() } else { Arguments::command() };
+    let mut command = command.styles(STYLES).term_width(width).max_term_width(width);
     let template = if is_short { brief(&command, width) } else { template(&command, width) };
     if is_short {
         command = ["color", "threads"]
@@ -101,8 +103,18 @@ pub(super) fn command(width: usize, is_short: bool) -> Command {
 }
 
 /// Whether the short page is asked for.
-pub(super) fn is_short(words: &[OsString]) -> bool {
-    words.iter().skip(1).take_while(|word| *word != "--").any(|word| word == "-h")
+fn is_short(words: &[OsString]) -> bool {
+    before_dashes(words).any(|word| word == "-h")
+}
+
+/// Whether any page of help is asked for.
+fn prints_help(words: &[OsString]) -> bool {
+    words.len() < 2 || before_dashes(words).any(|word| ["-h", "--help", "help"].iter().any(|help| word == help))
+}
+
+/// Words that can be options or commands.
+fn before_dashes(words: &[OsString]) -> impl Iterator<Item = &OsString> {
+    words.iter().skip(1).take_while(|word| *word != "--")
 }
 
 const MORE: &str = "`corner-impact MODEL` lists what you can do with a model. `corner-impact COMMAND --help` has all options and more examples.";

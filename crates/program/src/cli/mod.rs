@@ -235,13 +235,17 @@ pub fn run_at(
         named: String::new(),
         wishes: Wishes::default(),
     };
-    let mut command = help::command(session.width(), help::is_short(&words));
+    let mut command = help::command(session.width(), &words);
     let matches = command.try_get_matches_from_mut(&words);
     session.rpm = matches.as_ref().ok().and_then(session::speeds);
     session.wishes = matches.as_ref().map(Wishes::of).unwrap_or_default();
     let only_prints = matches.as_ref().is_ok_and(|matches| session::only_prints(&command, matches));
     let run = match matches.and_then(|matches| Arguments::from_arg_matches(&matches)) {
-        Ok(arguments) => begun(&arguments, only_prints, &mut session),
+        Ok(arguments) => {
+            // All options of all commands with their help, a part of a megabyte that the work can have.
+            drop(command);
+            begun(&arguments, only_prints, &mut session)
+        }
         Err(error) => session.refuse(&command, &words, error),
     };
     run.unwrap_or_else(|error| {
