@@ -4,7 +4,7 @@ use std::error::Error;
 
 use corner_impact::model::ModelError;
 use corner_impact::untrusted::sentence;
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyImportError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::PyType;
@@ -16,6 +16,10 @@ pub(crate) fn raised(error: &(dyn Error + 'static)) -> PyErr {
     let causes = std::iter::successors(Some(error), |error| (*error).source());
     match causes.filter_map(|error| error.downcast_ref::<ModelError>()).next() {
         Some(at) => Python::attach(|py| about_model(py, &words, at)).unwrap_or_else(|error| error),
+        // What a script in Python says of its packages.
+        None if ["ModuleNotFoundError", "python-flint is missing"].iter().any(|sign| words.contains(sign)) => {
+            PyImportError::new_err(words)
+        }
         None => PyValueError::new_err(words),
     }
 }

@@ -724,7 +724,8 @@ impl Model {
     /// With `orbits` it proves the orbits of one and of two impacts at one speed `rpm`, or counts those of one impact at every speed of
     /// a range. It needs `pip install 'corner-impact[routes]'`.
     ///
-    /// Returns a `Certificate`, the document of `corner-impact certify --json`. Raises ImportError if a package is missing.
+    /// Returns a `Certificate`, the document of `corner-impact certify --json`. Raises ImportError if a package is missing, and
+    /// ValueError if Python does not start.
     #[pyo3(signature = (rpm=None, revolutions=1, *, bits=128, orbits=false))]
     fn certify<'py>(
         &self,
@@ -734,9 +735,6 @@ impl Model {
         #[pyo3(from_py_with = counts::bits)] bits: u64,
         orbits: bool,
     ) -> PyResult<Bound<'py, PyAny>> {
-        for module in ["flint", "mpmath"] {
-            py.import("corner_impact._extras")?.getattr("need")?.call1((module, "routes"))?;
-        }
         let range = rpm.as_ref().map(|rpm| values::range(rpm).ok().map(values::speed_range).transpose());
         let range = range.transpose()?.flatten();
         let bits = within("bits", bits, [16, 16384])? as u32;

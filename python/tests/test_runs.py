@@ -2,7 +2,6 @@
 
 import csv
 import io
-import sys
 from pathlib import Path
 from typing import Any
 
@@ -284,19 +283,6 @@ def test_derivatives_of_the_cam_are_named_in_the_units_of_the_model(paper: Model
     for one, other in zip(metres.values(), told.values()):
         assert float(other) == pytest.approx(120 if float(one) == metres.cam_angle_rad else float(one), rel=1e-14)
     assert told.to_pandas().attrs["units"]["curvature_mm_rad2"] == "mm/rad^2"
-
-
-def test_a_route_that_fails_is_warned_about(paper: Model, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("CORNER_IMPACT_PYTHON", "/nowhere/python")
-    with pytest.warns(UserWarning, match="the route (scipy|symbolic|certificate) failed, and so the routes do not agree: .*did not start"):
-        found = paper.verify()
-    assert not found.agrees and repr(found).startswith("<Verification agrees=False: ") and "scipy" in repr(found)
-
-
-def test_proofs_name_the_extra_that_they_lack(paper: Model, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(sys.modules, "flint", None)
-    with pytest.raises(ImportError, match=r"flint is missing: pip install 'corner-impact\[routes\]'"):
-        paper.certify((670, 680))
 
 
 def test_a_table_of_lifts_is_refused_with_the_way_to_read_it(tmp_path: Path) -> None:
