@@ -4,22 +4,28 @@ use std::error::Error;
 
 use corner_impact::model::ModelError;
 use corner_impact::untrusted::sentence;
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyImportError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::PyType;
 
 /// A `ModelError` where a complaint about a model is the cause, with its place; else a `ValueError`.
 pub(crate) fn raised(error: &(dyn Error + 'static)) -> PyErr {
-    let words = sentence(&error.to_string()).into_owned();
+    // What the command would be given as an option is an argument here.
+    let words = sentence(&error.to_string()).replace("--rpm R", "rpm").replace("--rpm", "rpm");
     let causes = std::iter::successors(Some(error), |error| (*error).source());
     match causes.filter_map(|error| error.downcast_ref::<ModelError>()).next() {
         Some(at) => Python::attach(|py| about_model(py, &words, at)).unwrap_or_else(|error| error),
+        // What a script in Python says of its packages.
+        None if ["ModuleNotFoundError", "python-flint is missing"].iter().any(|sign| words.contains(sign)) => {
+            PyImportError::new_err(words)
+        }
         None => PyValueError::new_err(words),
     }
 }
 
-fn about_model(py: Python<'_>, words: &str, at: &ModelError) -> PyResult<PyErr> {
+/// A `ModelError` with these words, about a place.
+pub(crate) fn about_model(py: Python<'_>, words: &str, at: &ModelError) -> PyResult<PyErr> {
     // Python's own class: one that extends another of Python's cannot be made here for all versions of it at once.
     static CLASS: PyOnceLock<Py<PyType>> = PyOnceLock::new();
     let class = CLASS.import(py, "corner_impact._errors", "ModelError")?;

@@ -15,7 +15,7 @@ use pyo3::types::{PyDict, PyList};
 
 use crate::error::OrRaise;
 use crate::model::{Model, start_angle};
-use crate::values::{budget, count, document, numbers, refused, result, start, thread_count};
+use crate::values::{budget, counts, document, numbers, refused, result, start, thread_count};
 use crate::work::shared;
 
 /// A grid over two numbers of a model, with one run at each point: its class, period, growth rate and fastest impact.
@@ -56,10 +56,10 @@ impl Grid {
         model: Bound<'_, Model>,
         axes: &Bound<'_, PyDict>,
         rpm: Option<f64>,
-        #[pyo3(from_py_with = count)] transient: u64,
-        #[pyo3(from_py_with = count)] record: u64,
-        #[pyo3(from_py_with = count)] longest: u64,
-        #[pyo3(from_py_with = count)] patience: u64,
+        #[pyo3(from_py_with = counts::transient)] transient: u64,
+        #[pyo3(from_py_with = counts::record)] record: u64,
+        #[pyo3(from_py_with = counts::longest)] longest: u64,
+        #[pyo3(from_py_with = counts::patience)] patience: u64,
         start_angle_rad: Option<f64>,
         start_angle_deg: Option<f64>,
         cam_angle: Option<f64>,

@@ -19,7 +19,7 @@ use serde::Serialize;
 
 use crate::error::OrRaise;
 use crate::model::Model;
-use crate::values::{answer, broadcast, count, refused, speed_range, within};
+use crate::values::{answer, broadcast, counts, range_if_any, refused, speed_range, within};
 use crate::work::spread;
 
 /// The piecewise-linear map of the paper (eq:pwlf) at a corner impact of a model.
@@ -89,8 +89,8 @@ impl Local {
     fn new(
         py: Python<'_>,
         model: Py<Model>,
-        rpm: Option<(f64, f64)>,
-        #[pyo3(from_py_with = count)] revolutions: u64,
+        #[pyo3(from_py_with = range_if_any)] rpm: Option<(f64, f64)>,
+        #[pyo3(from_py_with = counts::revolutions)] revolutions: u64,
     ) -> PyResult<Self> {
         let of = &model.get().model;
         let range = match rpm {
@@ -175,7 +175,7 @@ impl Local {
         &self,
         dx: &Bound<'py, PyAny>,
         dT: &Bound<'py, PyAny>,
-        #[pyo3(from_py_with = count)] steps: u64,
+        #[pyo3(from_py_with = counts::steps)] steps: u64,
     ) -> PyResult<Bound<'py, PyAny>> {
         let (points, shape) = Self::at(dx, dT)?;
         let carried = points.into_iter().map(|(x, change)| (0..steps).fold(x.into(), |x, _| self.map.apply(x, change)));
@@ -224,7 +224,7 @@ impl Local {
         &self,
         py: Python<'py>,
         dT: f64,
-        #[pyo3(from_py_with = count)] longest: u64,
+        #[pyo3(from_py_with = counts::longest)] longest: u64,
     ) -> PyResult<Bound<'py, PyAny>> {
         let longest = within("longest", longest, [1, 16])? as usize;
         let orbits = spread(py, || self.map.admissible_orbits(dT, longest))?;

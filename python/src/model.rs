@@ -38,12 +38,12 @@ use pyo3::types::{PyDict, PyType};
 use rayon::prelude::*;
 
 use crate::arrays::{Events, Rows};
-use crate::error::OrRaise;
+use crate::error::{OrRaise, about_model};
 use crate::page::Page;
 use crate::studies;
 use crate::values::{
-    self, NamedValues, Rpm, Speeds, angle, angles, answer, broadcast, budget, count, followed, in_units, item, refused,
-    result, shaped, start, thread_count, within,
+    self, NamedValues, Rpm, Speeds, angle, angles, answer, broadcast, budget, counts, followed, in_units, item,
+    refused, result, shaped, start, thread_count, within,
 };
 use crate::work::{alone, shared, spread};
 
@@ -99,7 +99,15 @@ impl Model {
     /// is wrong.
     #[staticmethod]
     fn load(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
-        Self::read(py, alone(py, || model::Model::read(&path))?.or_raise()?)
+        let read = alone(py, || model::Model::read(&path))?;
+        if let Err(error) = &read
+            && path.extension().is_some_and(|end| ["csv", "tsv", "txt", "dat"].iter().any(|table| end == *table))
+            && error.to_string().contains("not valid TOML")
+        {
+            let hint = "a table of lifts has no follower: give both to Model.from_dict, with the table as cam rows";
+            return Err(about_model(py, &format!("{error}; {hint}"), error)?);
+        }
+        Self::read(py, read.or_raise()?)
     }
 
     /// Reads the text of a model file. Complaints call it `file`; tables of lifts are looked for beside that file.
@@ -241,8 +249,20 @@ impl Model {
             if angle.is_finite() { [lift.value, lift.slope, lift.curvature, angle] } else { [f64::NAN; 4] }
         };
         let rows: Vec<[f64; 4]> = given.into_iter().map(at).collect();
-        let names = ["lift_m", "slope_m_rad", "curvature_m_rad2", "cam_angle_rad"];
-        result("CamLift", in_units(shaped(py, names, &rows, &shape)?, &self.model.units)?)
+        let units = &self.model.units;
+        // Derivatives are by the angle in rad, whatever the unit of angles.
+        let names = ["lift_m", "slope_m", "curvature_m", "cam_angle_rad"];
+        let found = in_units(shaped(py, names, &rows, &shape)?, units)?;
+        let named = PyDict::new(py);
+        for (name, values) in found {
+            let unit = match name.extract::<&str>()? {
+                name if name.starts_with("slope") => "_rad",
+                name if name.starts_with("curvature") => "_rad2",
+                _ => "",
+            };
+            named.set_item(format!("{name}{unit}"), values)?;
+        }
+        result("CamLift", named)
     }
 
     /// Simulates one run at `rpm` and returns its events over `revolutions`, after `transient` revolutions without a record.
@@ -267,9 +287,9 @@ impl Model {
     fn simulate<'py>(
         &self,
         py: Python<'py>,
-        rpm: f64,
-        #[pyo3(from_py_with = count)] revolutions: u64,
-        #[pyo3(from_py_with = count)] transient: u64,
+        #[pyo3(from_py_with = values::one_speed)] rpm: f64,
+        #[pyo3(from_py_with = counts::revolutions)] revolutions: u64,
+        #[pyo3(from_py_with = counts::transient)] transient: u64,
         start_angle_rad: Option<f64>,
         start_angle_deg: Option<f64>,
         cam_angle: Option<f64>,
@@ -326,8 +346,8 @@ impl Model {
         #[pyo3(from_py_with = values::speeds)] rpm: Speeds,
         #[pyo3(from_py_with = values::over)] over: Option<NamedValues>,
         log: bool,
-        #[pyo3(from_py_with = count)] transient: u64,
-        #[pyo3(from_py_with = count)] record: u64,
+        #[pyo3(from_py_with = counts::transient)] transient: u64,
+        #[pyo3(from_py_with = counts::record)] record: u64,
         strobe_rad: Option<f64>,
         strobe_deg: Option<f64>,
         strobe: Option<f64>,
@@ -401,10 +421,10 @@ impl Model {
     fn strobe_map<'py>(
         &self,
         py: Python<'py>,
-        rpm: f64,
+        #[pyo3(from_py_with = values::one_speed)] rpm: f64,
         position: &Bound<'py, PyAny>,
         velocity: &Bound<'py, PyAny>,
-        #[pyo3(from_py_with = count)] revolutions: u64,
+        #[pyo3(from_py_with = counts::revolutions)] revolutions: u64,
         cam_angle: Option<f64>,
         cam_angle_rad: Option<f64>,
         cam_angle_deg: Option<f64>,
@@ -459,7 +479,7 @@ impl Model {
     fn impact_map<'py>(
         &self,
         py: Python<'py>,
-        rpm: f64,
+        #[pyo3(from_py_with = values::one_speed)] rpm: f64,
         cam_angle: Option<&Bound<'py, PyAny>>,
         relative_velocity: Option<&Bound<'py, PyAny>>,
         cam_angle_rad: Option<&Bound<'py, PyAny>>,
@@ -496,15 +516,15 @@ impl Model {
     fn orbits<'py>(
         &self,
         py: Python<'py>,
-        rpm: f64,
-        #[pyo3(from_py_with = count)] revolutions: u64,
+        #[pyo3(from_py_with = values::one_speed)] rpm: f64,
+        #[pyo3(from_py_with = counts::revolutions)] revolutions: u64,
         impacts: Option<usize>,
-        guess: Option<(f64, f64)>,
+        guess: Option<[f64; 2]>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let revolutions = within("revolutions", revolutions, [1, Search::MOST_REVOLUTIONS])?;
         let wanted = match (guess, impacts) {
             (None, impacts) => OrbitQuery::All(Search { revolutions, impacts }),
-            (Some((position, velocity)), None) => OrbitQuery::Near(State { position, velocity }, revolutions),
+            (Some([position, velocity]), None) => OrbitQuery::Near(State { position, velocity }, revolutions),
             (Some(_), Some(_)) => {
                 return refused("guess and impacts: it is one orbit, or those of so many impacts".into());
             }
@@ -528,8 +548,8 @@ impl Model {
     fn locate<'py>(
         &self,
         py: Python<'py>,
-        rpm: (f64, f64),
-        #[pyo3(from_py_with = count)] revolutions: u64,
+        #[pyo3(from_py_with = values::range)] rpm: (f64, f64),
+        #[pyo3(from_py_with = counts::revolutions)] revolutions: u64,
     ) -> PyResult<Bound<'py, PyAny>> {
         let [rpm_min, rpm_max] = values::speed_range(rpm)?;
         let revolutions = within("revolutions", revolutions, [1, Search::MOST_REVOLUTIONS])?;
@@ -559,21 +579,21 @@ impl Model {
     fn speeds<'py>(
         &self,
         py: Python<'py>,
-        rpm: Option<Rpm<(f64, f64)>>,
-        over: Option<(String, f64, f64)>,
+        #[pyo3(from_py_with = values::rpm_if_any)] rpm: Option<Rpm>,
+        #[pyo3(from_py_with = values::named_range_if_any)] over: Option<(String, f64, f64)>,
         log: bool,
-        #[pyo3(from_py_with = count)] speeds: u64,
+        #[pyo3(from_py_with = counts::speeds)] speeds: u64,
         step: Option<f64>,
-        #[pyo3(from_py_with = count)] starts: u64,
+        #[pyo3(from_py_with = counts::starts)] starts: u64,
         two_impacts: bool,
         states: Option<Vec<[f64; 2]>>,
         start_angle_rad: Option<f64>,
         start_angle_deg: Option<f64>,
         cam_angle: Option<f64>,
-        #[pyo3(from_py_with = count)] transient: u64,
-        #[pyo3(from_py_with = count)] record: u64,
-        #[pyo3(from_py_with = count)] longest: u64,
-        #[pyo3(from_py_with = count)] patience: u64,
+        #[pyo3(from_py_with = counts::transient)] transient: u64,
+        #[pyo3(from_py_with = counts::record)] record: u64,
+        #[pyo3(from_py_with = counts::longest)] longest: u64,
+        #[pyo3(from_py_with = counts::patience)] patience: u64,
     ) -> PyResult<Bound<'py, PyAny>> {
         let cam_angle = start_angle([cam_angle, start_angle_rad, start_angle_deg])?;
         let (parameter, rpm, range) = match (rpm, over) {
@@ -627,11 +647,11 @@ impl Model {
     fn design<'py>(
         &self,
         py: Python<'py>,
-        rpm: Option<Rpm<(f64, f64)>>,
+        #[pyo3(from_py_with = values::rpm_if_any)] rpm: Option<Rpm>,
         #[pyo3(from_py_with = values::over)] over: Option<NamedValues>,
         log: bool,
-        #[pyo3(from_py_with = count)] speeds: u64,
-        needs: Vec<String>,
+        #[pyo3(from_py_with = counts::speeds)] speeds: u64,
+        #[pyo3(from_py_with = values::words)] needs: Vec<String>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let need = |text: String| match text.parse() {
             Ok(need) => Ok((text, need)),
@@ -663,7 +683,7 @@ impl Model {
     /// Finds the corner impact of the model's `[study]`, computes its map by every route, compares the routes, and classifies it.
     ///
     /// Without `external` the routes in Python are left out, as with `--no-external`. They need `pip install 'corner-impact[routes]'`; a
-    /// route that does not run is listed in `skipped`.
+    /// route that does not run is listed in `skipped`. A route that should run and fails is warned about, too, and `agrees` is False.
     ///
     /// Returns a `Verification`, the document of `corner-impact verify --json`. Raises ValueError if there is no corner impact.
     ///
@@ -673,7 +693,11 @@ impl Model {
     #[pyo3(signature = (external=true))]
     fn verify<'py>(&self, py: Python<'py>, external: bool) -> PyResult<Bound<'py, PyAny>> {
         let external = if external { External::Run } else { External::LeftOut };
-        answer(py, "Verification", &spread(py, || verify(&self.model, external))?.or_raise()?, &self.model.units)
+        let found = spread(py, || verify(&self.model, external))?.or_raise()?;
+        for skipped in found.skipped.iter().filter(|skipped| skipped.failed) {
+            warn(py, format!("the route {} failed, and so the routes do not agree: {}", skipped.route, skipped.why))?;
+        }
+        answer(py, "Verification", &found, &self.model.units)
     }
 
     /// Compares the results for this model with those for `other`: verdicts, fields, and every number that differs, with its error.
@@ -700,17 +724,18 @@ impl Model {
     /// With `orbits` it proves the orbits of one and of two impacts at one speed `rpm`, or counts those of one impact at every speed of
     /// a range. It needs `pip install 'corner-impact[routes]'`.
     ///
-    /// Returns a `Certificate`, the document of `corner-impact certify --json`. Raises ValueError if Python or a package is missing.
+    /// Returns a `Certificate`, the document of `corner-impact certify --json`. Raises ImportError if a package is missing, and
+    /// ValueError if Python does not start.
     #[pyo3(signature = (rpm=None, revolutions=1, *, bits=128, orbits=false))]
     fn certify<'py>(
         &self,
         py: Python<'py>,
         rpm: Option<Bound<'py, PyAny>>,
-        #[pyo3(from_py_with = count)] revolutions: u64,
-        #[pyo3(from_py_with = count)] bits: u64,
+        #[pyo3(from_py_with = counts::revolutions)] revolutions: u64,
+        #[pyo3(from_py_with = counts::bits)] bits: u64,
         orbits: bool,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let range = rpm.as_ref().map(|rpm| rpm.extract::<(f64, f64)>().ok().map(values::speed_range).transpose());
+        let range = rpm.as_ref().map(|rpm| values::range(rpm).ok().map(values::speed_range).transpose());
         let range = range.transpose()?.flatten();
         let bits = within("bits", bits, [16, 16384])? as u32;
         let revolutions = within("revolutions", revolutions, [1, Search::MOST_REVOLUTIONS])?;
@@ -778,10 +803,10 @@ impl Model {
         position: Option<[f64; 2]>,
         velocity: Option<[f64; 2]>,
         states: Option<Vec<[f64; 2]>>,
-        #[pyo3(from_py_with = count)] transient: u64,
-        #[pyo3(from_py_with = count)] record: u64,
-        #[pyo3(from_py_with = count)] longest: u64,
-        #[pyo3(from_py_with = count)] patience: u64,
+        #[pyo3(from_py_with = counts::transient)] transient: u64,
+        #[pyo3(from_py_with = counts::record)] record: u64,
+        #[pyo3(from_py_with = counts::longest)] longest: u64,
+        #[pyo3(from_py_with = counts::patience)] patience: u64,
         #[pyo3(from_py_with = thread_count)] threads: Option<usize>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let strobe = angle("strobe", "strobe_rad", [None, strobe_rad, strobe_deg])?.unwrap_or(0.0);
@@ -812,13 +837,13 @@ impl Model {
     fn continue_<'py>(
         &self,
         py: Python<'py>,
-        rpm: f64,
-        over: (String, f64, f64),
-        #[pyo3(from_py_with = count)] revolutions: u64,
+        #[pyo3(from_py_with = values::one_speed)] rpm: f64,
+        #[pyo3(from_py_with = values::named_range)] over: (String, f64, f64),
+        #[pyo3(from_py_with = counts::revolutions)] revolutions: u64,
         impacts: Option<usize>,
         step: f64,
-        #[pyo3(from_py_with = count)] points: u64,
-        #[pyo3(from_py_with = count)] doublings: u64,
+        #[pyo3(from_py_with = counts::points)] points: u64,
+        #[pyo3(from_py_with = counts::doublings)] doublings: u64,
     ) -> PyResult<Bound<'py, PyAny>> {
         let rpm = values::speed(rpm)?;
         let search =
@@ -846,13 +871,13 @@ impl Model {
     fn curve<'py>(
         &self,
         py: Python<'py>,
-        rpm: (f64, f64),
-        over: (String, f64, f64),
-        events: Vec<String>,
-        #[pyo3(from_py_with = count)] revolutions: u64,
+        #[pyo3(from_py_with = values::range)] rpm: (f64, f64),
+        #[pyo3(from_py_with = values::named_range)] over: (String, f64, f64),
+        #[pyo3(from_py_with = values::words)] events: Vec<String>,
+        #[pyo3(from_py_with = counts::revolutions)] revolutions: u64,
         impacts: Option<usize>,
         step: f64,
-        #[pyo3(from_py_with = count)] points: u64,
+        #[pyo3(from_py_with = counts::points)] points: u64,
     ) -> PyResult<Bound<'py, PyAny>> {
         let (range, events) = (values::speed_range(rpm)?, studies::bifurcations(&events)?);
         let search =
@@ -872,7 +897,12 @@ impl Model {
     /// >>> [theorem.symbols.tolist() for theorem in Model.paper().chaos(670).theorems]
     /// [[2, 3, 4, 5, 6]]
     #[pyo3(signature = (rpm, *, trapping=false))]
-    fn chaos<'py>(&self, py: Python<'py>, rpm: Rpm<(f64, f64)>, trapping: bool) -> PyResult<Bound<'py, PyAny>> {
+    fn chaos<'py>(
+        &self,
+        py: Python<'py>,
+        #[pyo3(from_py_with = values::rpm)] rpm: Rpm,
+        trapping: bool,
+    ) -> PyResult<Bound<'py, PyAny>> {
         let range = match rpm {
             Rpm::One(rpm) => [values::speed(rpm)?; 2],
             Rpm::Range(range) => values::speed_range(range)?,
@@ -891,7 +921,12 @@ impl Model {
     /// >>> Model.paper().figure("cam").title
     /// 'osorio-2008: lift, velocity and acceleration of the cam'
     #[pyo3(signature = (id=None, *, rpm=None))]
-    fn figure<'py>(&self, py: Python<'py>, id: Option<&str>, rpm: Option<(f64, f64)>) -> PyResult<Bound<'py, PyAny>> {
+    fn figure<'py>(
+        &self,
+        py: Python<'py>,
+        id: Option<&str>,
+        #[pyo3(from_py_with = values::range_if_any)] rpm: Option<(f64, f64)>,
+    ) -> PyResult<Bound<'py, PyAny>> {
         studies::figure(py, &self.model, id, rpm.map(values::speed_range).transpose()?)
     }
 

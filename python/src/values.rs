@@ -11,7 +11,7 @@ use corner_impact::study::survey::{Axis, Placed, Spacing, Start, Values, limits}
 use numpy::{AllowTypeChange, PyArray1, PyArrayLike1, PyArrayLikeDyn, PyArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use pyo3::types::{PyBool, PyDict, PyString};
+use pyo3::types::{PyBool, PyDict, PyString, PyTuple};
 use serde::Serialize;
 use serde_json::Value;
 
@@ -22,9 +22,24 @@ pub(crate) fn refused<T>(words: String) -> PyResult<T> {
 }
 
 /// How many of something.
-pub(crate) fn count(value: &Bound<'_, PyAny>) -> PyResult<u64> {
+fn count(name: &str, value: &Bound<'_, PyAny>) -> PyResult<u64> {
     let found = if value.is_instance_of::<PyBool>() { None } else { value.extract().ok() };
-    found.map_or_else(|| refused(format!("{value} must be a whole number from 0 to {}", u64::MAX)), Ok)
+    found.map_or_else(|| refused(format!("{name} = {value} must be a whole number from 0 to {}", u64::MAX)), Ok)
+}
+
+/// Reads arguments that say how many: a function for each, so that complaints name it.
+pub(crate) mod counts {
+    use pyo3::prelude::*;
+
+    macro_rules! counts {
+        ($($name:ident),+) => {
+            $(pub(crate) fn $name(value: &Bound<'_, PyAny>) -> PyResult<u64> {
+                super::count(stringify!($name), value)
+            })+
+        };
+    }
+
+    counts!(bits, doublings, longest, patience, points, record, revolutions, speeds, starts, steps, transient);
 }
 
 /// How many threads; none for as many as there are cores.
@@ -57,10 +72,65 @@ pub(crate) fn speed_range((low, high): (f64, f64)) -> PyResult<[f64; 2]> {
 }
 
 /// One speed, or a range of them.
-#[derive(FromPyObject)]
-pub(crate) enum Rpm<Range> {
+pub(crate) enum Rpm {
     One(f64),
-    Range(Range),
+    Range((f64, f64)),
+}
+
+/// Reads two numbers in a tuple, a list or an array.
+fn two(value: &Bound<'_, PyAny>) -> Option<(f64, f64)> {
+    let [low, high] = numbers("", value).ok()?.try_into().ok()?;
+    Some((low, high))
+}
+
+/// Reads (lowest, highest) rpm.
+pub(crate) fn range(value: &Bound<'_, PyAny>) -> PyResult<(f64, f64)> {
+    two(value).map_or_else(|| refused(format!("rpm = {value} must be (lowest, highest)")), Ok)
+}
+
+/// Reads (lowest, highest) rpm, if any.
+pub(crate) fn range_if_any(value: &Bound<'_, PyAny>) -> PyResult<Option<(f64, f64)>> {
+    if value.is_none() { Ok(None) } else { range(value).map(Some) }
+}
+
+/// Reads a speed, rpm.
+pub(crate) fn one_speed(value: &Bound<'_, PyAny>) -> PyResult<f64> {
+    value.extract().or_else(|_| refused(format!("rpm = {value} must be one number")))
+}
+
+/// Reads a speed, or (lowest, highest).
+pub(crate) fn rpm(value: &Bound<'_, PyAny>) -> PyResult<Rpm> {
+    if let Some(range) = two(value) {
+        return Ok(Rpm::Range(range));
+    }
+    let one = value.extract().map(Rpm::One);
+    one.or_else(|_| refused(format!("rpm = {value} must be a number or (lowest, highest)")))
+}
+
+/// Reads a speed, or (lowest, highest), if any.
+pub(crate) fn rpm_if_any(value: &Bound<'_, PyAny>) -> PyResult<Option<Rpm>> {
+    if value.is_none() { Ok(None) } else { rpm(value).map(Some) }
+}
+
+/// Reads a list of words; one word is a list of it.
+pub(crate) fn words(value: &Bound<'_, PyAny>) -> PyResult<Vec<String>> {
+    if value.is_instance_of::<PyString>() { Ok(vec![value.extract()?]) } else { value.extract() }
+}
+
+/// The items of a sequence as a tuple.
+fn tuple<'py>(value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    value.py().get_type::<PyTuple>().call1((value,))
+}
+
+/// Reads (name, lowest, highest).
+pub(crate) fn named_range(value: &Bound<'_, PyAny>) -> PyResult<(String, f64, f64)> {
+    let found = tuple(value).and_then(|items| items.extract());
+    found.or_else(|_| refused(format!("over = {value} must be (name, lowest, highest)")))
+}
+
+/// Reads (name, lowest, highest), if any.
+pub(crate) fn named_range_if_any(value: &Bound<'_, PyAny>) -> PyResult<Option<(String, f64, f64)>> {
+    if value.is_none() { Ok(None) } else { named_range(value).map(Some) }
 }
 
 /// The values of an axis as a caller gives them.
@@ -124,10 +194,11 @@ pub(crate) fn over(value: &Bound<'_, PyAny>) -> PyResult<Option<NamedValues>> {
     if value.is_none() {
         return Ok(None);
     }
-    if let Ok((name, low, high, count)) = value.extract() {
+    let items = tuple(value).unwrap_or_else(|_| value.clone());
+    if let Ok((name, low, high, count)) = items.extract() {
         return Ok(Some((name, AxisValues::Spaced(low, high, count))));
     }
-    let Ok((name, values)) = value.extract::<(String, Bound<'_, PyAny>)>() else {
+    let Ok((name, values)) = items.extract::<(String, Bound<'_, PyAny>)>() else {
         return refused(format!("over = {value} must be (name, lowest, highest, how many) or (name, values)"));
     };
     let values = numbers(&name, &values)?;
@@ -156,7 +227,9 @@ pub(crate) fn followed(
 /// An angle in rad by one of its three names: plain, in rad, or in degrees.
 pub(crate) fn angle(name: &str, plain: &str, given: [Option<f64>; 3]) -> PyResult<Option<f64>> {
     if given.iter().flatten().count() > 1 {
-        return refused(format!("the angle is given more than once: {plain}, {name}_rad and {name}_deg are one"));
+        let names = [plain, &format!("{name}_rad"), &format!("{name}_deg")];
+        let names = &names[usize::from(names[0] == names[1])..];
+        return refused(format!("the angle is given more than once: {} are one", names.join(" and ")));
     }
     let [plain, rad, deg] = given;
     Ok(plain.or(rad).or(deg.map(f64::to_radians)))
@@ -235,6 +308,10 @@ pub(crate) fn broadcast<const N: usize>(
 ) -> PyResult<(Vec<[f64; N]>, Vec<usize>)> {
     let mut arrays = Vec::with_capacity(N);
     for (name, value) in names.iter().zip(values) {
+        // For numpy, None is NaN.
+        if value.is_none() {
+            return refused(format!("{name} = None must be numbers"));
+        }
         match value.extract::<PyArrayLikeDyn<'_, f64, AllowTypeChange>>() {
             Ok(array) => arrays.push(array),
             Err(error) => return refused(format!("{name} must be numbers: {}", error.value(value.py()))),

@@ -103,7 +103,7 @@ def test_what_cannot_be_is_a_class(paper: Model) -> None:
         ({"rpm": [700.0], "mass": []}, {}, "0 points"),
         ({"rpm": [700.0], "mass": [1.0]}, {"rpm": 700}, "leave it out where rpm is an axis"),
         ({"stiffness": [700.0], "mass": [1.0]}, {}, "neither axis is rpm"),
-        ({"follower.mass": [2.0], "mass": [1.0]}, {"rpm": 700}, "over two numbers"),
+        ({"follower.mass": [2.0], "mass": [1.0]}, {"rpm": 700}, "two different numbers"),
     ],
 )
 def test_what_is_no_grid_is_refused(paper: Model, axes: dict[str, Any], asked: dict[str, Any], words: str) -> None:

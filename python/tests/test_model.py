@@ -189,7 +189,7 @@ def test_pictures_take_the_looks_of_the_command() -> None:
     refused: list[tuple[dict[str, Any], str]] = [
         ({"width": "85"}, "width must be a number with its unit"),
         ({"width": "1mm"}, "10.6 to 847 mm"),
-        ({"height": "20mm"}, "it takes"),
+        ({"height": "20mm"}, "it needs"),
         ({"legend": "left"}, "legend must be none, above, below or right"),
         ({"theme": "dark"}, "theme must be screen or print"),
         ({"x_range": (2, 1)}, "x_range must be"),

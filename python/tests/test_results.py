@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from corner_impact import Chart, Model, Result
+from corner_impact import Chart, LocalMap, Model, Result
 
 matplotlib = pytest.importorskip("matplotlib")
 matplotlib.use("agg")
@@ -191,3 +191,115 @@ def test_the_package_imports_numpy_alone() -> None:
     program = "import sys, corner_impact as it; it.Model.paper().orbits(680).table(); print(*sys.modules)"
     loaded = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True).stdout.split()
     assert "corner_impact.results" in loaded and not {"pandas", "xarray", "matplotlib", "h5netcdf", "dask"} & set(loaded)
+
+
+@pytest.mark.parametrize("name", ["beyond-attractor", "slow-impacts", "fast-impacts"])
+def test_figures_show_their_clouds(paper: Model, name: str) -> None:
+    figure = paper.figure(name)
+    series = figure["figure"]["panels"][0]["series"]
+    (index, cloud), *_ = [(index, one["data"]["density"]) for index, one in enumerate(series) if "density" in one["data"]]
+    table = figure.table()
+    here = (table["panel"] == 0) & (table["series"] == index)
+    assert here.sum() == len(cloud["counts"]) > 1000
+    for column, cells in (("x", "columns"), ("y", "rows")):
+        (low, high), side = cloud[column], (cloud[column][1] - cloud[column][0]) / cloud[cells]
+        first = cloud["counts"][0][0]
+        assert table[column][here][0] == pytest.approx(low + side * ((first % cloud["columns"] if column == "x" else first // cloud["columns"]) + 0.5))
+        assert low < table[column][here].min() and table[column][here].max() < high
+    drawn = [np.asarray(line.get_xdata()) for line in figure.plot().lines]
+    assert sum(map(len, drawn)) == np.count_nonzero(table["panel"] == 0)
+    assert figure._repr_html_().endswith("</svg>\n") or figure._repr_html_().endswith("</svg>")
+    matplotlib.pyplot.close("all")
+
+
+def test_figures_keep_their_scale(paper: Model) -> None:
+    axes = paper.figure("cam-shape").plot()
+    assert axes.get_aspect() == 1 and paper.figure("cam").plot().get_aspect() == "auto"
+    matplotlib.pyplot.close("all")
+
+
+def test_a_plot_refuses_what_it_does_not_know(found: Any, paper: Model) -> None:
+    chart = Chart(paper, {"restitution": [0.7, 0.8], "rpm": [660.0, 700.0]})
+    for plot, words in (
+        (lambda: chart.plot(variable="growth_rate"), "pcolormesh of matplotlib .*'variable'"),
+        (lambda: found("basins").plot(variable="growth"), "'variable'"),
+        (lambda: found("basins").plot(by="growth"), "no choice of by"),
+        (lambda: found("figure").plot(y="lift"), "no choice of y"),
+        (lambda: found("orbits").plot(height=3), "'height'"),
+    ):
+        with pytest.raises(TypeError, match=words):
+            plot()
+    with pytest.raises(ValueError, match="there is no variable 'growth'; there are: revolutions, impacts"):
+        chart.plot(by="growth")
+    assert found("basins").plot(alpha=0.5).collections[0].get_alpha() == 0.5
+    matplotlib.pyplot.close("all")
+
+
+def test_a_diagram_at_a_section_has_no_impacts(found: Any) -> None:
+    assert not hasattr(found("strobed"), "impacts") and hasattr(found("diagram"), "impacts")
+
+
+def test_a_result_without_a_list_is_one_row(found: Any) -> None:
+    orbit, impact = found("orbits").orbits[1], found("locate").corner_impacts[0]
+    assert orbit.to_pandas()["state_1"].tolist() == [orbit.state[0]] and len(impact.to_pandas()) == 1
+    branch, curve = found("continue").branches[0], found("curve").curves[0]
+    assert len(branch.to_pandas()) == len(branch.points) > 10 and len(curve.to_pandas()) == len(curve.points)
+    assert branch.plot().lines and LocalMap(Model.paper()).orbit("R", dT=-1e-4).to_pandas()["word"].tolist() == ["R"]
+    matplotlib.pyplot.close("all")
+
+
+def test_branches_have_the_angle_of_the_first_impact(found: Any) -> None:
+    branches = found("continue")
+    angles = [point.orbit.impacts[0].cam_angle_rad for branch in branches.branches for point in branch.points]
+    assert branches.table()["cam_angle_rad"].tolist() == angles
+    axes = branches.plot(y="cam_angle_deg")
+    assert axes.get_ylabel() == "cam angle (deg)" and axes.get_xlabel() == "speed (rpm)"
+    matplotlib.pyplot.close("all")
+
+
+def test_axes_say_what_they_show(found: Any) -> None:
+    for name, across, up in (
+        ("orbits", "position (m)", "velocity (m/s)"),
+        ("continue", "speed (rpm)", "position (m)"),
+        ("curve", "follower.restitution", "speed (rpm)"),
+        ("design", "speed (rpm)", "least contact force (N)"),
+        ("chaos", "lowest speed (rpm)", "entropy per revolution"),
+        ("over", "follower.restitution", "share"),
+    ):
+        axes = found(name).plot()
+        assert (axes.get_xlabel(), axes.get_ylabel()) == (across, up), name
+    told = Model.parse(Model.paper().text + '\n[units]\nlength = "mm"\n').orbits(680).plot()
+    assert told.get_xlabel() == "position (mm)"
+    separation = found("design").plot().lines[-1]
+    assert separation.get_label() == "separation" and separation.get_xdata()[0] == found("design").separation.speed_rpm
+    assert {found(name).plot().get_xscale() for name in ("verify", "compare")} == {"log"}
+    bars = found("basins").plot().figure.axes[1].get_yticklabels()
+    assert [text.get_text() for text in bars] == ["periodic, 1 revolution, 1 impact", "chaotic"]
+    legend = found("continue").plot().get_legend()
+    assert all(handle.get_markersize() >= 3 for handle in legend.legend_handles)
+    assert found("cam").plot().lines[0].get_linestyle() == "-"
+    matplotlib.pyplot.close("all")
+
+
+def test_results_are_equal_by_their_values(paper: Model) -> None:
+    for one, same, other in (
+        (paper.simulate(670, 20), paper.simulate(670, 20), paper.simulate(671, 20)),
+        (paper.basins(678, (3, 3)), paper.basins(678, (3, 3)), paper.basins(678, (3, 4))),
+        (paper.strobe_map(700, [4.4, -9.0], -30.0), paper.strobe_map(700, [4.4, -9.0], -30.0), paper.strobe_map(700, [4.4, -9.1], -3.0)),
+    ):
+        assert one == same and not one != same and one != other and not one == other and one != 1
+    assert paper.orbits(680) == json.loads(json.dumps(paper.orbits(680)))
+
+
+def test_names_of_units_are_units(paper: Model, found: Any) -> None:
+    units = found("cam").to_pandas().attrs["units"]
+    assert units == {"lift_m": "m", "slope_m_rad": "m/rad", "curvature_m_rad2": "m/rad^2", "cam_angle_rad": "rad"}
+    assert found("cam").to_xarray().slope_m_rad.attrs == {"units": "m/rad"}
+    assert found("cam").plot(y="slope_m_rad").get_ylabel() == "slope (m/rad)"
+    matplotlib.pyplot.close("all")
+
+
+def test_a_repr_says_something(found: Any) -> None:
+    assert repr(found("design").needs[0]) == "<Need need=no separation to 130 rpm parameter=preload now=143.08 value=235.178>"
+    assert "proved=True" in repr(found("chaos").theorems[0]) and "variational" in repr(found("verify").routes)
+    assert repr(found("verify")) == f"<Verification agrees=True: {len(found('verify').agreement)} comparisons>"

@@ -2,6 +2,7 @@
 
 import csv
 import io
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -9,7 +10,7 @@ import pytest
 from conftest import Command
 from numpy.typing import ArrayLike, NDArray
 
-from corner_impact import EVENTS, LocalMap, Model
+from corner_impact import EVENTS, Chart, LocalMap, Model, ModelError
 
 Columns = dict[str, NDArray[Any]]
 
@@ -207,8 +208,8 @@ def test_the_cam_is_where_the_impacts_are(paper: Model) -> None:
         (lambda it: it.simulate(0), "rpm = 0 must be a finite number above 0"),
         (lambda it: it.simulate(np.nan), "rpm = NaN must be"),
         (lambda it: it.simulate(1e10), "1e9 or less"),
-        (lambda it: it.simulate(700, -1), "-1 must be a whole number"),
-        (lambda it: it.simulate(700, 1.5), "1.5 must be a whole number"),
+        (lambda it: it.simulate(700, -1), "revolutions = -1 must be a whole number"),
+        (lambda it: it.simulate(700, 1.5), "revolutions = 1.5 must be a whole number"),
         (lambda it: it.simulate(700, position=0.0), "a start is position and velocity"),
         (lambda it: it.simulate(700, position=0.0, velocity=0.0), "below the cam"),
         (lambda it: it.simulate(700, relative_velocity=-1), "must be 0 or more"),
@@ -248,8 +249,47 @@ def test_the_cam_is_where_the_impacts_are(paper: Model) -> None:
         (lambda it: it.certify(700), "must be .lowest, highest."),
         (lambda it: it.certify(orbits=True), "at which rpm"),
         (lambda it: it.certify(bits=1), "bits = 1"),
+        (lambda it: it.strobe_map([700, 710], 4.4, 0.0), r"rpm = \[700, 710\] must be one number"),
+        (lambda it: it.strobe_map(700, None, 0.0), "position = None must be numbers"),
+        (lambda it: it.impact_map(700, 1.0, relative_velocity=None), "relative_velocity"),
+        (lambda it: it.speeds((660, 760, 5)), r"rpm = \(660, 760, 5\) must be a number or \(lowest, highest\)"),
+        (lambda it: it.locate(700), r"rpm = 700 must be \(lowest, highest\)"),
+        (lambda it: it.curve((665, 680), ("restitution", 0.7)), r"must be \(name, lowest, highest\)"),
+        (lambda it: it.basins(700, (3, 3), strobe_rad=1, strobe_deg=1), "once: strobe_rad and strobe_deg are one"),
+        (lambda it: Chart(it, {"restitution": [0.7], "mass": [1.0]}), "the speed is missing: give rpm$"),
     ],
 )
 def test_wrong_arguments_are_refused_with_a_sentence(paper: Model, wrong: Any, words: str) -> None:
     with pytest.raises(ValueError, match=words):
         wrong(paper)
+
+
+def test_ranges_are_any_sequences_and_one_word_is_a_list(paper: Model) -> None:
+    assert paper.locate([670, 680]) == paper.locate(np.array([670, 680])) == paper.locate((670, 680))
+    assert paper.chaos([670, 670.1]).rpm.tolist() == [670, 670.1] and paper.orbits(680, guess=[4.2, -31.0]).orbits[0].stable
+    one = paper.curve([665, 680], ("restitution", 0.79, 0.81), events="corner")
+    assert one == paper.curve((665, 680), ("restitution", 0.79, 0.81), events=["corner"])
+    need = "no separation to 130 rpm"
+    assert paper.design((100, 130), speeds=3, needs=need) == paper.design((100, 130), speeds=3, needs=[need])
+    assert LocalMap(paper, [670, 680]).classification.scenario == "nonsmooth-fold"
+
+
+def test_derivatives_of_the_cam_are_named_in_the_units_of_the_model(paper: Model) -> None:
+    metres = paper.cam(angle_deg=120)
+    told = Model.parse(paper.text + '\n[units]\nlength = "mm"\nangle = "deg"\n').cam(angle_deg=120)
+    assert list(metres) == ["lift_m", "slope_m_rad", "curvature_m_rad2", "cam_angle_rad"]
+    assert list(told) == ["lift_mm", "slope_mm_rad", "curvature_mm_rad2", "cam_angle_deg"]
+    # The same figures, of another length: the text of the model has them.
+    for one, other in zip(metres.values(), told.values()):
+        assert float(other) == pytest.approx(120 if float(one) == metres.cam_angle_rad else float(one), rel=1e-14)
+    assert told.to_pandas().attrs["units"]["curvature_mm_rad2"] == "mm/rad^2"
+
+
+def test_a_table_of_lifts_is_refused_with_the_way_to_read_it(tmp_path: Path) -> None:
+    (tmp_path / "lifts.csv").write_text("angle_deg,lift_mm\n0,1\n10,2\n")
+    with pytest.raises(ModelError, match="a table of lifts has no follower: give both to Model.from_dict") as error:
+        Model.load(tmp_path / "lifts.csv")
+    assert error.value.line == 1
+    (tmp_path / "model.toml").write_text("angle_deg,lift_mm\n")
+    with pytest.raises(ModelError, match="^((?!lifts has).)*$"):
+        Model.load(tmp_path / "model.toml")

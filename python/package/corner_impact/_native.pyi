@@ -20,6 +20,7 @@ _Array: TypeAlias = NDArray[np.float64]
 _Document: TypeAlias = dict[str, Any]  # as json.loads returns it
 _Speeds: TypeAlias = float | tuple[float, float, int] | Sequence[float] | NDArray[Any]
 _Over: TypeAlias = tuple[str, float, float, int] | tuple[str, Sequence[float] | NDArray[Any]]
+_Range: TypeAlias = tuple[float, float] | Sequence[float] | NDArray[Any]  # lowest, highest
 _Path: TypeAlias = str | PathLike[str]
 
 @final
@@ -109,12 +110,12 @@ class Model:
         revolutions: int = 1,
         impacts: int | None = None,
         *,
-        guess: tuple[float, float] | None = None,
+        guess: tuple[float, float] | Sequence[float] | None = None,
     ) -> results.Orbits: ...
-    def locate(self, rpm: tuple[float, float], revolutions: int = 1) -> results.Located: ...
+    def locate(self, rpm: _Range, revolutions: int = 1) -> results.Located: ...
     def speeds(
         self,
-        rpm: float | tuple[float, float] | None = None,
+        rpm: float | _Range | None = None,
         *,
         over: tuple[str, float, float] | None = None,
         log: bool = False,
@@ -133,7 +134,7 @@ class Model:
     ) -> results.SpeedSurvey: ...
     def design(
         self,
-        rpm: float | tuple[float, float] | None = None,
+        rpm: float | _Range | None = None,
         *,
         over: _Over | None = None,
         log: bool = False,
@@ -144,7 +145,7 @@ class Model:
     def compare(self, other: Model, *, external: bool = True) -> results.Comparison: ...
     def certify(
         self,
-        rpm: float | tuple[float, float] | None = None,
+        rpm: float | _Range | None = None,
         revolutions: int = 1,
         *,
         bits: int = 128,
@@ -201,7 +202,7 @@ class Model:
     ) -> results.Branches: ...
     def curve(
         self,
-        rpm: tuple[float, float],
+        rpm: _Range,
         over: tuple[str, float, float],
         *,
         events: Sequence[str] = (),
@@ -210,11 +211,11 @@ class Model:
         step: float = 0.02,
         points: int = 2000,
     ) -> results.Curves: ...
-    def chaos(self, rpm: float | tuple[float, float], *, trapping: bool = False) -> results.Chaos: ...
+    def chaos(self, rpm: float | _Range, *, trapping: bool = False) -> results.Chaos: ...
     @overload
-    def figure(self, id: None = None, *, rpm: tuple[float, float] | None = None) -> results.Figures: ...
+    def figure(self, id: None = None, *, rpm: _Range | None = None) -> results.Figures: ...
     @overload
-    def figure(self, id: str, *, rpm: tuple[float, float] | None = None) -> results.Figure: ...
+    def figure(self, id: str, *, rpm: _Range | None = None) -> results.Figure: ...
     def explain(self, what: str, *, external: bool = True) -> results.Explanation: ...
     def _repr_svg_(self) -> str: ...
     def cam_picture(
@@ -237,7 +238,7 @@ class Model:
 
 @final
 class LocalMap:
-    def __new__(cls, model: Model, rpm: tuple[float, float] | None = None, revolutions: int = 1) -> LocalMap: ...
+    def __new__(cls, model: Model, rpm: _Range | None = None, revolutions: int = 1) -> LocalMap: ...
     @property
     def A_minus(self) -> _Array: ...
     @property

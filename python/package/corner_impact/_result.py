@@ -20,8 +20,12 @@ if TYPE_CHECKING:
 Array = NDArray[Any]
 Path = str | PathLike[str]
 
-UNITS = {"_m_s": "m/s", "_mm_s": "mm/s", "_s": "s", "_m": "m", "_mm": "mm", "_rad": "rad", "_deg": "deg", "_rpm": "rpm", "_n": "N", "_j": "J"}
-"""Units by the ends of names. The longest end decides."""
+LENGTHS = ("m", "cm", "mm", "um", "in", "ft", "thou")
+UNITS = {
+    **{f"_{length}{end}": length + by for end, by in (("_rad2", "/rad^2"), ("_rad", "/rad"), ("_s", "/s"), ("", "")) for length in LENGTHS},
+    "_s": "s", "_rad": "rad", "_deg": "deg", "_rpm": "rpm", "_n": "N", "_mn": "mN", "_kn": "kN", "_kgf": "kgf", "_lbf": "lbf", "_j": "J",
+}  # fmt: skip
+"""Units by the ends of names. The first end decides, and so a longer one stands before a shorter one."""
 
 
 class Result(dict[str, Any]):
@@ -38,6 +42,10 @@ class Result(dict[str, Any]):
     """Lists within lists whose entries are the rows of the main table."""
     _drawn: ClassVar[tuple[str, str, str]] = ("", "", "")
     """Columns of a plot: across, up, and the one that distinguishes series. A name may lack its unit."""
+    _words: ClassVar[dict[str, str]] = {}
+    """Labels of axes for columns whose names do not say enough."""
+    _looks: ClassVar[dict[str, Any]] = {"linestyle": "none", "marker": "o", "markeredgewidth": 0}
+    """Style of a plot."""
 
     def __getattr__(self, name: str) -> Any:
         if not name.startswith("__"):
@@ -54,12 +62,32 @@ class Result(dict[str, Any]):
         turned = [name[:-4] + {"_rad": "_deg", "_deg": "_rad"}[name[-4:]] for name in self if name.endswith(("_rad", "_deg"))]
         return [*super().__dir__(), *(name for name in self if name.isidentifier()), *turned]
 
+    def __eq__(self, other: object) -> bool:
+        """Compare class and entries, arrays by their values with NaN equal to NaN. The time that a study took does not count."""
+        if not isinstance(other, Result):
+            return _same(dict(self), other)
+        return type(self) is type(other) and _same(self._compared(), other._compared())
+
+    def __ne__(self, other: object) -> bool:
+        return not self == other
+
+    def _compared(self) -> dict[str, Any]:
+        return {name: value for name, value in (dict(self) | vars(self)).items() if name not in ("wall_s", "chart")}
+
     def __repr__(self) -> str:
         return f"<{self._title()}>"
 
     def _title(self) -> str:
         sizes = [f"{len(value)} {name}" for name, value in self.items() if _is_list(value) and name in self._lists()]
-        return " ".join([type(self).__name__, *(["of", str(self["model"])] if isinstance(self.get("model"), str) else []), *sizes])
+        parts = [type(self).__name__, *(["of", str(self["model"])] if isinstance(self.get("model"), str) else []), *sizes]
+        plain = [
+            f"{name}={value:.7g}" if isinstance(value, float) else f"{name}={value}" if isinstance(value, str | int) else name
+            for name, value in self.items()
+            if name not in ("schema", "model")
+        ]
+        while not sizes and plain and len(" ".join([*parts, plain[0]])) < 80:
+            parts.append(plain.pop(0))
+        return " ".join(parts)
 
     def to_dict(self) -> dict[str, Any]:
         """Return the entries as a plain dict, as the command's document has them."""
@@ -69,12 +97,16 @@ class Result(dict[str, Any]):
         """Return the main table as columns by name, each of shape (rows,).
 
         Lists of numbers become numbered columns such as `state_1`, complex numbers `_re` and `_im`, and lists of tables their lengths.
+        A result without a list of its own is a table of one row.
         """
+        if not self._lists():
+            return _columns([dict(_flat("", dict(self)))])
         return _columns(list(_rows(self, self._lists())))
 
     def to_pandas(self) -> "pd.DataFrame":
-        """Return the main table as a pandas DataFrame. Raises ImportError without pandas (extra `pandas`)."""
+        """Return the main table as a pandas DataFrame, with units by column in `attrs["units"]`. Raises ImportError without pandas (extra `pandas`)."""
         frame: pd.DataFrame = need("pandas", "pandas").DataFrame(self.table())
+        frame.attrs["units"] = {name: unit["units"] for name in map(str, frame.columns) if (unit := _unit(name))}
         return frame
 
     def to_xarray(self) -> "xr.Dataset":
@@ -102,14 +134,24 @@ class Result(dict[str, Any]):
         (across, rights), (up, ups) = (_column(table, name) for name in (x or names[0], y or names[1]))
         series = _column(table, by or names[2])[1] if by or names[2] else np.zeros(len(ups))
         axes = axes_or_new(ax)
-        looks: dict[str, Any] = {"linestyle": "none", "marker": "o" if len(ups) < 200 else ","} | style
+        whole = need("matplotlib.cbook", "plot").normalize_kwargs(style, need("matplotlib.lines", "plot").Line2D)
+        looks: dict[str, Any] = {**self._looks, "markersize": next(size for most, size in SIZES if len(ups) < most)} | whole
         for kind in dict.fromkeys(series.tolist()):
             here = series == kind
-            axes.plot(rights[here], ups[here], label=str(kind), **looks)
-        axes.set(xlabel=label(across), ylabel=label(up))
+            drawn(axes.plot, rights[here], ups[here], **{"label": str(kind) if by or names[2] else "_"} | looks)
+        axes.set(xlabel=self._label(across), ylabel=self._label(up))
+        if rights.dtype.kind == "U":
+            axes.tick_params(axis="x", labelrotation=90)
         if len(np.unique(series)) > 1:
-            axes.legend(title=by or names[2])
+            axes.legend(title=label(by or names[2]), markerscale=6 / looks["markersize"])
         return cast("Axes", axes)
+
+    def _label(self, name: str) -> str:
+        """The label of an axis: what the class says, the number that varies for `value`, or the name."""
+        if name == "value" and isinstance(varied := self.get("over", self.get("parameter")), str):
+            return label(varied)
+        length = _length(self)
+        return self._words[name].format(length=length) if name in self._words and (length or "{" not in self._words[name]) else label(name)
 
     def _lists(self) -> tuple[str, ...]:
         return self._path
@@ -174,18 +216,31 @@ class Ball(Result):
         return float(self["mid"])
 
 
+SIZES = ((200, 6.0), (2000, 3.0), (20_000, 1.5), (np.inf, 0.8))
+"""Sizes of markers by how many there are, in points."""
+
+
+def drawn(method: Any, *data: Any, **style: Any) -> Any:
+    """Draw with a method of matplotlib. Raises TypeError if it does not know a part of `style`."""
+    try:
+        return method(*data, **style)
+    except AttributeError as error:
+        raise TypeError(f"plot takes x, y, by and what {method.__name__} of matplotlib takes: {error}") from error
+
+
 def axes_or_new(ax: "Axes | None") -> Any:
     """Return `ax`, or the Axes of a new figure."""
     return need("matplotlib.pyplot", "plot").subplots(layout="constrained")[1] if ax is None else ax
 
 
-def mesh(axes: Any, x: Array, y: Array, codes: Array, names: list[str]) -> None:
+def mesh(axes: Any, x: Array, y: Array, codes: Array, names: list[str], **style: Any) -> None:
     """Draw codes, counted from 0, on a grid, with a colour for each name; other codes are left out."""
     colours = need("matplotlib", "plot").colormaps["viridis"].resampled(max(len(names), 2))
     right, up = np.argsort(x), np.argsort(y)
     shown = np.ma.masked_outside(codes[np.ix_(up, right)], 0, len(names) - 1)
-    drawn = axes.pcolormesh(x[right], y[up], shown, shading="nearest", cmap=colours, vmin=-0.5, vmax=max(len(names), 2) - 0.5)
-    axes.figure.colorbar(drawn, ax=axes, ticks=range(len(names))).set_ticklabels(names)
+    looks = {"shading": "nearest", "cmap": colours, "vmin": -0.5, "vmax": max(len(names), 2) - 0.5} | style
+    cells = drawn(axes.pcolormesh, x[right], y[up], shown, **looks)
+    axes.figure.colorbar(cells, ax=axes, ticks=range(len(names))).set_ticklabels(names)
 
 
 def label(name: str) -> str:
@@ -217,6 +272,26 @@ def _html(table: dict[str, Array], most: int = 10) -> str:
 
 def _unit(name: str) -> dict[str, str]:
     return next(({"units": unit} for end, unit in UNITS.items() if name.endswith(end)), dict[str, str]())
+
+
+def _length(node: Any) -> str:
+    """The unit of length of a document, by the name of the first velocity in it; empty without one."""
+    inner: list[Any] = list(node.values()) if _is_dict(node) else node if _is_list(node) else []
+    names = [name for name in (node if _is_dict(node) else ()) if name.startswith("velocity_") and name.endswith("_s")]
+    if names:
+        return names[0].removeprefix("velocity_").removeprefix("before_").removesuffix("_s")
+    return next((found for part in inner if (found := _length(part))), "")
+
+
+def _same(one: Any, other: Any) -> bool:
+    """Whether two entries are equal, arrays by their values."""
+    if _is_dict(one) and _is_dict(other):
+        return one.keys() == other.keys() and all(_same(one[name], other[name]) for name in one)
+    if not (hasattr(one, "shape") or hasattr(other, "shape")):
+        return bool(one == other)
+    a: Array = np.asarray(one)
+    b: Array = np.asarray(other)
+    return a.shape == b.shape and np.array_equal(a, b, equal_nan=a.dtype.kind == b.dtype.kind == "f")
 
 
 def _column(table: dict[str, Array], name: str) -> tuple[str, Array]:

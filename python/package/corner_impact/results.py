@@ -4,13 +4,14 @@ Each class is the document of one command, or the columns of one run. Its declar
 commands' pages describe all entries. Names of lengths and forces end in the model's units: `position_m`, or `position_mm` in millimetres.
 """
 
+import html
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
 from corner_impact._extras import need
 from corner_impact._native import Chart, chart_variables
-from corner_impact._result import Array, Ball, Columns, Result, axes_or_new, entries, label, mesh
+from corner_impact._result import Array, Ball, Columns, Result, axes_or_new, drawn, entries, label, mesh
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -22,6 +23,32 @@ __all__ = [
     "ImpactMap", "LocalOrbit", "LocalOrbits", "LocalOutcome", "Located", "Orbit", "Orbits", "Result", "SpeedSurvey", "StrobeMap",
     "Verification", "entries",
 ]
+
+
+def refuse(**given: str) -> None:
+    """Raise TypeError if one of the arguments is given that a plot has no use for."""
+    if names := [name for name, value in given.items() if value]:
+        raise TypeError(f"this plot has no choice of {', '.join(names)}")
+
+
+def logarithmic(shown: "Axes") -> "Axes":
+    """Make both axes logarithmic, with room for 0 and for values of both signs where there are any."""
+    axes: Any = shown
+    for axis, turn, limits, values in (
+        (axes.xaxis, axes.set_xscale, axes.set_xlim, [line.get_xdata() for line in axes.lines]),
+        (axes.yaxis, axes.set_yscale, axes.set_ylim, [line.get_ydata() for line in axes.lines]),
+    ):
+        every = np.concatenate([np.asarray(part, dtype=float) for part in values])
+        found = every[np.isfinite(every)]
+        sizes = np.abs(found[found != 0])
+        if sizes.size and (found > 0).all():
+            turn("log")
+        elif sizes.size:
+            least = float(sizes.min())
+            turn("symlog", linthresh=least, linscale=2)
+            limits(min(3 * found.min(), -least / 2), max(3 * found.max(), least / 2))
+            axis.get_major_locator().set_params(numticks=7)
+    return shown
 
 
 class Events(Columns):
@@ -61,7 +88,9 @@ class Diagram(Columns):
 
     @property
     def impacts(self) -> "Diagram":
-        """Rows of impacts alone."""
+        """Rows of impacts alone. Raises AttributeError if the diagram is of states at a section."""
+        if "event" not in self:
+            raise AttributeError("a diagram of states at a section has no impacts")
         return Diagram({name: column[self["event"] == 0] for name, column in self.items()})
 
     def _columns_drawn(self) -> tuple[str, str, str]:
@@ -77,6 +106,7 @@ class CamLift(Columns):
     cam_angle_rad: Array
     cam_angle_deg: Array
     _drawn = ("cam_angle_deg", "lift", "")
+    _looks = {"linestyle": "-"}
 
 
 class StrobeMap(Columns):
@@ -132,6 +162,7 @@ class Orbits(Result):
     orbits: list[Orbit]
     _path = ("orbits",)
     _drawn = ("state_1", "state_2", "stability")
+    _words = {"state_1": "position ({length})", "state_2": "velocity ({length}/s)"}
 
 
 class Classification(Result):
@@ -229,6 +260,17 @@ class Verification(Result):
     agrees: bool
     _path = ("agreement",)
     _drawn = ("tolerance", "max_abs_diff", "agrees")
+    _words = {"tolerance": "tolerance", "max_abs_diff": "largest difference"}
+
+    def _title(self) -> str:
+        fails = len(self["agreement"]) - sum(one["agrees"] for one in self["agreement"])
+        failed = [one["route"] for one in self["skipped"] if one["failed"]]
+        words = f"{len(self['agreement'])} comparisons" + (f", {fails} disagree" if fails else "")
+        return f"{type(self).__name__} agrees={self['agrees']}: {words}" + (f"; failed: {', '.join(failed)}" if failed else "")
+
+    def plot(self, ax: "Axes | None" = None, *, x: str = "", y: str = "", by: str = "", **style: Any) -> "Axes":
+        """Draw differences over tolerances on logarithmic axes, or other columns. As for all results otherwise."""
+        return logarithmic(super().plot(ax, x=x, y=y, by=by, **style))
 
 
 class Attractor(Result):
@@ -304,6 +346,19 @@ class Design(Result):
     def _columns_drawn(self) -> tuple[str, str, str]:
         return "value" if "over" in self else "speed_rpm", "least", ""
 
+    def _label(self, name: str) -> str:
+        words = {"least": "least contact force", "largest": "largest contact force"}.get(name.rpartition("_")[0])
+        return f"{words} ({label(name).partition('(')[2]}" if words else super()._label(name)
+
+    def plot(self, ax: "Axes | None" = None, *, x: str = "", y: str = "", by: str = "", **style: Any) -> "Axes":
+        """Draw the least contact force with the speed of separation, or other columns. As for all results otherwise."""
+        axes: Any = super().plot(ax, x=x, y=y, by=by, **style)
+        separation = self["separation"]
+        if (x or self._columns_drawn()[0]) == "speed_rpm" and separation:
+            axes.axvline(separation["speed_rpm"], color="black", linestyle="--", label="separation")
+            axes.legend()
+        return cast("Axes", axes)
+
 
 class Change(Result):
     """A number that differs between two models."""
@@ -325,6 +380,10 @@ class Comparison(Result):
     unchanged: list[Change]
     _path = ("changes",)
     _drawn = ("error", "difference", "")
+
+    def plot(self, ax: "Axes | None" = None, *, x: str = "", y: str = "", by: str = "", **style: Any) -> "Axes":
+        """Draw differences over errors on logarithmic axes, or other columns. As for all results otherwise."""
+        return logarithmic(super().plot(ax, x=x, y=y, by=by, **style))
 
 
 class Certificate(Result):
@@ -387,14 +446,28 @@ class Basins(Result):
         return dataset
 
     def plot(self, ax: "Axes | None" = None, *, x: str = "", y: str = "", by: str = "", **style: Any) -> "Axes":
-        """Draw the basins on `ax` or a new figure. Returns the Axes. Raises ValueError without a grid."""
+        """Draw the basins on `ax` or a new figure; `style` goes to `pcolormesh`. Returns the Axes.
+
+        Raises ValueError without a grid, and TypeError with `x`, `y` or `by`, of which a grid has no choice.
+        """
         if "ending" not in vars(self):
             raise ValueError("a plot is of a grid: basins(rpm, (columns, rows))")
+        refuse(x=x, y=y, by=by)
         axes = axes_or_new(ax)
-        mesh(axes, self.positions, self.velocities, self.ending, [f"{part.ending} {index}" for index, part in enumerate(self.endings)])
+        mesh(axes, self.positions, self.velocities, self.ending, self._names(), **style)
         names = [next(name for name in self if name.startswith(word)) for word in ("position_", "velocity_")]
         axes.set(xlabel=label(names[0]), ylabel=label(names[1]))
         return cast("Axes", axes)
+
+
+    def _names(self) -> list[str]:
+        """A name for each ending, with a number where another has the same."""
+        def named(part: Result) -> str:
+            period = [f"{part[what]} {what if part[what] != 1 else what[:-1]}" for what in ("revolutions", "impacts") if what in part]
+            return ", ".join([part["ending"], *period])
+
+        names = [named(part) for part in self.endings]
+        return [f"{name} ({names[: index + 1].count(name)})" if names.count(name) > 1 else name for index, name in enumerate(names)]
 
 
 class BasinShares(Result):
@@ -425,6 +498,13 @@ class Branch(Result):
     begins: str
     ends: str
     points: list[BranchPoint]
+    _path = ("points",)
+    _drawn = ("value", "orbit_state_1", "orbit_stability")
+    _words = {"orbit_state_1": "position ({length})", "orbit_state_2": "velocity ({length}/s)"}
+
+    def table(self) -> dict[str, Array]:
+        """Return one row a point, with the cam angle of the orbit's first impact as `cam_angle_rad` or `cam_angle_deg`."""
+        return super().table() | _first_impacts(self["points"])
 
 
 class Branches(Result):
@@ -436,6 +516,18 @@ class Branches(Result):
     branches: list[Branch]
     _path = ("branches", "points")
     _drawn = ("value", "orbit_state_1", "orbit_stability")
+    _words = {"orbit_state_1": "position ({length})", "orbit_state_2": "velocity ({length}/s)"}
+
+    def table(self) -> dict[str, Array]:
+        """Return one row a point, with the cam angle of the orbit's first impact as `cam_angle_rad` or `cam_angle_deg`."""
+        return super().table() | _first_impacts([point for branch in self["branches"] for point in branch["points"]])
+
+
+def _first_impacts(points: list[dict[str, Any]]) -> dict[str, Array]:
+    """The cam angle of the first impact of the orbit of each point, NaN without one, as a column."""
+    firsts = [next(iter(point["orbit"]["impacts"]), dict[str, Any]()) for point in points]
+    name = next((name for first in firsts for name in first if name.startswith("cam_angle")), "")
+    return {name: np.array([first.get(name, np.nan) for first in firsts])} if name else {}
 
 
 class CurvePoint(Result):
@@ -458,6 +550,8 @@ class Curve(Result):
     begins: str
     ends: str
     points: list[CurvePoint]
+    _path = ("points",)
+    _drawn = ("value", "speed_rpm", "happens")
 
 
 class Curves(Result):
@@ -494,6 +588,7 @@ class Chaos(Result):
     trapping: Result
     _path = ("theorems",)
     _drawn = ("rpm_1", "entropy_per_revolution", "")
+    _words = {"rpm_1": "lowest speed (rpm)", "rpm_2": "highest speed (rpm)"}
 
 
 class Figures(Result):
@@ -519,6 +614,9 @@ class Figure(Result):
     def _repr_svg_(self) -> str:
         return self.svg
 
+    def _repr_html_(self) -> str:
+        return f"<table><caption>{html.escape(self['title'])}</caption></table>{self.svg}"
+
     def table(self) -> dict[str, Array]:
         """Return all points as columns `panel`, `series`, `x` and `y`."""
         drawn = [
@@ -533,22 +631,39 @@ class Figure(Result):
         return {"panel": places[0], "series": places[1], "x": both[:, 0], "y": both[:, 1]}
 
     def plot(self, ax: "Axes | None" = None, *, x: str = "", y: str = "", by: str = "", **style: Any) -> "Axes":
-        """Draw the lines and points of the first panel on `ax` or a new figure. Returns the Axes. `svg` has all panels."""
+        """Draw the lines, points and clouds of the first panel on `ax` or a new figure. Returns the Axes. `svg` has all panels.
+
+        Raises TypeError with `x`, `y` or `by`, of which a figure has no choice.
+        """
+        refuse(x=x, y=y, by=by)
         axes, document = axes_or_new(ax), self["figure"]
+        kinds: dict[str, dict[str, Any]] = {"points": {"linestyle": "none", "marker": "."}, "density": {"linestyle": "none", "marker": ".", "markersize": 1, "markeredgewidth": 0}}
         for one in document["panels"][0]["series"]:
             for kind, points in _points(one).items():
-                looks: dict[str, Any] = {"linestyle": "none", "marker": "."} if kind == "points" else {}
                 colour = {"ink": "black", "vermilion": "orangered"}.get(one["colour"], one["colour"])
-                axes.plot(*points.T, label=one["label"] or "_", color=colour, **looks | style)
+                looks: dict[str, Any] = {"color": colour, "label": one["label"] or "_", **kinds.get(kind, {})} | style
+                drawn(axes.plot, *points.T, **looks)
+        if document["panels"][0]["y"]["to_scale"]:
+            axes.set_aspect("equal")
+        if any(one["label"] for one in document["panels"][0]["series"]):
+            for handle in axes.legend().legend_handles:
+                handle.set_markersize(6)
         words = [f"{axis['label']} ({axis['unit']})" if axis["unit"] else axis["label"] for axis in (document["x"], document["panels"][0]["y"])]
         axes.set(xlabel=words[0], ylabel=words[1], title=self["title"])
         return cast("Axes", axes)
 
 
 def _points(series: dict[str, Any]) -> dict[str, Array]:
-    """Points of a series of a figure by their kind, shape (N, 2); none of words, bands and cells."""
-    drawn: dict[str, Any] = {kind: data for kind, data in series["data"].items() if "points" in data}
-    return {kind: np.array(data["points"], dtype=float) for kind, data in drawn.items() if data["points"]}
+    """Points of a series of a figure by their kind, shape (N, 2), and the middles of the cells of a cloud; none of words and bands."""
+    found: dict[str, Array] = {}
+    for kind, data in series["data"].items():
+        if kind == "density" and data["counts"]:
+            cells = np.array(data["counts"], dtype=int)[:, 0]
+            places = ((cells % data["columns"], data["columns"], data["x"]), (cells // data["columns"], data["rows"], data["y"]))
+            found[kind] = np.column_stack([low + (high - low) * (at + 0.5) / count for at, count, (low, high) in places])
+        elif "points" in data and data["points"]:
+            found[kind] = np.array(data["points"], dtype=float)
+    return found
 
 
 class Explanation(Result):
@@ -610,17 +725,20 @@ class ChartPoints(Columns):
 
     def plot(self, ax: "Axes | None" = None, *, x: str = "", y: str = "", by: str = "class", **style: Any) -> "Axes":
         """Draw the variable `by` over the axes `x` and `y` (the second and the first), on `ax` or a new figure. Returns the Axes."""
+        if by not in self:
+            raise ValueError(f"there is no variable {by!r}; there are: {', '.join(self)}")
         axes, names = axes_or_new(ax), list(self.axes)
         across = self._axis(x) if x else next(name for name in reversed(names) if not y or name != self._axis(y))
         up = next(name for name in names if name != across)
         values = self[by] if across == names[1] else self[by].T
         if by == "class":
-            mesh(axes, self.axes[across], self.axes[up], values, self._classes())
+            mesh(axes, self.axes[across], self.axes[up], values, self._classes(), **style)
         else:
             right, above = np.argsort(self.axes[across]), np.argsort(self.axes[up])
             shown = values[np.ix_(above, right)]
-            drawn = axes.pcolormesh(self.axes[across][right], self.axes[up][above], shown, shading="nearest", **style)
-            axes.figure.colorbar(drawn, ax=axes, label=label(by))
+            looks: dict[str, Any] = {"shading": "nearest"} | style
+            cells = drawn(axes.pcolormesh, self.axes[across][right], self.axes[up][above], shown, **looks)
+            axes.figure.colorbar(cells, ax=axes, label=label(by))
         axes.set(xlabel=label(across), ylabel=label(up))
         return cast("Axes", axes)
 
