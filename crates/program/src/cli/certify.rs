@@ -8,7 +8,7 @@ use corner_impact::study::certify::{BITS, CertifyError, certify, proved_counts, 
 
 /// Proves that corner impacts exist, in ball arithmetic.
 ///
-/// It also proves their maps and verdicts.
+/// Proves their maps and verdicts as well.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n\
     \x20 corner-impact certify\n\

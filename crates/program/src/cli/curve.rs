@@ -16,7 +16,7 @@ use corner_impact_plot::{extent, layout::widened};
 
 /// Follows bifurcations through a number of the model.
 ///
-/// It follows corner impacts, folds, flips, grazes, detachment and the onset of resting. The result is the speed of each, and the values at which its type changes.
+/// Follows corner impacts, folds, flips, grazes, detachment and the onset of resting. The result is the speed of each, and the values at which its type changes.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n\
     \x20 corner-impact curve --rpm 600:760 --over restitution=0.5:0.95\n\

@@ -7,7 +7,7 @@ use corner_impact::study::verify::verify_watched;
 
 /// Computes the map at a corner impact by every route.
 ///
-/// It first finds the corner impact of the model. At the end it says whether the routes agree.
+/// Begins with the corner impact of the model. Ends with whether the routes agree.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n\
     \x20 corner-impact verify\n\
