@@ -80,10 +80,11 @@ archive: $(RELEASING) ## build the program for TARGET (this machine's without it
 	$(if $(TARGET),rustup target add $(TARGET))
 	PATH="$(CURDIR)/$(BIN):$$PATH" crates/program/archive.sh $(TARGET)
 
-# The packages that no registry gets say `publish = false`. The live page's module is a file that git does not have: hence --allow-dirty.
+# All but those that say `publish = false`. The live page's module is a file that git does not have: hence --allow-dirty.
+PUBLISHED := --workspace --exclude corner-impact-explore-module --exclude corner-impact-python --exclude corner-impact-tests \
+    --locked --allow-dirty
 package: ## pack the crates that are published, and compile each from its package (after `make explore`)
-	$(CARGO) package --workspace --exclude corner-impact-explore-module --exclude corner-impact-python --exclude corner-impact-tests \
-	    --locked --allow-dirty $(PACKAGING)
+	$(CARGO) package $(PUBLISHED) $(PACKAGING)
 
 oldest: ## check that the oldest Rust that Cargo.toml names compiles everything
 	rustup toolchain install $(OLDEST) --profile minimal
@@ -108,8 +109,7 @@ release-page: ## make the release of TAG with all that is in target/dist (on the
 	gh release create $(TAG) --title "corner-impact $(TAG:v%=%)" --notes-file CHANGELOG.md target/dist/*
 
 publish: ## publish the crates (with the token of the registry in CARGO_REGISTRY_TOKEN)
-	$(CARGO) publish --workspace --exclude corner-impact-explore-module --exclude corner-impact-python --exclude corner-impact-tests \
-	    --locked --allow-dirty
+	$(CARGO) publish $(PUBLISHED)
 
 slurm-test: $(PACKAGE) ## try the recipes for Slurm on one node, set up on this machine (Debian, as root), after `make python`
 	$(CARGO) build $(RELEASE) --quiet

@@ -26,7 +26,7 @@ use crate::study::survey::{Axis, Over, Spacing, Start, Values, VariedNumber};
 use crate::uncertainty::{PlausibleMachines, SourcedUncertainty};
 use contact::{Contact, Separation};
 use loads::{Load, Loads};
-use needs::{Answer, Changed, Lever, Need, UncertainMachine};
+use needs::{Answer, Changed, Lever, Need};
 pub use rounded::Rounded;
 use rounded::rounded;
 use separation::Separated;
@@ -208,18 +208,16 @@ pub fn design(model: &Model, asked: &Asked, watch: &dyn Watch) -> Result<Design,
     let curves = curves.map(|count| table.curves((&forces, &loads), count, watch)).transpose()?;
     let passed = |limit: &(Load, f64)| table.passed(*limit, &at_each, &loads);
     let limits = asked.limits.iter().map(passed).collect::<Result<_, _>>()?;
-    let (changed, uncertain) =
-        (Changed::new(model, &contact), UncertainMachine::new(separation, separation_errors, &machines));
+    let changed = Changed::new(model, &contact);
     let mut needs = Vec::new();
     let total = (asked.needs.len() * Lever::ALL.len()) as u64;
     for (text, need) in &asked.needs {
         for lever in Lever::ALL {
             watch.at(&format!("the {lever} for \"{text}\""), needs.len() as u64, total);
-            needs.push(needs::answer(&changed, (need, text), lever, &uncertain)?);
+            needs.push(needs::answer(&changed, (need, text), lever, machines.uncertain())?);
         }
     }
-    let trades =
-        asked.against.as_ref().map(|axis| trades(&machines, &uncertain, &asked.needs, axis, watch)).transpose()?;
+    let trades = asked.against.as_ref().map(|axis| trades(&machines, &asked.needs, axis, watch)).transpose()?;
     let (over, budget) = (table.over.varied(table.spacing), table.budget);
     Ok(Design {
         model: ModelLabel::of(model),

@@ -5,7 +5,7 @@ use std::cell::Cell;
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::contact::{Contact, Separation};
+use super::contact::Contact;
 use super::loads::Loads;
 pub use super::need::{Need, What, in_si};
 use crate::bracket::{Width, halve};
@@ -183,48 +183,18 @@ document!(Answer as it {
     known: it.known,
 });
 
-/// Uncertainty of the machine whose needs are answered.
-pub(super) struct UncertainMachine<'a> {
-    /// Relative uncertainty of the separation speed that a measured cam causes.
-    pub of_cam: f64,
-    /// The machines that may be there; none if the machine is exact.
-    pub machines: Option<&'a PlausibleMachines<'a>>,
-}
-
-impl<'a> UncertainMachine<'a> {
-    /// Collects what is uncertain about a machine with this separation. To meet a need for certain on a measured cam, its speed is raised by
-    /// the relative uncertainty of the separation.
-    pub fn new(
-        separation: Separation,
-        errors: Option<[SourcedUncertainty; 2]>,
-        machines: &'a PlausibleMachines<'a>,
-    ) -> Self {
-        let of_cam = match (separation, errors) {
-            (Separation::At { rpm, .. }, Some([error, _])) => error.cam / rpm,
-            _ => 0.0,
-        };
-        Self { of_cam, machines: machines.uncertain() }
-    }
-}
-
-/// Finds the value of one number that meets a need, the others kept.
+/// Finds the value of one number that meets a need, the others kept. `machines` are those that may be there; none if the machine is exact.
 pub(super) fn answer(
     of: &Changed<'_>,
     (need, text): (&Need, &str),
     lever: Lever,
-    uncertain: &UncertainMachine<'_>,
+    machines: Option<&PlausibleMachines<'_>>,
 ) -> Result<Answer, SimulateError> {
     let known = need.known();
     let found = find(of, need, lever)?;
     let told = |value: f64| of.told(lever, value).0;
     // Where the least possible value will do, nothing is uncertain.
-    let machines = uncertain.machines.filter(|_| found.value.is_some() && found.note.is_empty());
-    let certain = match uncertain.of_cam {
-        of_cam if of_cam > 0.0 && machines.is_some() => {
-            Some(find(of, &Need { rpm: need.rpm * (1.0 + of_cam), ..*need }, lever)?)
-        }
-        _ => None,
-    };
+    let machines = machines.filter(|_| found.value.is_some() && found.note.is_empty());
     let ends = |found: &Found| [found.value, found.other].into_iter().flatten().collect::<Vec<f64>>();
     let there = |model: &Model, cam: &Cam| {
         let found = find(&of.on(model, &Contact::new(cam, model.follower)), need, lever).ok()?;
@@ -233,23 +203,37 @@ pub(super) fn answer(
     // The number that is sought has no error.
     let of_numbers =
         machines.and_then(|machines| machines.without(&lever.path()).errors_of_numbers(&ends(&found), there));
-    let error = |of: fn(&Found) -> Option<f64>, index: usize| {
-        let of_cam = match (&certain, uncertain.of_cam) {
-            (_, 0.0) => 0.0,
-            (certain, _) => (of(certain.as_ref()?)? - of(&found)?).abs(),
-        };
-        let of_numbers = of_numbers.as_ref()?.get(index)?;
-        let error = SourcedUncertainty { cam: of_cam, ..*of_numbers };
+    let of_cam = match (machines, need.what) {
+        (None, _) => None,
+        (Some(machines), What::NoSeparation) => machines.errors_of_cam(&ends(&found), there),
+        // Many runs for each cam would take long: the speed of the need is raised by what the cam makes of the separation.
+        (Some(machines), What::Below(..)) => {
+            let raised = |(index, value): (usize, &f64)| -> Result<Option<f64>, SimulateError> {
+                match share_of_cam(&of.with(lever, *value), lever, machines) {
+                    Some(share) if share > 0.0 => {
+                        let certain = find(of, &Need { rpm: need.rpm * (1.0 + share), ..*need }, lever)?;
+                        Ok(ends(&certain).get(index).map(|certain| (certain - value).abs()))
+                    }
+                    share => Ok(share),
+                }
+            };
+            ends(&found).iter().enumerate().map(raised).collect::<Result<Option<Vec<f64>>, _>>()?
+        }
+    };
+    let is_measured = machines.is_some_and(|machines| machines.cams.as_ref().is_some_and(|cams| cams.best.is_some()));
+    let error = |index: usize| {
+        let (cam, numbers) = (*of_cam.as_ref()?.get(index)?, of_numbers.as_ref()?.get(index)?);
+        let (value, error) = (ends(&found)[index], SourcedUncertainty { cam, ..*numbers });
         // At least as wide as the resolution of the runs.
-        let width = if known == Evidence::Sampled { tolerance::NEEDED_BY_RUNS.value * of(&found)?.abs() } else { 0.0 };
+        let width = if known == Evidence::Sampled { tolerance::NEEDED_BY_RUNS.value * value.abs() } else { 0.0 };
         let error = match error.total() {
             // What is sought may be all that is uncertain.
-            0.0 if uncertain.of_cam == 0.0 => Some(error),
-            0.0 => Some(SourcedUncertainty { cam: width, ..error }),
-            total if total < width => Some(error.times(width / total)),
-            _ => Some(error),
+            0.0 if !is_measured => error,
+            0.0 => SourcedUncertainty { cam: width, ..error },
+            total if total < width => error.times(width / total),
+            _ => error,
         };
-        error.map(|error| error.times(told(1.0)))
+        Some(error.times(told(1.0)))
     };
     let (now, unit) = of.told(lever, of.value(lever));
     let stuck = found
@@ -262,15 +246,26 @@ pub(super) fn answer(
         lever,
         now,
         value: found.value.map(told),
-        error: error(|found| found.value, 0),
+        error: error(0),
         is_upper_bound: found.is_upper_bound,
         other: found.other.map(told),
-        other_error: error(|found| found.other, 1),
+        other_error: error(1),
         again: found.again.map(told),
         unit,
         note: notes.collect::<Vec<_>>().join("; "),
         known,
     })
+}
+
+/// Uncertainty of the separation speed that a measured cam causes, over that speed. To meet a need for certain, its speed is raised by it.
+/// None if it is unknown.
+fn share_of_cam(of: &Changed<'_>, lever: Lever, machines: &PlausibleMachines<'_>) -> Option<f64> {
+    let Some(rpm) = of.contact.separation().at_speed() else { return Some(0.0) };
+    let there = |model: &Model, cam: &Cam| {
+        let changed = of.on(model, &Contact::new(cam, model.follower)).with(lever, of.value(lever));
+        Some(vec![changed.contact.separation().at_speed()?])
+    };
+    Some(machines.errors_of_cam(&[rpm], there)?[0] / rpm)
 }
 
 /// Range of values that meet the need, in the internal unit; a note says why there is none.

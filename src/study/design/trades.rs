@@ -4,7 +4,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::contact::Contact;
-use super::needs::{self, Answer, Changed, Lever, Need, UncertainMachine};
+use super::needs::{self, Answer, Changed, Lever, Need};
 use crate::cam::Cam;
 use crate::known::Evidence;
 use crate::model::Model;
@@ -85,11 +85,9 @@ pub struct Trade {
     pub known: Evidence,
 }
 
-/// Finds what each need takes of each lever at each value of a number. `uncertain` is the model's own machine, whose separation is as
-/// uncertain by a measured cam as those with the values.
+/// Finds what each need takes of each lever at each value of a number.
 pub(super) fn trades(
     machines: &PlausibleMachines<'_>,
-    uncertain: &UncertainMachine<'_>,
     needs: &[(String, Need)],
     against: &Axis,
     watch: &dyn Watch,
@@ -103,11 +101,9 @@ pub(super) fn trades(
             let pair = |given: &f64| -> Result<RequiredPair, StudyError> {
                 let (model, cam) = given_machine(machines, path, *given)?;
                 let contact = Contact::new(&cam, model.follower);
-                // Of the cam, `uncertain` knows.
-                let here = machines.uncertain().map(|_| PlausibleMachines::of_numbers(&model, &cam, model.errors));
-                let uncertain = UncertainMachine { machines: here.as_ref(), ..*uncertain };
+                let here = machines.elsewhere(path, &model, &cam)?;
                 let changed = Changed::new(&model, &contact).keeping_rest_of(machines.model);
-                let answer = needs::answer(&changed, (need, text), parameter, &uncertain)?;
+                let answer = needs::answer(&changed, (need, text), parameter, here.uncertain())?;
                 Ok(RequiredPair::of(*given, &answer))
             };
             let pairs = against.values.par_iter().map(pair).collect::<Result<_, _>>()?;

@@ -17,7 +17,7 @@ use corner_impact::study::certify::{BITS, CertifyError, certify, proved_counts, 
     \x20 corner-impact certify --orbits --rpm 600:760\n\
     \x20 corner-impact certify --resting --rpm 450\n\
     \n\
-    Needs Python with the packages that `make verify` sets up.\n\
+    Needs Python with mpmath, python-flint, scipy and sympy; `make verify` sets them up in a clone.\n\
     Exit code: 0 every border collision that `locate` finds is proved, 1 one of them is not, 2 bad model file or usage, or no Python.")]
 pub(super) struct Arguments {
     #[command(flatten)]

@@ -58,8 +58,8 @@ fn table(found: &[LocatedImpact]) -> Table {
         Column::right("impacts", 9),
         Column::right("v before", 12).missable(1),
         Column::right("v after", 12).missable(2),
-        Column::left("what happens", 2, 17),
-        Column::left("routes", 0, 0),
+        Column::left("what happens", 2, 16),
+        Column::left("routes", 1, 0),
     ];
     let mut table = Table::new("Corner impacts", columns);
     for (index, impact) in found.iter().enumerate() {
