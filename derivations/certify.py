@@ -75,7 +75,7 @@ def side_document(found, side, beside):
     """One side of the map, and how far its fixed point is followed."""
     a = found.a[side]
     if beside is not None and beside.exists_for != found.exists_for(side):
-        raise Refused("the fixed point that is followed and the verdict exclude each other: one of them is wrong")
+        raise Refused("the followed fixed point contradicts the verdict: one of them is wrong")
     return {
         "A": [[ball(a[row, column]) for column in range(2)] for row in range(2)],
         "B": [ball(x) for x in found.b[side]],
@@ -97,7 +97,7 @@ def answer(document, candidates):
     """A certificate or why there is none, candidate by candidate."""
     bits = int(decimal(document.get("bits", 128)))
     if not FEWEST_BITS <= bits <= MOST_BITS:
-        raise Refused(f"bits: {FEWEST_BITS} to {MOST_BITS}, not {bits}")
+        raise Refused(f"bits = {bits}: must be from {FEWEST_BITS} to {MOST_BITS}")
     ctx.prec = bits
     machine, results = Machine(document), []
     apart = assumed(document["cam"])

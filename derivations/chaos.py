@@ -42,11 +42,11 @@ def machine_of(name):
     """The machine of models/NAME.toml; Refused where the theorem does not speak of it."""
     document = tomllib.loads((ROOT / "models" / f"{name}.toml").read_text(), parse_float=str)
     if "units" in document:
-        raise Refused("a model in other units than SI")
+        raise Refused("the model is not in SI units")
     machine = Machine(document)
     follower = machine.follower
     if not (follower.restitution > 0 and (follower.restitution < 1 or follower.zeta > 0)):
-        raise Refused("without a loss at impacts or in flight, or without restitution, nothing is said")
+        raise Refused("the theorem needs restitution above 0, and a loss at impacts or in flight")
     return machine
 
 
@@ -58,7 +58,7 @@ def theorem(machine, h_set, say):
         try:
             proof.prove()
             result |= {"boxes": proof.boxes, "growth": proof.growth and below(proof.growth)}
-            kept = f", and keeps the cones, stretching {at_least(result['growth'])} times or more" if proof.growth else ""
+            kept = f", and keeps the cones, stretching by a factor of at least {at_least(result['growth'])}" if proof.growth else ""
             say(True, f"the strip of {strip.impacts} impacts covers N{kept} ({proof.boxes} boxes)")
         except Refused as error:
             result["refused"] = str(error)
@@ -67,8 +67,8 @@ def theorem(machine, h_set, say):
     cones, symbols = h_set.cone_slope is not None, [strip.impacts for strip in h_set.strips]
     proved, entropy = all("refused" not in strip for strip in strips), below(h_set.entropy())
     told = ", ".join(map(str, symbols))
-    how_many = "one motion and no other" if cones else "a motion"
-    say(proved, f"{how_many} through the strips in every sequence of {told}, endless both ways; entropy of a revolution at least {at_least(entropy)}")
+    how_many = "exactly one motion" if cones else "at least one motion"
+    say(proved, f"for every sequence of {told}, endless in both directions, {how_many} passes through the strips; entropy at least {at_least(entropy)} a revolution")
     return {
         "symbols": symbols,
         "entropy_per_revolution": entropy,
@@ -110,8 +110,8 @@ def theorems(path, is_asked, say):
 
 def main():
     parser = argparse.ArgumentParser(description="Prove sets of chaotic motions from their h-sets.")
-    parser.add_argument("files", nargs="*", type=Path, metavar="FILE", help="h-sets; those of golden/chaos")
-    parser.add_argument("--all", action="store_true", help="those for ranges of speeds, too, where neither --rpm nor FILE tells")
+    parser.add_argument("files", nargs="*", type=Path, metavar="FILE", help="files with h-sets; by default those of golden/chaos")
+    parser.add_argument("--all", action="store_true", help="include the h-sets for ranges of speeds, if neither --rpm nor FILE is given")
     parser.add_argument("--rpm", help="only h-sets for this speed, or for speeds within LO:HI")
     parser.add_argument("--json", action="store_true", help="one JSON document instead of lines")
     options = parser.parse_args()
@@ -141,9 +141,9 @@ def main():
     if options.json:
         print(json.dumps({"theorems": found, "left_out": left_out}, indent=1))
     elif left_out:
-        print(f"LEFT OUT    {len(left_out)} h-sets for ranges of speeds, which take ten seconds each: --all, or --rpm LO:HI")
+        print(f"LEFT OUT    {len(left_out)} h-sets for ranges of speeds, ten seconds each: --all or --rpm LO:HI includes them")
     if not found and not left_out:
-        sys.exit("chaos.py: no h-set is for these speeds")
+        sys.exit("chaos.py: no stored h-set is for these speeds")
     sys.exit(0 if all(one["proved"] for one in found) else 1)
 
 

@@ -47,7 +47,7 @@ def pretty(document):
 def run():
     """Prove each stage; the files, and whether all proofs hold and what is false is refused."""
     complete, stated = refuses(), []
-    print(f"refused       {len(PLANTED)} planted identities that are false" if complete else "NOT REFUSED: what `vanishes` passes is no proof")
+    print(f"refused       {len(PLANTED)} planted identities that are false" if complete else "NOT REFUSED: `vanishes` accepts a false identity, so it proves nothing")
 
     def stage(title, proofs):
         nonlocal complete
@@ -74,13 +74,13 @@ def run():
     rows = points.points(expressions)
     apart, rounding = points.disagreement(rows), points.in_doubles(rows)
     stage("points", [
-        Measurement(f"{len(rows)} points: the derived expressions and closed_forms.py give the same 60 digits", apart < mpf(10) ** -60),
-        Measurement(f"closed_forms.py in double precision meets them to {DOUBLE}", rounding < DOUBLE),
+        Measurement(f"{len(rows)} points: the derived expressions and closed_forms.py agree to 60 digits", apart < mpf(10) ** -60),
+        Measurement(f"closed_forms.py in double precision agrees with them to {DOUBLE}", rounding < DOUBLE),
     ])  # fmt: skip
 
     apart = smoothing_spline.scipys()
     stage("smoothing spline", [
-        Measurement(f"the B-splines of splines.py meet scipy's to {DOUBLE}", apart < DOUBLE),
+        Measurement(f"the B-splines of splines.py agree with scipy's to {DOUBLE}", apart < DOUBLE),
     ])  # fmt: skip
 
     note = "written by derivations/derive.py; do not edit"
@@ -120,11 +120,11 @@ def main():
     files, complete = run()
     print(f"{time.monotonic() - begun:.0f} s")
     if not complete:
-        sys.exit("derive.py: a proof failed; golden/derived is left as it is")
+        sys.exit("derive.py: a proof failed; golden/derived is unchanged")
     if check:
         names = [str(path) for path in stale(files)]
         if names:
-            sys.exit("derive.py: stale: " + ", ".join(names))
+            sys.exit("derive.py: out of date (make derive writes them): " + ", ".join(names))
         return
     GOLDEN.mkdir(parents=True, exist_ok=True)
     for name, text in files.items():

@@ -101,13 +101,13 @@ class Levered:
 def section(document, name):
     part = document.get(name)
     if not isinstance(part, dict):
-        raise Refused(f"no {name}")
+        raise Refused(f"the model has no [{name}]")
     return part
 
 
 def number(part, name, field):
     if field not in part:
-        raise Refused(f"no {name}.{field}")
+        raise Refused(f"the model has no {name}.{field}")
     try:
         return exact(part[field])
     except ValueError as error:
@@ -145,7 +145,7 @@ def arcs(cam):
         if not roller > 0 or abs(offset) >= base + roller:
             raise Refused("cam.contact: a roller needs a radius above 0 and an offset within the base circle of its centre")
     elif contact not in ("point", "flat"):
-        raise Refused(f"cam.contact: no follower {contact!r}")
+        raise Refused(f"cam.contact: {contact!r} is not a contact that this route can compute")
     # Where the centre of the roller, or the point, passes from one circle to the next.
     passes = centre_1 + (centre_2 - centre_1) * (flank + roller) / (flank - nose)
     if contact == "flat":
@@ -276,7 +276,7 @@ def contour(cam):
     elif contact == "flat":
         roller, offset = None, mpf(0)
     else:
-        raise Refused(f"cam.contact: no follower {contact!r}")
+        raise Refused(f"cam.contact: {contact!r} is not a contact that this route can compute")
     turn, pieces = 2 * mp.pi, []
     for (start, radius), end in zip(radii, [start for start, _ in radii[1:]] + [turn]):
         law = Touched(radius, (start + end) / 2, roller, offset)
@@ -311,13 +311,13 @@ def corners(laws):
 def profile(cam):
     """The laws of a cam with the angles where they start, its corners rounded and its lift levered where it says so."""
     if cam.get("law") not in SHARP:
-        raise Refused(f"cam.law: this route knows {', '.join(SHARP)}, not {cam.get('law')!r}")
+        raise Refused(f"cam.law = {cam.get('law')!r}: this route computes {', '.join(SHARP)} only")
     laws = SHARP[cam["law"]](cam)
     half = exact(cam.get("corner_rounding_deg", 0)) * mp.pi / 360
     laws = motions.rounded(laws, [angle for angle, _, _ in corners(laws)], half) if half else laws
     ratio = exact(cam.get("lever_ratio", 1))
     if not ratio > 0:
-        raise Refused("cam.lever_ratio: must be above 0")
+        raise Refused("cam.lever_ratio must be above 0")
     return [(angle, Levered(law, ratio)) for angle, law in laws] if ratio != 1 else laws
 
 
@@ -329,9 +329,9 @@ class Follower:
         mass, damping, stiffness, self.gravity, self.rest, self.r = numbers(document, "follower", fields)
         unknown = sorted(set(section(document, "follower")) - set(fields))
         if unknown:
-            raise Refused(f"follower.{unknown[0]} is in no law of flight or impact here")
+            raise Refused(f"follower.{unknown[0]}: the laws of flight and impact of this route do not contain it")
         if not (mass > 0 and damping >= 0 and stiffness >= 0):
-            raise Refused("follower: needs mass > 0, damping >= 0 and stiffness >= 0")
+            raise Refused("follower: mass must be above 0, damping and stiffness at least 0")
         self.zeta, self.omega0_squared = damping / (2 * mass), stiffness / mass
         # x is measured from the spring's equilibrium, or from the slack spring if it has no stiffness.
         self.origin = self.rest - self.gravity / self.omega0_squared if stiffness else self.rest
@@ -403,12 +403,12 @@ class Return:
         """The orbit of this period, or why it is none."""
         follower, (p, s) = self.follower, self.follower.responses(period)
         if abs(s) <= mpf(10) ** -40 * period:
-            return None, "the period is in resonance with the follower"
+            return None, "the follower is in resonance with the period"
         cam = 2 * mp.pi / period * self.slope
         leaving = -self.force * p / s
         arriving = self.follower.return_rate((p, s)) * leaving + s * self.force
         if cam - arriving <= mpf(10) ** -30 * (abs(cam) + abs(arriving)):
-            return None, "the follower does not come down on the cam"
+            return None, "the follower does not approach the cam at the impact"
         if not self.stays_above(period, leaving, laws):
             return None, "the flight meets the cam elsewhere"
         half = follower.responses(period / 2)
@@ -439,7 +439,7 @@ def locate(document):
     laws = profile(cam)
     slowest_rpm, fastest_rpm = numbers(document, "study", ("rpm_min", "rpm_max"))
     if not 0 < slowest_rpm < fastest_rpm:
-        raise Refused("study: needs 0 < rpm_min < rpm_max")
+        raise Refused("study: rpm_min must be above 0 and below rpm_max")
     first, last = 60 / fastest_rpm, 60 / slowest_rpm
     # At least 128 samples for each radian that the follower turns through.
     samples = max(SCAN, min(16 * SCAN, int(128 * mp.sqrt(follower.omega0_squared) * (last - first))))
@@ -533,7 +533,7 @@ def main():
     try:
         document = json.load(sys.stdin, parse_float=str, parse_int=str)
         if not isinstance(document, dict):
-            raise Refused("stdin holds no JSON object")
+            raise Refused("the input is not a JSON object")
         answer = route(document)
     except (Refused, ValueError, OSError, KeyError, ZeroDivisionError) as error:
         sys.exit(f"evaluate.py: {error}")

@@ -103,7 +103,7 @@ def program(base, segments):
         elif name in MOTIONS:
             laws.extend(motion(MOTIONS[name](), start, span, base, rise))
         else:
-            raise ValueError(f"cam.segment.motion: this route knows no {name!r}")
+            raise ValueError(f"cam.segment.motion = {name!r}: this route cannot compute it")
         start, base = start + span, base + rise
     return laws
 

@@ -435,7 +435,7 @@ def tangency(repairs):
 EQUATIONS = (
     Equation("eq:gff", "phi_t = e^{-zeta t}(I cos + A sin), also written out as one matrix, is the flow of x' = G x (eq:fbsol1)", flow),
     Equation("x_t", "x = (q + g/omega0^2, q') turns the equation of motion into x' = G x", gravity_shift),
-    Equation("y_t", "h (x - y) = q - c with y = (c, c')", gap_meaning, "misprint", "y = (c + g/omega0^2, c'): both from the same equilibrium",
+    Equation("y_t", "h (x - y) = q - c with y = (c, c')", gap_meaning, "misprint", "y = (c + g/omega0^2, c'), measured from the same equilibrium as x",
              ("shift",), "true as printed for g = 0"),
     Equation("eq:impactdynamics_2", "x+ = x + R (x - y) is the law of restitution at contact", restitution_law),
     Equation("eq:lmapd", "P_D = (I + phi_ti R phi_-ti) x - phi_ti R y_-ti is back, impact, forward", zero_time_map),
@@ -461,12 +461,12 @@ EQUATIONS = (
              ("phi' in the first term", "phi in the second term", "minus before the third term")),
     Equation("eq:linearmap", "A and B follow from eq:lmap and H by implicit differentiation at the corner", taylor_closed_form),
     Equation("eq:pwlf, region", "C dx + D dT is positive just where the impact comes after the corner (A+, B+ hold)", region, "refuted",
-             "divide by (1+r) phi12(T/2) (c''+ - c''-): as printed it is right just where phi12(T/2) (c''+ - c''-) > 0; "
-             "where that is negative, as at the paper's corner, A+, B+ hold on C dx + D dT < 0",
+             "divide C dx + D dT by (1+r) phi12(T/2) (c''+ - c''-). The print is right only where phi12(T/2) (c''+ - c''-) > 0. "
+             "Where it is negative, as at the paper's corner, A+ and B+ hold where C dx + D dT < 0",
              ("factor",), values={normal_form.plus: sp.Rational(-8, 3), normal_form.minus: sp.Rational(3, 2)}),
     Equation("eq:pwlf, acceleration", "P does not contain the cam's acceleration", no_acceleration),
     Equation("eq:pwlf, continuity", "A- dx + B- dT = A+ dx + B+ dT where C dx + D dT = 0, C = h (A+ - A-), D = h (B+ - B-)", continuity),
-    Equation("B tilde", "B~ = B - A e1 D/C1 after the shift of coordinates", b_tilde, "refuted", "B - (A - I) e1 D/C1: the image moves too",
+    Equation("B tilde", "B~ = B - A e1 D/C1 after the shift of coordinates", b_tilde, "refuted", "B - (A - I) e1 D/C1, since the image moves too",
              ("image",), values=GENERAL),
     Equation("B tilde, sides", "the printed B~ is the same on both sides", b_tilde_sides),
     Equation("coordinates", "x = W^-1 x~ brings A- to companion form", coordinates, "misprint", "x = W x~", ("W",), values=GENERAL),

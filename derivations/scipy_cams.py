@@ -162,7 +162,7 @@ def program(numbers):
         span, rise = math.radians(number(part, "span_deg", least=0.0)), number(part, "rise")
         begins = 0.0
         if part.get("motion") not in DISPLACEMENTS:
-            raise CannotCheck(f"no motion {part.get('motion')!r} is known here")
+            raise CannotCheck(f"cam.segment.motion = {part.get('motion')!r}: this route cannot compute it")
         for ends, powers, sine in DISPLACEMENTS[part["motion"]]:
             starts.append(start + begins * span)
             laws.append(Stretch(start, span, base, rise, powers, sine))
@@ -354,7 +354,7 @@ class Cam:
             self.starts, self.circles = LAWS[numbers["law"]](numbers)
             self.base = max(abs(self.law(start)[0]) for start in self.starts)
         else:
-            raise CannotCheck(f"no cam law {numbers.get('law')!r} can be checked")
+            raise CannotCheck(f"cam.law = {numbers.get('law')!r}: this route cannot check it")
         self.is_rounded = False
         self.round(0.5 * math.radians(numbers.get("corner_rounding_deg", 0)))
         if "lever_ratio" in numbers:
@@ -397,7 +397,7 @@ class Cam:
         contact = numbers.get("contact", "point")
         is_roller = isinstance(contact, dict)
         if not is_roller and contact not in ("point", "flat"):
-            raise CannotCheck(f"no follower {contact!r} can be checked")
+            raise CannotCheck(f"cam.contact = {contact!r}: this route cannot check it")
         roller, offset = (number(contact, key) for key in ("roller_radius", "offset")) if is_roller else (0.0, 0.0)
         normal = (nose_centre - flank_centre) / (flank - nose)
         # A flat face is on two circles where its normal is theirs, a roller where its centre is on the line of motion.

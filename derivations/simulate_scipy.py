@@ -67,9 +67,9 @@ class Follower:
         )
         unknown = sorted(set(numbers) - {"mass", "damping", "stiffness", "gravity", "rest_position", "restitution"})
         if unknown:
-            raise CannotCheck(f"follower.{unknown[0]} is in no law of flight or impact here")
+            raise CannotCheck(f"follower.{unknown[0]}: the laws of flight and impact of this route do not contain it")
         if self.stiffness < 0.0 or self.damping < 0.0 or not 0.0 <= self.restitution <= 1.0:
-            raise CannotCheck("stiffness and damping must not be negative, restitution must be in [0, 1]")
+            raise CannotCheck("stiffness and damping must be at least 0, restitution from 0 to 1")
 
     def origin(self):
         """Where x1 is measured from: the spring's equilibrium, or where it is slack if it has no stiffness."""
@@ -85,7 +85,7 @@ class Follower:
         atol = [ATOL * unit for unit in units]
         flight = solve_ivp(self.motion, (start, end), state, method=METHOD, rtol=RTOL, atol=atol, **options)
         if not flight.success or not np.all(np.isfinite(flight.y)):
-            raise CannotCheck(f"the follower's flight cannot be integrated: {flight.message}")
+            raise CannotCheck(f"the integration of the follower's flight failed: {flight.message}")
         return flight
 
     def rebound(self, cam_velocity, velocity):
@@ -182,7 +182,7 @@ def corner_impact(follower, cam, study):
     swings = 60.0 / rpm_min * math.sqrt(follower.stiffness / follower.mass) / math.tau
     tries = SCAN + SCAN_PER_SWING * swings * math.log(rpm_max / rpm_min)
     if not (tries < 1e6 and 60.0 / rpm_min * follower.damping / follower.mass < 1e5):
-        raise CannotCheck("the follower swings or settles too often in one revolution at study.rpm_min to be followed")
+        raise CannotCheck("at study.rpm_min the follower swings or settles too often in a revolution to be integrated")
     periods = np.geomspace(60.0 / rpm_max, 60.0 / rpm_min, int(tries))
     candidates = [(corner, guess) for corner in cam.corners() for guess in guesses(follower, cam, corner, periods)]
     # The slowest counts.
@@ -190,7 +190,7 @@ def corner_impact(follower, cam, study):
         impact = CornerImpact(follower, cam, corner, guess)
         if impact.admissible():
             return impact
-    words = f"from {rpm_min} to {rpm_max} rpm {len(candidates)} flights return to a corner, none clear of the cam"
+    words = f"from {rpm_min} to {rpm_max} rpm {len(candidates)} flights return to a corner, but each meets the cam on the way"
     raise CannotCheck(f"no corner impact of a one-impact, one-revolution orbit: {words}")
 
 

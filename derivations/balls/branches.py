@@ -111,7 +111,7 @@ class Branches:
         if not follower.restitution > 0:
             raise Refused("a follower without restitution does not leave the cam")
         if follower.restitution == 1 and follower.zeta == 0:
-            raise Refused("a follower that loses nothing has orbits that are neither stable nor unstable")
+            raise Refused("a follower without loss has orbits that are neither stable nor unstable")
         self.arcs = [arc for section in self._sections() for arc in self._arcs(*section)]
 
     def _sections(self):
@@ -119,12 +119,12 @@ class Branches:
         cam = self.machine.cam
         jumps = [corner for corner in cam.corners if corner.smooth <= 2]
         if any(corner.smooth < 2 for corner in jumps):
-            raise Refused("orbits are not counted over a range of speeds where the cam's velocity jumps")
+            raise Refused("the proof cannot count orbits over a range of speeds where the cam's velocity jumps")
         if not jumps:
             yield End(arb(0), None), End(self.turn, None), cam
             return
         if len(jumps) != len(cam.laws):
-            raise Refused("orbits are not counted over a range of speeds where c'' jumps between some pieces of the cam alone")
+            raise Refused("the proof cannot count orbits over a range of speeds if c'' jumps between some pieces of the cam, and not between all")
         ends = [End(corner.angle, "corner-impact" if corner.bends() else None) for corner in jumps]
         ends.append(End(ends[0].angle + self.turn, ends[0].event))
         for low, high, law in zip(ends, ends[1:], cam.laws):
@@ -166,7 +166,7 @@ class Branches:
     def over(self, low, high):
         """What becomes of the orbits from one speed, rpm, to another, as stretches by rising speed, none left out."""
         if ctx.prec < FEWEST_BITS:
-            raise Refused(f"bits: at least {FEWEST_BITS} for a range of speeds, not {ctx.prec}")
+            raise Refused(f"bits = {ctx.prec}: a range of speeds needs at least {FEWEST_BITS}")
         courses = [self._course(arc, low, high) for arc in self.arcs]
         cuts = []
         for start, _, event in sorted((turn for course in courses for turn in course), key=lambda turn: float(turn[0])):
@@ -269,7 +269,7 @@ class Branches:
             raise Undecided("two events are near to one another")
         before, after = (self._part(arc, end, end)[0] for end in (low, high))
         if before == after:
-            raise Refused(f"at {low} and {high} rpm there is the same, and an event in between")
+            raise Refused(f"the orbits at {low} and {high} rpm are the same, but there is an event in between")
         return before, events[0], after
 
     def _orbit(self, law, angle, period):

@@ -66,9 +66,9 @@ class CornerImpact:
             raise Refused(f"no corner of the cam is at {angle!r} rad")
         corner = corners[0]
         if corner.smooth < 2:
-            raise Refused("the cam's velocity jumps there: the map has a gap, and no matrices meet on a border")
+            raise Refused("the cam's velocity jumps at this corner: the map has a gap, so there are no matrices that agree on a border")
         if corner.smooth > 2 or not corner.bends():
-            raise Refused("the cam's acceleration does not jump there, or by no more than its decimals are off: the map is smooth")
+            raise Refused("the cam's acceleration does not jump at this corner by more than the error of its decimals: the map is smooth")
         return corner
 
     def _only_flight(self, period):
@@ -106,7 +106,7 @@ class CornerImpact:
             self.impacts.append(Impact(angle, law, velocity, cam_velocity, velocity - cam_velocity))
         for angle, piece in zip(angles[1:], self.pieces):
             if not piece.holds(angle):
-                raise Refused(f"the root is off the piece of the cam that its equations are of, at {angle.str(10)} rad")
+                raise Refused(f"the root, at {angle.str(10)} rad, is not on the piece of the cam for which its equations hold")
         self.angles = angles + [end]
 
     def closing(self, laws, period, angles, velocities):
@@ -129,7 +129,7 @@ class CornerImpact:
         for k, impact in enumerate(self.impacts):
             if not impact.relative_velocity > 0:
                 into = impact.relative_velocity < 0
-                raise Refused(f"impact {k + 1} {'sends the follower into the cam' if into else 'cannot be told from a graze'}")
+                raise Refused(f"impact {k + 1} {'sends the follower into the cam' if into else 'cannot be distinguished from a graze'}")
             time = (self.angles[k + 1] - self.angles[k]) / self.speed
             if not time > 0:
                 raise Refused("the impacts are not in order")
@@ -249,7 +249,7 @@ class CornerImpact:
         (one, border), other = self.implicit(side), self.closed_form(side)
         both = [[overlap(one[row, column], other[row, column]) for column in range(3)] for row in range(2)]
         if None in both[0] + both[1]:
-            raise Refused("implicit differentiation and the closed form exclude each other: one of them is wrong")
+            raise Refused("implicit differentiation contradicts the closed form: one of them is wrong")
         return arb_mat(both), border
 
 

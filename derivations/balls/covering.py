@@ -27,14 +27,14 @@ HALVINGS = 40
 def _pair(entry, name):
     pair = entry[name]
     if not isinstance(pair, list) or len(pair) != 2:
-        raise Refused(f"{name} is no pair of numbers")
+        raise Refused(f"{name} is not a pair of numbers")
     return tuple(decimal(number) for number in pair)
 
 
 def _range(entry, name):
     low, high = _pair(entry, name)
     if low > high:
-        raise Refused(f"{name} is no range")
+        raise Refused(f"{name} is not a range")
     return low, high
 
 
@@ -71,13 +71,13 @@ class HSet:
         """Refused unless what a theorem asks of N and its strips before anything moves holds; rationals decide all of it."""
         corners = [[o + x * a + y * b for o, a, b in zip(self.centre, self.unstable, self.stable)] for x in self.x for y in self.y]
         if not min(velocity for _, velocity in corners) > 0:
-            raise Refused("N has impacts after which the follower does not leave the cam")
+            raise Refused("N contains impacts after which the follower does not leave the cam")
         angles = [angle for angle, _ in corners]
         if not max(angles) - min(angles) < 360:
             raise Refused("N is wider than a revolution")
         for strip in self.strips:
             if not (self.x[0] < strip.x[0] < strip.x[1] < self.x[1]):
-                raise Refused(f"the strip of {strip.impacts} impacts is not inside of N")
+                raise Refused(f"the strip of {strip.impacts} impacts is not inside N")
             if strip.impacts < 1 or strip.revolutions < 1:
                 raise Refused("a strip takes at least one impact and one revolution")
         ordered = sorted(strip.x for strip in self.strips)
@@ -165,13 +165,13 @@ class Proof:
         """Refused, or Undecided, with a sentence that says what fails where."""
         sides = [set(self._pieces((edge, edge), self._beyond)) for edge in self.strip.x]
         if not (len(sides[0]) == len(sides[1]) == 1 and sides[0] != sides[1]):
-            raise Refused(f"{self._name()}: its edges do not go beyond different sides of N")
+            raise Refused(f"{self._name()}: the images of its edges do not lie beyond different sides of N")
         for growth in self._pieces(self.strip.x, self._covers):
             self.boxes += 1
             if growth is not None:
                 self.growth = growth if self.growth is None else min(self.growth, growth)
         if len(self.signs) > 1:
-            raise Refused(f"{self._name()}: it is folded, as a has both signs")
+            raise Refused(f"{self._name()}: the strip is folded, because a has both signs")
 
     def _name(self):
         return f"the strip of {self.strip.impacts} impacts"

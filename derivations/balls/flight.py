@@ -20,13 +20,13 @@ class Follower:
         spring = "preload" if "preload" in table else "rest_position"
         missing = [name for name in (*FIELDS, spring) if name not in table]
         if missing:
-            raise Refused(f"no follower.{missing[0]}")
+            raise Refused(f"the model has no follower.{missing[0]}")
         unknown = sorted(set(table) - {*FIELDS, spring})
         if unknown:
-            raise Refused(f"follower.{unknown[0]} is in no law of flight or impact here")
+            raise Refused(f"follower.{unknown[0]}: the laws of flight and impact of the proofs do not contain it")
         mass, damping, stiffness, gravity, restitution, rest = (decimal(table[name]) for name in (*FIELDS, spring))
         if not (mass > 0 and damping >= 0 and stiffness >= 0 and 0 <= restitution <= 1):
-            raise Refused("follower: needs mass > 0, damping >= 0, stiffness >= 0 and restitution from 0 to 1")
+            raise Refused("follower: mass must be above 0, damping and stiffness at least 0, and restitution from 0 to 1")
         if spring == "preload":
             if not stiffness > 0:
                 raise Refused("follower.preload needs a spring")

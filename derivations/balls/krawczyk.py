@@ -58,7 +58,7 @@ def root(equations, guess, names):
         last = moved
     for name, value, start, size in zip(names, centre, guess, sizes):
         if not abs(value - start) < size * max(NEAR, 2.0 ** (ROUNDING - ctx.prec)):
-            raise Refused(f"no root of the equations is where it was looked for: {name} would have to be {value.str(8, radius=False)}, "
+            raise Refused(f"no root of the equations lies in the box searched: {name} would have to be {value.str(8, radius=False)}, "
                           f"not {start!r}")
     value, jacobian = _evaluated(equations, centre)
     near = inverse(jacobian)

@@ -30,7 +30,7 @@ class Machine:
     def __init__(self, document):
         for name in ("follower", "cam"):
             if not isinstance(document.get(name), dict):
-                raise Refused(f"no {name}")
+                raise Refused(f"the model has no [{name}]")
         self.cam = Cam(document["cam"])
         self.follower = Follower(document["follower"], self.cam.lowest)
 
@@ -198,7 +198,7 @@ class Flight:
                 raise Excluded(f"the flight meets the cam elsewhere, within {reached + step:.6g} s after it began")
             step /= 2
             if step < shortest:
-                raise Refused(f"the flight is not proved to be clear of the cam {reached:.6g} s after it began: it may touch")
+                raise Refused(f"the flight is not proved to be clear of the cam {reached:.6g} s after its start: it may touch the cam")
         raise Refused(f"no contact within {horizon:.6g} s")
 
     def _launched(self, revolution, shortest):

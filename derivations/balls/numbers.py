@@ -30,7 +30,7 @@ def decimal(value):
     _, _, exponent = written.lower().partition("e")
     try:
         if exponent and abs(int(exponent)) > LARGEST_EXPONENT:
-            raise Refused(f"{value!r} is beyond what a double holds")
+            raise Refused(f"{value!r} is outside the range of a double")
         number = Fraction(written) * Fraction(factor or 1)
     except ValueError as error:
         raise Refused(f"{value!r} is not a number") from error

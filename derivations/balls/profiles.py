@@ -19,9 +19,9 @@ def pieces_of(table):
     """The pieces of a [cam] table, by rising start in [0, 2 pi)."""
     law = table.get("law")
     if law not in LAWS:
-        raise Refused(f"cam.law: {law!r} is not known; known are {', '.join(LAWS)}")
+        raise Refused(f"cam.law = {law!r}: must be one of {', '.join(LAWS)}")
     if table.get("corner_rounding_deg", 0) != 0:
-        raise Refused("cam.corner_rounding_deg: nothing is proved of rounded corners")
+        raise Refused("cam.corner_rounding_deg: the proofs do not cover rounded corners")
     pieces, ratio = LAWS[law](table), _lever_ratio(table)
     return [(start, Levered(piece, ratio), agree) for start, piece, agree in pieces] if ratio != 1 else pieces
 
@@ -29,13 +29,13 @@ def pieces_of(table):
 def _lever_ratio(table):
     ratio = decimal(table.get("lever_ratio", 1))
     if not ratio > 0:
-        raise Refused("cam.lever_ratio: must be above 0")
+        raise Refused("cam.lever_ratio must be above 0")
     return arb(ratio) if ratio != 1 else ratio
 
 
 def _number(table, name, where="cam"):
     if name not in table:
-        raise Refused(f"no {where}.{name}")
+        raise Refused(f"the model has no {where}.{name}")
     return decimal(table[name])
 
 
@@ -64,7 +64,7 @@ def arcs(table):
         if not (tip > 0 and abs(offset) < base + tip):
             raise Refused("cam.contact: a roller needs a radius above 0, and an offset that its base circle reaches")
     elif contact not in ("point", "flat"):
-        raise Refused(f"cam.contact: {contact!r} is no follower")
+        raise Refused(f"cam.contact: {contact!r} is not a contact that the proofs cover")
     if contact == "flat":
         # A face is on two circles along their common normal.
         (x, y), early = between, [arb(0)] * 3
@@ -180,7 +180,7 @@ def spline(table):
     rows = sorted((angle - turn * (angle / turn).floor(), lift) for angle, lift in rows)
     degree = {"cubic": 3, "quintic": 5}.get(table.get("spline"))
     if degree is None or not 3 <= len(rows) <= MOST_ROWS:
-        raise Refused(f"cam: a table is certified as a cubic or quintic spline of 3 to {MOST_ROWS} rows")
+        raise Refused(f"cam: the proofs cover a table only as a cubic or quintic spline of 3 to {MOST_ROWS} rows")
     count, size = len(rows), (degree - 1) // 2
     ends = rows[1:] + [(rows[0][0] + turn, rows[0][1])]
     # Widths in units of the mean one; the unknowns of a row are its slope and, of degree 5, its curvature.
@@ -246,7 +246,7 @@ def program(table):
         to = base if moving and index == moving[-1] else base + lifted if index in moving else lift
         end = 2 * arb.pi() * arb(turned / degrees)
         if segment.get("motion") not in MOTIONS:
-            raise Refused(f"cam.segment.motion: {segment.get('motion')!r} is not known; known are {', '.join(MOTIONS)}")
+            raise Refused(f"cam.segment.motion = {segment.get('motion')!r}: must be one of {', '.join(MOTIONS)}")
         pieces += Placed(start, end - start, arb(lift), arb(to - lift)).pieces(MOTIONS[segment["motion"]])
         start, lift = end, to
     if not pieces:

@@ -63,7 +63,7 @@ class Resting:
         if any(corner.smooth < 2 for corner in cam.corners):
             raise Refused("the velocity of the cam jumps")
         if not machine.follower.restitution < 1:
-            raise Refused("without a loss at impacts no motion comes to rest")
+            raise Refused("no motion comes to rest without a loss at impacts")
         ends = [*cam.starts[1:], cam.starts[0] + self.turn]
         # The stretches of a turn in which a has one sign: (start, end, law, sign).
         self.stretches = [one for piece in zip(cam.starts, ends, cam.laws) for one in self._signs(*piece)]

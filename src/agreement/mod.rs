@@ -1,6 +1,6 @@
 //! Pairwise comparison of routes, quantity by quantity, against the one table of tolerances.
 //!
-//! A route is never compared with itself or with one that did not run. A value that is not a number disagrees.
+//! No route is compared with itself or with a route that did not run. A value that is not a number disagrees.
 
 use nalgebra::Vector2;
 use std::fmt;
@@ -34,7 +34,7 @@ pub enum Quantity {
 }
 
 impl Quantity {
-    /// Its letter in documents, and its side where it has one.
+    /// Returns the letter in documents, and the side where there is one.
     pub fn parts(self) -> (&'static str, Option<Side>) {
         match self {
             Self::Period => ("T_star", None),
@@ -55,7 +55,7 @@ impl Quantity {
         }
     }
 
-    /// Whether it is A or B itself, of either side.
+    /// Whether the quantity is A or B of either side.
     pub(crate) fn is_of_the_map(self) -> bool {
         matches!(self, Self::A(_) | Self::B(_))
     }
@@ -83,13 +83,13 @@ pub struct Agreement {
     pub routes: [RouteName; 2],
     /// Quantity compared.
     pub quantity: Quantity,
-    /// Whether both routes compute it from their A and B by one function. It then agrees where these do, and tests nothing more.
+    /// Whether both routes compute the quantity from their A and B by one function. Then it agrees where A and B do, and tests nothing more.
     pub follows: bool,
     /// Largest absolute difference of any entry.
     pub max_abs_diff: f64,
-    /// Largest difference of any entry, over that entry.
+    /// Largest relative difference of any entry.
     pub max_rel_diff: f64,
-    /// Largest allowed `max_abs_diff`, and the reason.
+    /// Largest allowed `max_abs_diff`, with the reason.
     #[serde(flatten)]
     pub bound: Bound,
     /// Whether `max_abs_diff` is within the bound.
@@ -102,7 +102,7 @@ pub fn compare(routes: [RouteName; 2], quantity: Quantity, entries: [&[f64]; 2],
     compare_on_scale(routes, quantity, entries, comparison, scale)
 }
 
-/// The larger of two; not a number if either is not, which [`f64::max`] would pass over.
+/// Returns the larger of two numbers, or NaN if either is NaN, which [`f64::max`] would ignore.
 pub fn worse(one: f64, other: f64) -> f64 {
     if one.is_nan() || other.is_nan() { f64::NAN } else { one.max(other) }
 }
@@ -144,13 +144,13 @@ fn compare_on_scale(
 pub struct RouteValue {
     /// The quantity.
     pub quantity: Quantity,
-    /// Its entries, rows first.
+    /// The entries, row by row.
     pub entries: Vec<f64>,
-    /// Whether the route finds it by its own method, and not from its A and B as others do.
+    /// Whether the route finds the quantity by a method of its own, instead of from its A and B as others do.
     pub is_own: bool,
 }
 
-/// Quantities in which routes are compared, with the values of one route.
+/// Returns the quantities in which routes are compared, with the values of one route.
 pub fn quantities(route: &Route) -> Vec<RouteValue> {
     let (map, own) = (&route.map, &route.own);
     let rows = |matrix: nalgebra::Matrix2<f64>| matrix.transpose().as_slice().to_vec();
@@ -171,12 +171,12 @@ pub fn quantities(route: &Route) -> Vec<RouteValue> {
     all.into_iter().chain(border).collect()
 }
 
-/// Every pair of routes to the map, in every quantity.
+/// Compares every pair of routes to the map, in every quantity.
 pub fn compare_routes(routes: &[Route]) -> Vec<Agreement> {
     pairs(routes)
         .flat_map(|(left, right)| {
             let (these, those) = (quantities(left), quantities(right));
-            // C and D are differences of A's and B's entries, and known no better than those.
+            // C and D are differences of entries of A and B, and no more accurate than those.
             let integrated = is_integrated(left.name) || is_integrated(right.name);
             let of = |route: &Route| {
                 let sides = [&route.map.minus, &route.map.plus];
@@ -200,13 +200,13 @@ pub fn compare_routes(routes: &[Route]) -> Vec<Agreement> {
                 let compared = compare_on_scale([left.name, right.name], x.quantity, entries, comparison, scale);
                 Agreement { follows: !(x.is_own || y.is_own), ..compared }
             };
-            // A border, which comes last, is compared where both know it.
+            // The border comes last, and is compared only if both routes have it.
             these.into_iter().zip(those).map(compare).collect::<Vec<_>>()
         })
         .collect()
 }
 
-/// Whether a route integrates a differential equation through time, and so has an integrator's error.
+/// Whether a route integrates a differential equation in time, and so has an integrator's error.
 fn is_integrated(route: RouteName) -> bool {
     route == RouteName::Scipy
 }
@@ -214,7 +214,7 @@ fn is_integrated(route: RouteName) -> bool {
 /// An orbit by one route: name, x* and T*.
 pub type NamedOrbit = (RouteName, Vector2<f64>, f64);
 
-/// Every pair of routes to the orbit.
+/// Compares every pair of routes to the orbit.
 pub(crate) fn compare_orbits(orbits: &[NamedOrbit]) -> Vec<Agreement> {
     pairs(orbits)
         .flat_map(|((left, x, t), (right, y, u))| {
@@ -232,12 +232,12 @@ fn pairs<T>(items: &[T]) -> impl Iterator<Item = (&T, &T)> {
     items.iter().enumerate().flat_map(|(index, left)| items[index + 1..].iter().map(move |right| (left, right)))
 }
 
-/// The pairs of routes that one quantity was compared by.
+/// The comparisons of one quantity, one for each pair of routes.
 #[derive(Clone, Debug)]
 pub struct Pairs<'a> {
     pub quantity: Quantity,
     pub all: Vec<&'a Agreement>,
-    /// The pair that is nearest to its bound, or beyond; what is not a number disagrees, and comes first.
+    /// The pair that is nearest to its bound, or furthest beyond it. A difference that is NaN disagrees, and comes first.
     pub closest: &'a Agreement,
 }
 
@@ -251,13 +251,13 @@ document!(Pairs<'_> as pairs {
 });
 
 impl Pairs<'_> {
-    /// How many of them follow from A and B.
+    /// Returns how many of the pairs follow from A and B.
     pub fn following(&self) -> usize {
         self.all.iter().filter(|pair| pair.follows).count()
     }
 }
 
-/// Comparisons by quantity, in the order in which quantities come first.
+/// Groups comparisons by quantity, in the order in which the quantities first appear.
 pub fn by_quantity(comparisons: &[Agreement]) -> Vec<Pairs<'_>> {
     let used = |entry: &Agreement| {
         let used = entry.max_abs_diff / entry.bound.value;
@@ -278,15 +278,15 @@ pub fn by_quantity(comparisons: &[Agreement]) -> Vec<Pairs<'_>> {
     found
 }
 
-/// The fewest decimals that every entry of A and B shares between any two routes; `None` for all digits.
+/// Returns the fewest decimals that any two routes share in an entry of A or B; `None` for all digits.
 pub(crate) fn fewest_shared_decimals(comparisons: &[Agreement]) -> Option<u32> {
     let maps = comparisons.iter().filter(|entry| entry.quantity.is_of_the_map());
     maps.filter_map(|entry| shared_decimals(entry.max_abs_diff)).min()
 }
 
-/// How many decimals two numbers share whose difference is `diff`: they differ by less than half a unit in that place.
+/// Returns how many decimals two numbers with the difference `diff` share: they differ by less than half a unit in that place.
 ///
-/// `None` when they are equal to the last digit; at least 0.
+/// `None` if they are equal to the last digit; otherwise at least 0.
 pub fn shared_decimals(diff: f64) -> Option<u32> {
     (diff != 0.0).then(|| if diff.is_finite() { (-elementary::log10(2.0 * diff)).floor().max(0.0) as u32 } else { 0 })
 }

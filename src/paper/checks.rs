@@ -1,6 +1,6 @@
-//! One check for each statement of the ledger: its id, and the method that decides it.
+//! The check of each statement of the ledger: the method that decides it, by its id.
 //!
-//! An equation's id names its proof, a number's id its quantity: only the others have a row here.
+//! The id of an equation names its proof, and the id of a number its quantity. Only the other statements have a row in the table.
 
 use super::context::{CheckResult, Context, Decision, Residuals, decide};
 use super::drawings::*;
@@ -11,17 +11,17 @@ use crate::agreement::Quantity;
 use crate::known::Evidence::{self, Computed, Sampled};
 use crate::published::Verdict;
 
-const MODEL: &str =
-    "it defines the model of the computations; the tests check that flights and impacts of this program obey it";
+const MODEL: &str = "the statement defines the model of the computations; the tests check that flights and impacts of this program \
+    obey it";
 
 const LIMITS: &str = "both are typeset as t -> 0-, so two limits that should differ would be one";
 
 const LABELLED: &str = "in the drawing's coordinates the impact is at t = -0.5, left of the section at 0, and is labelled t_i. By eq:H \
     it is at -t_i";
 
-const LITERATURE: &str = "it is about other papers, none of which was read for this check";
+const LITERATURE: &str = "the statement is about other papers; none of them was read for this check";
 
-/// Hypotheses of the piecewise-linear map, whatever the cam.
+/// Hypotheses of the piecewise-linear map, for any cam.
 const HYPOTHESES: &str = "for one follower with a linear spring, of any damping and stiffness, any cam whose c and c' are continuous and \
     whose c'' jumps, and an orbit of one impact a revolution; given r > 0, v < c' at the impact and phi12(T/2) != 0";
 
@@ -34,7 +34,7 @@ const WORDING: &str = "the formulas around it have the correct quantity";
 pub enum Check<'a> {
     /// A proof by computer algebra, by the equation's label.
     Equation(&'a str),
-    /// Statements proved by computer algebra: the verdict that follows from them, and under which hypotheses.
+    /// Statements proved by computer algebra, with the verdict that follows from them, and the hypotheses.
     Proofs(Verdict, &'static [&'static str], &'a str),
     /// A printed number, by its quantity.
     Number(&'a str),
@@ -42,14 +42,14 @@ pub enum Check<'a> {
     Any(Evidence, fn(&Context<'_>) -> Decision),
     /// A computation on the paper's model.
     Paper(Evidence, fn(&Context<'_>) -> Decision),
-    /// A reader: the verdict, and the reason.
+    /// A person who read the text: the verdict, and the reason.
     Read(Verdict, &'a str),
 }
 
 /// Proved statements that give the map its two sides.
 const RANK_ONE: [&str; 2] = ["A+ - A- = kappa F e2 (h F), of rank one", "B+ - B- = kappa F e2 v/2"];
 
-/// The checks of statements whose ids do not name one.
+/// Checks of the statements whose ids name neither a proof nor a number.
 pub static CHECKS: &[(&str, Check<'_>)] = &[
     ("equation: eq:fb1", Check::Read(Verdict::Definition, MODEL)),
     ("equation: eq:i1", Check::Read(Verdict::Definition, MODEL)),
@@ -58,7 +58,7 @@ pub static CHECKS: &[(&str, Check<'_>)] = &[
     ("equation: delta x", Check::Paper(Computed, sign_of_the_deviation)),
     (
         "equation: delta x tilde",
-        Check::Proofs(Verdict::Holds, &["C x~ = C x + D mu"], "with mu for dT: the border is at C dx~ = 0, for any dT"),
+        Check::Proofs(Verdict::Holds, &["C x~ = C x + D mu"], "with mu for dT, the border is at C dx~ = 0 for any dT"),
     ),
     ("equation: theta_i", Check::Any(Computed, angles_defined)),
     ("equation: kappa_i and rho_i", Check::Any(Computed, lengths_defined)),
@@ -109,7 +109,7 @@ pub static CHECKS: &[(&str, Check<'_>)] = &[
             Verdict::Holds,
             &RANK_ONE,
             "with kappa = -(1+r)(c''+ - c''-)/(v - c') and the invertible F = phi_{T/2}. A jumps wherever c'' does, and B does if \
-             also v != 0; given r > 0 and v < c' at the impact",
+             also v != 0. This holds for r > 0 and v < c' at the impact",
         ),
     ),
     ("validation", Check::Any(Computed, validation)),
@@ -144,7 +144,7 @@ pub static CHECKS: &[(&str, Check<'_>)] = &[
     ("wording: mu", Check::Read(Verdict::Misprint, WORDING)),
 ];
 
-/// The check of a statement: from the table, or else the proof or the number that its id names.
+/// Returns the check of a statement: from the table, or else by the proof or the number that its id names.
 pub fn find(id: &str) -> Option<Check<'_>> {
     let listed = CHECKS.iter().find(|(name, _)| *name == id).map(|(_, check)| *check);
     listed
@@ -158,12 +158,13 @@ impl Check<'_> {
         matches!(self, Self::Number(_) | Self::Paper(..))
     }
 
-    /// Decides the statement. A check that ends with an error leaves it open, with reading as the only evidence.
+    /// Decides the statement. If the check ends with an error, the statement stays open, with reading as the only evidence.
     pub fn run(self, context: &Context<'_>) -> CheckResult {
         let (known, decision) = match self {
-            _ if self.is_about_the_papers_model() && !context.is_paper => {
-                (Evidence::Read, Err("it is about the paper's follower and cam; this model has others".into()))
-            }
+            _ if self.is_about_the_papers_model() && !context.is_paper => (
+                Evidence::Read,
+                Err("the statement is about the paper's follower and cam, and this model has others".into()),
+            ),
             Self::Read(verdict, why) => (Evidence::Read, Ok((verdict, why.into()))),
             Self::Equation(label) => (Evidence::Proved, equation(context, label)),
             Self::Proofs(verdict, statements, so) => (Evidence::Proved, proofs(context, verdict, statements, so)),
@@ -177,17 +178,17 @@ impl Check<'_> {
     }
 }
 
-/// Statements of the derivations, each of which must be proved there.
+/// Decides by statements of the derivations, each of which must be proved there.
 fn proofs(context: &Context<'_>, verdict: Verdict, statements: &[&str], so: &str) -> Decision {
     context.proves(statements)?;
     Ok((verdict, format!("residual 0, by computer algebra: {}; {so}", statements.join("; "))))
 }
 
-/// Decides by the residuals: if all are zero as printed, the equation holds; otherwise the repaired form must have none.
+/// Decides by the residuals. The equation holds if they are 0 as printed; otherwise those of the repaired form must be 0.
 fn equation(context: &Context<'_>, label: &str) -> Decision {
-    let equation = context.equations.get(label).ok_or("not among the derivations")?;
+    let equation = context.equations.get(label).ok_or("the derivations do not contain this equation")?;
     let Residuals { residual_as_printed, residual_repaired, subsets } = &equation.evidence;
-    // Whether a wrong equation is a slip or a wrong statement is a judgement; that it is wrong is not.
+    // That an equation is wrong is computed. Whether it is then a misprint or refuted is a judgement, taken from the derivations.
     let wrong = if equation.verdict == Verdict::Holds { Verdict::Refuted } else { equation.verdict };
     if is_zero(residual_as_printed) {
         return decide(true, wrong, "residual 0, by computer algebra".into());
@@ -216,7 +217,7 @@ fn is_zero(residual: &serde_json::Value) -> bool {
     }
 }
 
-/// Residuals with five digits each.
+/// Formats residuals with five digits each.
 fn shortened(residual: &serde_json::Value) -> String {
     match residual {
         serde_json::Value::Array(entries) => {

@@ -11,10 +11,10 @@ use crate::model::Model;
 use crate::published::{PrintedNumber, Verdict};
 use crate::study::verify::Verification;
 
-/// Findings of computer algebra on the printed equations; `make derive` writes it, `make derive-check` redoes it.
+/// Results of computer algebra for the printed equations. `make derive` writes the file, `make derive-check` checks it.
 const EQUATIONS: &str = include_str!("../../golden/derived/printed_equations.json");
 
-/// Every statement that computer algebra proves, written and redone with them.
+/// Every statement that computer algebra proves, written and checked by the same commands.
 const PROOFS: &str = include_str!("../../golden/derived/proofs.json");
 
 /// Input of the checks.
@@ -76,20 +76,20 @@ fn stages() -> Result<Vec<Stage>, LedgerError> {
     Ok(read.map_err(|error| derived("proofs.json", &error))?.stages)
 }
 
-/// Script and statement of each printed equation, by its label, and of each statement that is proved by itself.
+/// Returns the script and the statement of each printed equation, by its label, and of each separately proved statement.
 pub fn proofs() -> Result<BTreeMap<String, [String; 2]>, LedgerError> {
     let printed = |equation: Equation| (equation.label, [script("printed equations"), equation.statement]);
     let of_stage = |stage: Stage| stage.proved.into_iter().map(move |it| (it.clone(), [script(&stage.stage), it]));
     Ok(stages()?.into_iter().flat_map(of_stage).chain(equations()?.into_iter().map(printed)).collect())
 }
 
-/// The script of a stage of the derivations.
+/// Returns the script of a stage of the derivations.
 fn script(stage: &str) -> String {
     format!("derivations/{}.py", stage.replace(' ', "_"))
 }
 
 impl<'a> Context<'a> {
-    /// The context of a verified model.
+    /// Creates the context of a verified model.
     pub fn new(model: &'a Model, cam: &'a Cam, findings: &'a Verification) -> Result<Self, LedgerError> {
         let is_paper = model.is_the_papers().map_err(|error| LedgerError::Derived(error.to_string()))?;
         let equations = equations()?.into_iter().map(|equation| (equation.label.clone(), equation)).collect();
@@ -97,14 +97,14 @@ impl<'a> Context<'a> {
         Ok(Self { model, cam, findings, is_paper, equations, proved })
     }
 
-    /// The paper's printed values of a quantity, as they were compared.
+    /// Returns the printed values of a quantity, with their comparison.
     pub(super) fn printed(&self, quantity: &str) -> Result<&'a PrintedNumber, String> {
         let mut numbers = self.findings.published.iter();
         let found = numbers.find(|number| number.agreement.quantity.to_string() == quantity);
         found.ok_or_else(|| format!("{quantity} was not compared with the print"))
     }
 
-    /// An entry of the printed values of a quantity.
+    /// Returns one entry of the printed values of a quantity.
     pub(super) fn printed_entry(&self, quantity: &str, index: usize) -> Result<f64, Box<dyn Error>> {
         let entry =
             self.printed(quantity)?.printed.get(index).ok_or_else(|| format!("{quantity}: no entry {index}"))?;
@@ -114,7 +114,7 @@ impl<'a> Context<'a> {
     /// Checks that computer algebra proves each of these statements; the error names one that it does not.
     pub(super) fn proves(&self, statements: &[&str]) -> Result<(), String> {
         match statements.iter().find(|statement| !self.proved.contains(**statement)) {
-            Some(missing) => Err(format!("not among the derivations: {missing}")),
+            Some(missing) => Err(format!("the derivations do not prove: {missing}")),
             None => Ok(()),
         }
     }
@@ -123,18 +123,18 @@ impl<'a> Context<'a> {
 /// Result of a check.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CheckResult {
-    /// Its verdict.
+    /// Verdict of the check.
     pub verdict: Verdict,
     /// Evidence for the verdict.
     pub known: Evidence,
-    /// The numbers that it rests on.
+    /// The numbers on which the verdict rests.
     pub evidence: String,
 }
 
-/// Verdict of a check, with its evidence; an error says why the statement stays open.
+/// Verdict of a check, with its evidence, or the reason why the statement stays open.
 pub(super) type Decision = Result<(Verdict, String), Box<dyn Error>>;
 
-/// `holds` or `otherwise`, with the numbers.
+/// Returns the verdict `holds`, or `otherwise`, with the evidence.
 pub(super) fn decide(holds: bool, otherwise: Verdict, evidence: String) -> Decision {
     Ok((if holds { Verdict::Holds } else { otherwise }, evidence))
 }
@@ -142,7 +142,7 @@ pub(super) fn decide(holds: bool, otherwise: Verdict, evidence: String) -> Decis
 /// Reason why the ledger cannot be checked.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LedgerError {
-    /// The file does not read.
+    /// The file cannot be read.
     #[error("claims.toml: {0}")]
     Unreadable(String),
     /// A statement without a check.

@@ -1,4 +1,4 @@
-//! Appendix A and the drawn cams: the coordinates of the pictures in the arXiv source, and the behaviour of the printed lift.
+//! Checks of Appendix A and of the drawn cams, by the coordinates of the figures in the arXiv source and by the printed lift.
 
 use std::f64::consts::{PI, TAU};
 
@@ -13,7 +13,7 @@ use crate::model::{ArcsProfile, CamProfile};
 use crate::published::Verdict;
 use crate::tolerance;
 
-/// The arcs of the drawn cams.
+/// File with the arcs of the drawn cams.
 const DRAWN: &str = include_str!("../../golden/published/drawings.json");
 
 /// Names of the letters of Appendix A, in the order used here.
@@ -34,7 +34,7 @@ struct Drawing {
     marked_deg: Option<f64>,
 }
 
-/// An arc by its centre, its radius, and from where to where it is drawn, deg.
+/// An arc: its centre, its radius, and the angles at which it begins and ends, degrees.
 #[derive(Clone, Copy, Deserialize)]
 struct DrawnArc(f64, f64, f64, f64, f64);
 
@@ -63,13 +63,14 @@ impl Drawing {
         [base.2, from_axis(flank), flank.2, from_axis(nose), nose.2, top.2]
     }
 
-    /// R, P and Q from the axis: where base circle and flank, flank and nose, nose and top meet, of the half that is drawn last.
+    /// R, P and Q as vectors from the axis: the points where base circle and flank, flank and nose, nose and top meet, on the half that is
+    /// drawn last.
     fn points(&self) -> [Vector2<f64>; 3] {
         let [base, _, _, _, nose, flank] = self.arcs;
         [flank.at(flank.4), flank.at(flank.3), nose.at(nose.3)].map(|point| point - base.centre())
     }
 
-    /// Largest miss between two circles that should touch; and largest number of degrees by which an arc runs past the next.
+    /// Returns the largest gap between two circles that should touch, and the largest angle by which an arc runs past the next, degrees.
     fn misses(&self) -> (f64, f64) {
         let neighbours = self.arcs.iter().zip(self.arcs.iter().cycle().skip(1));
         neighbours.fold((0.0, 0.0), |(gap, past), (one, next)| {
@@ -89,7 +90,8 @@ fn with_places(numbers: &[f64], places: usize) -> String {
     numbers.iter().map(|number| format!("{number:.places$}")).collect::<Vec<_>>().join(", ")
 }
 
-/// The lengths of Appendix A of the model's cam, and theta1, theta2, theta3, rad and signed: tangency gives what the file leaves out.
+/// Returns the lengths of Appendix A for the model's cam, and theta1, theta2, theta3, rad and signed. Those that the model file does not give
+/// follow from tangency.
 fn computed_with(context: &Context<'_>) -> Result<([f64; 6], [f64; 3]), &'static str> {
     let CamProfile::Arcs(ArcsProfile { base_radius, flank_radius, nose_radius, flank_start_deg, nose_end_deg, .. }) =
         context.model.cam
@@ -105,7 +107,7 @@ fn computed_with(context: &Context<'_>) -> Result<([f64; 6], [f64; 3]), &'static
     Ok(([base_radius, kappa1, flank_radius, kappa2, nose_radius, kappa2 + nose_radius], angles))
 }
 
-/// Fig. camprofile (a): its lengths over 5 beside those computed with, and its angle from R to P.
+/// Compares Fig. camprofile (a) with the model: its lengths divided by 5, and its angle from R to P.
 pub(super) fn drawn_profile(context: &Context<'_>) -> Decision {
     const SCALE: f64 = 5.0;
     let drawing = Drawing::of("camprofile (a)")?;
@@ -119,7 +121,7 @@ pub(super) fn drawn_profile(context: &Context<'_>) -> Decision {
     let computed = (theta1 - theta2).to_degrees();
     let names: Vec<_> = otherwise.iter().map(|index| LETTERS[*index]).collect();
     let evidence = format!(
-        "its {} divided by {SCALE} are {}; the model has {}. The angle from R to P is {marked:.4} deg as marked, {:.4} deg by the arcs, and {computed:.4} deg in \
+        "the drawn {} divided by {SCALE} are {}; the model has {}. The angle from R to P is {marked:.4} deg as marked, {:.4} deg by the arcs, and {computed:.4} deg in \
          the model. Lengths that differ from the model: {}",
         LETTERS.join(", "),
         with_places(&drawn, 5),
@@ -131,7 +133,7 @@ pub(super) fn drawn_profile(context: &Context<'_>) -> Decision {
     decide(otherwise.is_empty() && same_angle, if same_angle { Verdict::InPart } else { Verdict::Refuted }, evidence)
 }
 
-/// Fig. pushroadvalve: its cam is that of Fig. camprofile (a), moved.
+/// Checks that the cam of Fig. pushroadvalve is that of Fig. camprofile (a), moved.
 pub(super) fn drawn_valve_train(_: &Context<'_>) -> Decision {
     let [there, here] = ["pushroadvalve", "camprofile (a)"].map(Drawing::of);
     let (there, here) = (there?, here?);
@@ -142,8 +144,8 @@ pub(super) fn drawn_valve_train(_: &Context<'_>) -> Decision {
     });
     let off = off.fold(0.0, worse);
     let evidence = format!(
-        "its cam has the arcs of Fig. camprofile (a), moved by ({}, {}), to within {}. The drawing of lifter, rod, rocker and valve \
-         has nothing that a computation could contradict",
+        "the drawn cam has the arcs of Fig. camprofile (a), moved by ({}, {}), to within {}. No computation can contradict the \
+         drawing of lifter, rod, rocker and valve",
         Shown(moved[0]),
         Shown(moved[1]),
         Shown(off)
@@ -151,7 +153,7 @@ pub(super) fn drawn_valve_train(_: &Context<'_>) -> Decision {
     decide(off <= tolerance::DISPLAYED_ZERO.value, Verdict::Misprint, evidence)
 }
 
-/// Fig. camprofileeq: whether circles that should touch do, and arcs end where the next begin.
+/// Checks in Fig. camprofileeq that circles which should touch do so, and that each arc ends where the next begins.
 pub(super) fn drawn_construction(_: &Context<'_>) -> Decision {
     let [(gap_a, past_a), (gap_b, past_b)] =
         [Drawing::of("camprofileeq (a)")?.misses(), Drawing::of("camprofileeq (b)")?.misses()];
@@ -184,8 +186,8 @@ pub(super) fn lengths_defined(_: &Context<'_>) -> Decision {
     Ok((Verdict::Definition, evidence))
 }
 
-/// theta1, theta2, theta3 as angles between rays have no sign; the pieces of the lift follow each other only where P and Q, below
-/// the axis S, have negative ones.
+/// Checks the order of the pieces of the lift. Angles between rays have no sign; but the pieces follow each other only if the angles of P and
+/// Q, below the axis S, are negative.
 pub(super) fn angles_defined(_: &Context<'_>) -> Decision {
     let signed = Drawing::of("camprofileeq (a)")?.points().map(polar);
     let ends = |angles: [f64; 3]| angles.map(|angle| 90.0 - angle);
@@ -202,7 +204,7 @@ pub(super) fn angles_defined(_: &Context<'_>) -> Decision {
     decide(rises(ends(unsigned)), if rises(ends(signed)) { Verdict::Misprint } else { Verdict::Refuted }, evidence)
 }
 
-/// The lift of Appendix A, as printed, at an angle of (0, pi]; none where no piece contains the angle.
+/// Returns the printed lift of Appendix A at an angle in (0, pi]; none where no piece, or more than one, contains the angle.
 fn printed_lift(lengths: [f64; 6], [theta1, theta2, theta3]: [f64; 3], angle: f64) -> Option<f64> {
     let [rho0, kappa1, rho1, kappa2, rho2, rho3] = lengths;
     let [r, p, q] = [theta1, theta2, theta3].map(|theta| PI / 2.0 - theta);
@@ -221,7 +223,7 @@ fn printed_lift(lengths: [f64; 6], [theta1, theta2, theta3]: [f64; 3], angle: f6
     held.next().filter(|_| held.next().is_none())
 }
 
-/// The pieces as printed, with signed angles and without, against the cam that is computed with.
+/// Compares the printed pieces of the lift with the cam of the computations, with signed angles and without.
 pub(super) fn pieces_of_the_lift(context: &Context<'_>) -> Decision {
     const ANGLES: u32 = 3600;
     let (lengths, signed) = computed_with(context)?;
@@ -247,8 +249,8 @@ pub(super) fn pieces_of_the_lift(context: &Context<'_>) -> Decision {
     decide(is_cam(without), if is_cam(with_signs) { Verdict::Misprint } else { Verdict::Refuted }, evidence)
 }
 
-/// Fig. cam-shaft labels the lift c(tau) - c(0): with a spring that is slack at 0, as in eq:fb1, the gravity that the printed x*
-/// then needs.
+/// Checks the label c(tau) - c(0) of the lift in Fig. cam-shaft, by the gravity that the printed x* would need with a spring that is slack
+/// at 0, as in eq:fb1.
 pub(super) fn label_of_the_lift(context: &Context<'_>) -> Decision {
     const EARTHS: f64 = 9.80665;
     let x_star = context.printed_entry("x_star", 0)?;
@@ -266,7 +268,7 @@ pub(super) fn label_of_the_lift(context: &Context<'_>) -> Decision {
          m/s^2. With c measured from {} m, where the spring of the authors' example is slack, it needs {:.2} m/s^2",
         lift - context.cam.lift(0.0).value,
         follower.rest_position,
-        // Rounding decides the sign of a zero, and adding 0 takes it off.
+        // Rounding decides the sign of a zero; adding 0 removes it.
         (100.0 * gravity(follower.rest_position)).round() / 100.0 + 0.0
     );
     decide(labelled.round() == EARTHS.round(), Verdict::Misprint, evidence)

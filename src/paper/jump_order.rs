@@ -1,4 +1,4 @@
-//! The paper's conjecture that the order of the derivative that jumps decides the local map: one corner after another.
+//! Check of the paper's conjecture that the order of the derivative that jumps decides the local map, at several corners.
 
 use std::error::Error;
 use std::f64::consts::TAU;
@@ -18,7 +18,7 @@ pub struct Example {
     pub name: &'static str,
     file: &'static str,
     text: &'static str,
-    /// Turns humps into hollows.
+    /// Whether humps are turned into hollows.
     upside_down: bool,
     /// The corner's place among the cam's corners.
     corner: usize,
@@ -44,7 +44,7 @@ const PROGRAM: Example =
 const JERK: Example =
     Example { file: "jerk.toml", text: include_str!("../../models/jump-order/jerk.toml"), rpm: 706.0, ..SINE };
 
-/// One flight or more for each order from 1 to 4; of order 1 for each way to hit.
+/// Flights onto corners: at least one for each order from 1 to 4, and for order 1 one for each way to hit.
 pub static EXAMPLES: [Example; 11] = [
     Example { name: "rectified sine, one impact on either side", ..SINE },
     Example { name: "rectified sine, a second impact after the corner", closing_velocity: 1.0, ..SINE },
@@ -91,11 +91,11 @@ impl Example {
     }
 }
 
-/// Exponents and coefficients at corners of order 1 to 4, each by simulation and by formula.
+/// Compares exponents and coefficients at corners of order 1 to 4, by simulation and by formula.
 pub(super) fn order_of_the_jump(_: &Context<'_>) -> Decision {
     let compared = EXAMPLES.iter().map(Example::compare).collect::<Result<Vec<_>, _>>()?;
     let of_order = |order: usize| compared.iter().filter(move |one| one.approach.corner.jump_order == order);
-    // The first row of each is the velocity's.
+    // The first row of each comparison is that of the velocity.
     let velocities = |order: usize| of_order(order).filter_map(|one| one.rows.first());
     let furthest = |order: usize| {
         let expected = order as f64 - 1.0;
@@ -103,7 +103,7 @@ pub(super) fn order_of_the_jump(_: &Context<'_>) -> Decision {
         let exponents = velocities(order).map(|row| row.measured.exponent.value);
         exponents.fold(expected, |furthest, found| if off(found) > off(furthest) { found } else { furthest })
     };
-    // Rounding decides the sign of a zero, and adding 0 takes it off.
+    // Rounding decides the sign of a zero; adding 0 removes it.
     let shown = |exponent: f64| (exponent * 1e3).round() / 1e3 + 0.0;
     let parts: Vec<_> = (1..=4).map(|order| format!("{:.3} for order {order}", shown(furthest(order)))).collect();
     let rows = compared.iter().map(|one| one.rows.len()).sum::<usize>();

@@ -1,4 +1,4 @@
-//! The ledger: each statement of the paper, the verdict on it, and whether the check still gives that verdict.
+//! The ledger: each statement of the paper, its verdict, and whether the check still gives that verdict.
 
 use std::collections::BTreeMap;
 
@@ -28,17 +28,17 @@ pub struct Claim {
     pub verdict: Verdict,
     /// Correction; given with every misprint, every refutation and every statement that holds in part.
     pub correct: Option<String>,
-    /// For a wrong statement, the statements whose slips it has, by id: its own where nothing is listed.
+    /// For a wrong statement, the ids of the statements whose slips it contains. An empty list means its own.
     #[serde(default)]
     pub slips: Vec<String>,
-    /// The function that decides it, `FILE: FUNCTION`, where that is neither a proof nor a printed number's comparison.
+    /// The function that decides the statement, `FILE: FUNCTION`, if that is neither a proof nor the comparison of a printed number.
     pub check: Option<String>,
 }
 
 /// A statement with the result of its check.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Held {
-    /// Names the statement.
+    /// Permanent name of the statement.
     pub id: String,
     /// Place in the paper.
     #[serde(rename = "where")]
@@ -57,7 +57,7 @@ pub struct Held {
     /// Correction, where the check finds the statement wrong.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub correct: Option<String>,
-    /// The statements whose slips make it wrong, by id. If its own is among them, it makes a slip itself.
+    /// The ids of the statements whose slips make it wrong. If its own id is among them, it makes a slip itself.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub slips: Vec<String>,
     /// Whether the check confirms the ledger's verdict, or the statement is not about this model.
@@ -65,7 +65,7 @@ pub struct Held {
 }
 
 impl Held {
-    /// Whether the statement makes a slip itself, and is not wrong only by slips that were made before.
+    /// Whether the statement makes a slip itself, instead of being wrong only by slips of other statements.
     pub fn makes_a_slip(&self) -> bool {
         self.slips.contains(&self.id)
     }
@@ -95,14 +95,14 @@ struct Ledger {
     claim: Vec<Claim>,
 }
 
-/// Every statement, in the paper's order by kind: equations, numbers, statements and figures.
+/// Returns every statement: equations, numbers, then statements and figures, each kind in the paper's order.
 pub fn claims() -> Result<Vec<Claim>, LedgerError> {
     let ledger: Ledger = toml::from_str(CLAIMS).map_err(|error| LedgerError::Unreadable(error.to_string()))?;
     Ok(ledger.claim)
 }
 
 impl Claims {
-    /// Runs the check of every statement; reports progress to `watch`, statement by statement.
+    /// Runs the check of every statement, and reports its progress to `watch`.
     pub fn hold(context: &Context<'_>, watch: &dyn Watch) -> Result<Self, LedgerError> {
         let claims = claims()?;
         let total = claims.len() as u64;
@@ -129,7 +129,7 @@ impl Claims {
         Ok(Self { schema, source: SOURCE, model, claims, counts, agrees })
     }
 
-    /// The statements that make a slip, each with those that are wrong by it, itself in front.
+    /// Returns the statements that make a slip, each with the other statements that are wrong because of it.
     pub fn slips(&self) -> impl Iterator<Item = (&Held, Vec<&Held>)> {
         let makers = self.claims.iter().filter(|held| held.makes_a_slip());
         makers.map(|maker| {
@@ -138,14 +138,14 @@ impl Claims {
         })
     }
 
-    /// How many of the statements with a verdict make a slip, and how many are only consequences of one.
+    /// Counts the statements of a verdict: those that make a slip, and those that are only consequences of one.
     pub fn slips_and_consequences(&self, verdict: Verdict) -> (usize, usize) {
         let with = self.claims.iter().filter(|held| held.verdict == verdict);
         let (makers, followers): (Vec<_>, Vec<_>) = with.partition(|held| held.makes_a_slip());
         (makers.len(), followers.len())
     }
 
-    /// The verdicts, the ones to read first in front, each with its statements.
+    /// Returns the verdicts, the worst first, each with its statements.
     pub fn groups(&self) -> impl Iterator<Item = (Verdict, Vec<&Held>)> {
         Verdict::WORST_FIRST
             .into_iter()

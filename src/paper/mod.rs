@@ -1,8 +1,7 @@
 //! The paper's statements, one by one, with a verdict that a check computes.
 //!
-//! `claims.toml` lists what the paper says and what was found; [`checks`] has one check for each id.
-//! A check that reaches another verdict than the ledger is an error, never an update: a misprint stays a
-//! misprint until somebody looks.
+//! `claims.toml` lists the statements with the verdicts found; [`checks`] has one check for each id.
+//! A check that reaches another verdict than the ledger is an error. It never changes the ledger: somebody must look first.
 
 pub mod checks;
 mod context;

@@ -1,4 +1,4 @@
-//! The statements in words and the figures: each decided by a computation of its own.
+//! Checks of the statements in words and of the figures, each by a computation of its own.
 
 use std::error::Error;
 use std::fmt;
@@ -19,7 +19,7 @@ use crate::simulate::{EventKind, Machine};
 use crate::study::verify::{External, verify};
 use crate::tolerance;
 
-/// A number with ten significant digits, zero where rounding made it.
+/// A number with ten significant digits; 0 where it is only rounding.
 pub(super) struct Shown(pub f64);
 
 impl fmt::Display for Shown {
@@ -34,9 +34,9 @@ impl fmt::Display for Shown {
     }
 }
 
-/// A motion beside x* that hits the cam left of t = 0, and one that hits it right of it: the t_i that solves eq:H for each.
+/// Finds the t_i that solves eq:H, for a motion beside x* that hits the cam left of t = 0 and for one that hits it right of t = 0.
 pub(super) fn side_of_the_impact(context: &Context<'_>) -> Decision {
-    /// Decreases of the velocity at x*, m/s: the follower is lower and hits the cam earlier, or higher and hits it later.
+    /// Decreases of the velocity at x*, m/s. With the first the follower is lower and hits the cam earlier, with the second later.
     const SLOWER: [f64; 2] = [1.0, -1.0];
     let at = &context.findings.at;
     let (omega, corner) = (at.angular_velocity(), at.corner.angle);
@@ -70,7 +70,7 @@ pub(super) fn side_of_the_impact(context: &Context<'_>) -> Decision {
     decide(!opposite, Verdict::Misprint, told.join("; "))
 }
 
-/// A fit of x* - x_{n+1} would be -A: the printed estimates are near A.
+/// Compares the printed estimates with A and with -A, which a fit of x* - x_{n+1} would give.
 pub(super) fn sign_of_the_deviation(context: &Context<'_>) -> Decision {
     let mut distances = [0.0_f64; 2];
     for (estimate, matrix) in [("A_hat_minus", "A_minus"), ("A_hat_plus", "A_plus")] {
@@ -87,7 +87,7 @@ pub(super) fn sign_of_the_deviation(context: &Context<'_>) -> Decision {
     decide(distances[1] < distances[0], Verdict::Misprint, evidence)
 }
 
-/// eq:fixedp as printed at T*, and with its sign put right.
+/// Evaluates eq:fixedp at T*, as printed and with its sign corrected.
 pub(super) fn fixed_point_as_printed(context: &Context<'_>) -> Decision {
     let (at, follower) = (&context.findings.at, &context.model.follower);
     let flight = Flight::new(follower);
@@ -109,14 +109,14 @@ pub(super) fn fixed_point_as_printed(context: &Context<'_>) -> Decision {
     let printed = context.printed_entry("x_star", 0)?;
     let evidence = format!(
         "at T* the equation as printed gives x1 = {:.6} m. With a minus before F R F it gives {:.6} m, and {printed:.6} m is printed. T* \
-         itself is a root of h (F x* - y0) = 0, found numerically",
+         itself is a root of h (F x* - y0) = 0, which is found numerically",
         as_printed[0], repaired[0]
     );
     let near = |x: Vector2<f64>| (x[0] - printed).abs() <= tolerance::IDENTITY.value * 10.0 * printed.abs();
     decide(near(as_printed), if near(repaired) { Verdict::Misprint } else { Verdict::Refuted }, evidence)
 }
 
-/// The law of restitution is one for every r from 0 to 1; the map of free flights needs a follower that leaves the cam.
+/// Checks the local map at r = 0. The law of restitution covers r from 0 to 1, but the map needs a follower that leaves the cam.
 pub(super) fn plastic_impact(context: &Context<'_>) -> Decision {
     let mut model = context.model.clone();
     model.follower.restitution = 0.0;
@@ -132,7 +132,7 @@ pub(super) fn plastic_impact(context: &Context<'_>) -> Decision {
     decide(!fails, Verdict::InPart, evidence)
 }
 
-/// Fig. camprofile: every corner of the cam is one of acceleration.
+/// Checks that the acceleration jumps at every corner of the cam (Fig. camprofile).
 pub(super) fn acceleration_jumps(context: &Context<'_>) -> Decision {
     let corners = context.cam.corners();
     let angles: Vec<_> = corners.iter().map(|corner| format!("{:.3}", corner.angle.to_degrees())).collect();
@@ -141,20 +141,20 @@ pub(super) fn acceleration_jumps(context: &Context<'_>) -> Decision {
     decide(orders && corners.len() == 6, Verdict::Refuted, evidence)
 }
 
-/// At the corners the lift and its slope have one value, the second derivative two.
+/// Checks that lift and slope are continuous at the corners, where the second derivative jumps.
 pub(super) fn profile_is_continuous(context: &Context<'_>) -> Decision {
     let corners = context.cam.corners();
     let continuous = corners.iter().all(|corner| corner.jump_order > 1);
     let orders: Vec<_> = corners.iter().map(|corner| corner.jump_order.to_string()).collect();
     let evidence = format!(
-        "order of the first derivative that jumps at each of the {} corners: {}",
+        "the order of the lowest derivative that jumps, at each of the {} corners: {}",
         corners.len(),
         orders.join(", ")
     );
     decide(!continuous, Verdict::Misprint, evidence)
 }
 
-/// Value of `of` at the corner impact of the same machine with zeta = 1/s.
+/// Returns the value of `of` at the corner impact of the same machine with zeta = 1/s.
 fn damped<T>(context: &Context<'_>, of: impl Fn(&Model, &CornerImpact) -> T) -> Result<T, LocateError> {
     let mut model = context.model.clone();
     model.follower.damping = 2.0 * model.follower.mass;
@@ -162,17 +162,19 @@ fn damped<T>(context: &Context<'_>, of: impl Fn(&Model, &CornerImpact) -> T) -> 
     Ok(of(&model, &at))
 }
 
-/// By symmetry in time of the undamped flight only: with a little damping it is not so.
+/// Checks that x* is at rest. The reason is the symmetry in time of the undamped flight, which damping destroys.
 pub(super) fn at_rest(context: &Context<'_>) -> Decision {
     let velocity = context.findings.at.x_star()[1];
     let beside = damped(context, |_, at| at.x_star()[1])
         .map_or_else(|error| error.to_string(), |velocity| format!("{velocity:.4} m/s"));
-    let evidence =
-        format!("it is {} m/s, because the follower is undamped; with zeta = 1/s it is {beside}", Shown(velocity));
+    let evidence = format!(
+        "the velocity is {} m/s, because the follower is undamped; with zeta = 1/s it is {beside}",
+        Shown(velocity)
+    );
     decide(velocity.abs() <= tolerance::DISPLAYED_ZERO.value, Verdict::Refuted, evidence)
 }
 
-/// Each revolution that an estimator samples must have one impact, near the corner, or the estimator fails.
+/// Checks that the estimators ran: each fails if a sampled revolution does not have one impact, near the corner.
 pub(super) fn one_impact(context: &Context<'_>) -> Decision {
     let estimates = context.findings.routes.iter().filter(|route| route.uncertainty.is_some());
     let ran: Vec<_> = estimates.map(|route| route.name).collect();
@@ -184,7 +186,7 @@ pub(super) fn one_impact(context: &Context<'_>) -> Decision {
     decide(both, Verdict::Refuted, evidence)
 }
 
-/// A11 - A22 = 2 zeta A12, by computer algebra: what the digits of the printed matrices leave of zeta.
+/// Bounds zeta by the digits of the printed matrices, from A11 - A22 = 2 zeta A12 (proved by computer algebra).
 pub(super) fn positive_constants(context: &Context<'_>) -> Decision {
     context.proves(&["A11 - A22 = 2 zeta A12, on either side"])?;
     let bound = |quantity: &str| -> Result<[f64; 2], Box<dyn Error>> {
@@ -233,7 +235,7 @@ pub(super) fn five_decimals(context: &Context<'_>) -> Decision {
     decide(all, Verdict::Refuted, format!("largest differences: {}; five decimals allow 5e-6", parts.join(", ")))
 }
 
-/// Classification of the local map; a degenerate map has none.
+/// Returns the classification of the local map; a degenerate map has none.
 fn classification<'a>(context: &'a Context<'_>) -> Result<&'a Classification, &'static str> {
     context.findings.classification.as_ref().map_err(|_| "the map is degenerate")
 }
@@ -252,7 +254,7 @@ pub(super) fn nonsmooth_fold(context: &Context<'_>) -> Decision {
     let verdict = classification(context)?;
     let same = verdict.minus.exists_for == verdict.plus.exists_for;
     let evidence = format!(
-        "{}; fixed points exist at speeds {} (minus) and {} (plus) than omega*",
+        "it is a {}: the fixed point of the minus side exists at speeds {} than omega*, that of the plus side at {} ones",
         verdict.scenario, verdict.minus.exists_for, verdict.plus.exists_for
     );
     decide(verdict.scenario == Scenario::NonsmoothFold && same, Verdict::Refuted, evidence)
@@ -277,18 +279,18 @@ pub(super) fn fixed_points_above(context: &Context<'_>) -> Decision {
     let (minus, plus) = (&verdict.minus, &verdict.plus);
     let above = minus.exists_for == Speeds::Faster && plus.exists_for == Speeds::Faster;
     let evidence = format!(
-        "fixed point plus: stable {}, exists at speeds {} than omega*; fixed point minus: stable {}, exists at {} ones",
+        "the fixed point of the plus side (stable: {}) exists at speeds {} than omega*, that of the minus side (stable: {}) at {} ones",
         plus.stable, plus.exists_for, minus.stable, minus.exists_for
     );
     decide(above && plus.stable && !minus.stable, Verdict::Refuted, evidence)
 }
 
-/// On the border the two sides of this model's map are one.
+/// Checks that the two sides of this model's map agree on the border.
 pub(super) fn continuity(context: &Context<'_>) -> Decision {
     let map = &context.findings.map;
     let (c, d) = (map.c(), map.d());
     let (jump_a, jump_b) = (map.plus.a - map.minus.a, map.plus.b - map.minus.b);
-    // Two directions span the border: along it in the state, and from it with dT.
+    // Two directions span the border: one along it with the state alone, one with dT.
     let directions = [(Vector2::new(-c[1], c[0]), 0.0), (Vector2::new(-d / c[0], 0.0), 1.0)];
     let jump = |(dx, dt): &(Vector2<f64>, f64)| {
         (jump_a * dx + jump_b * *dt).norm() / (jump_a.norm() * dx.norm() + jump_b.norm() * dt.abs())

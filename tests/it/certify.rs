@@ -223,13 +223,13 @@ fn more_bits_prove_more_digits_and_too_few_prove_nothing() {
 fn places_where_there_is_none_are_refused() {
     let model = common::osorio();
     let place = |angle: f64, period: f64| json!({ "cam_angle_rad": angle, "period_s": period, "revolutions": 1 });
-    refused(&model, place(CORNER, PERIOD * (1.0 + 1e-4)), 128, "no root of the equations is where it was looked for");
+    refused(&model, place(CORNER, PERIOD * (1.0 + 1e-4)), 128, "no root of the equations lies in the box searched");
     refused(&model, place(2.6, PERIOD), 128, "no corner of the cam is at 2.6 rad");
     refused(&model, place(3.662_060_806_013_354, 60.0 / 634.331_398_999), 128, "sends the follower into the cam");
     refused(&model, place(CORNER, 60.0 / 224.376_214_135), 128, "meets the cam elsewhere");
     // Without restitution every impact leaves the follower on the cam.
     let plastic = Model::parse("plastic.toml", &common::osorio_text(&[("restitution", "0.0")])).unwrap();
-    refused(&plastic, place(CORNER, PLASTIC_PERIOD), 128, "cannot be told from a graze");
+    refused(&plastic, place(CORNER, PLASTIC_PERIOD), 128, "cannot be distinguished from a graze");
 }
 
 /// Where a plastic follower that leaves P with the cam's velocity is back at P after a revolution, s.
@@ -312,7 +312,7 @@ fn a_root_off_the_piece_that_its_equations_are_of_is_refused() {
     let text = std::fs::read_to_string(Path::new(common::ROOT).join(file)).unwrap()
         + &format!("\n[[cam.segment]]\nstart_deg = {}\ncoefficients = [{value}, {slope}, {a2}]\n", cut.to_degrees());
     let cut = Model::parse("cut.toml", &text).unwrap();
-    refused(&cut, place(other - 2e-8), 128, "off the piece of the cam");
+    refused(&cut, place(other - 2e-8), 128, "is not on the piece of the cam");
     assert!(script(&cut, place(other), 128)["certificate"].is_object());
 }
 

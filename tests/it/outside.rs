@@ -83,7 +83,10 @@ fn a_number_of_the_follower_that_a_script_has_in_no_law_is_refused() {
     for (script, document) in [("evaluate.py", &numbers), ("simulate_scipy.py", &numbers), ("certify.py", &exact)] {
         let answer = common::python(&["-B", &format!("derivations/{script}")], document);
         let said = text(answer.stdout) + &text(answer.stderr);
-        assert!(!answer.status.success() && said.contains("follower.drag is in no law"), "{script}: {said}");
+        assert!(
+            !answer.status.success() && said.contains("follower.drag: the laws of flight and impact"),
+            "{script}: {said}"
+        );
     }
 }
 

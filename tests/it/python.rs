@@ -238,7 +238,7 @@ fn an_h_set_that_is_off_is_refused_in_balls_too() {
         (2, "is not proved to", |set| set["strips"][0]["x"] = json!([-0.3, 0.201])),
         (5, "go beyond", |set| set["strips"][0]["revolutions"] = json!(5)),
         (5, "cones are not proved", |set| set["cone_slope"] = json!(0.01)),
-        (5, "is not inside of N", |set| set["x"] = json!([-3.75, 0.211])),
+        (5, "is not inside N", |set| set["x"] = json!([-3.75, 0.211])),
         (5, "are parallel", |set| set["stable"] = set["unstable"].clone()),
         (5, "does not leave the cam", |set| set["centre"] = json!([158.29, 0.1])),
     ];

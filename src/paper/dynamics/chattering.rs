@@ -14,13 +14,13 @@ use crate::simulate::{Event, Machine, SimulateError, angular_velocity};
 use crate::study::attractors;
 use crate::tolerance;
 
-/// Halves `[low, high]`, rpm, to the rounding of its ends, around the one speed from which on `is` is true.
+/// Returns the lowest speed, rpm, at which `is` is true, by halving `[low, high]` down to rounding; `is` must change once there.
 fn first_speed(low: f64, high: f64, is: impl FnMut(f64) -> Result<bool, SimulateError>) -> Result<f64, SimulateError> {
     let [_, high] = halve([low, high], Width::Relative(tolerance::ROOT_WIDTH.value), is)?;
     Ok(high)
 }
 
-/// The lowest speed with a release, by simulation; and where the nose would first have to pull, right after P:
+/// Compares the lowest speed with a release, by simulation, with the speed at which the nose would first have to pull, right after P:
 /// `c'' w^2 = a(c)`.
 pub(in crate::paper) fn detachment(context: &Context<'_>) -> Decision {
     let machine = machine(context, 100.0);
@@ -39,7 +39,7 @@ pub(in crate::paper) fn detachment(context: &Context<'_>) -> Decision {
         silent += usize::from(first_event(f64::from(rpm))?.is_none());
     }
     let found = attractors::detachment(context.model, [114.0, 116.0])?;
-    let speed = found.ok_or("the follower does not leave the cam first between 114 and 116 rpm")?;
+    let speed = found.ok_or("the lowest speed of detachment is not between 114 and 116 rpm")?;
     let at = first_event(speed)?.unwrap_or(f64::NAN);
     let corners = context.cam.corners();
     let nose = corners.get(1).map_or(f64::NAN, |corner| {
@@ -48,8 +48,8 @@ pub(in crate::paper) fn detachment(context: &Context<'_>) -> Decision {
     });
     let evidence = format!(
         "from rest on the cam, a revolution has no event at {silent} of the speeds 1, 2, ..., 114 rpm. The lowest speed with a \
-         release is {speed:.6} rpm, at {:.4} deg; it rounds to {:.0} rpm. From {nose:.6} rpm on, the nose would have to pull at P to hold \
-         the follower",
+         release is {speed:.6} rpm, at {:.4} deg; it rounds to {:.0} rpm. From {nose:.6} rpm on, the nose would have to pull the \
+         follower at P to keep it in contact",
         at.to_degrees(),
         speed.round()
     );
@@ -59,21 +59,21 @@ pub(in crate::paper) fn detachment(context: &Context<'_>) -> Decision {
     decide(otherwise == Verdict::InPart && speed.round() == 114.0, otherwise, evidence)
 }
 
-/// Release at P, impacts that accumulate, sticking up to P again, and no memory of what was before.
+/// Checks that after a release at P the impacts accumulate, that the follower then sticks up to P, and that it forgets its start.
 pub(in crate::paper) fn chattering(context: &Context<'_>, rpm: f64) -> Decision {
     let [_, p, ..] = corners(context);
     let machine = machine(context, rpm);
     let round = Round::new(&machine, p)?;
     let ratios: Vec<f64> = round.impacts.windows(2).map(|two| two[1][1] / two[0][1]).collect();
     let ratio = ratios.last().copied().unwrap_or(f64::NAN);
-    // From rest on the base circle too, and nothing is left of a deviation.
+    // The same from rest on the base circle; and nothing remains of a deviation.
     let mut motion = machine.start_on_cam(0.0, 0.0)?;
     machine.revolve(&mut motion, 3)?;
     let forgets = growth(&machine, motion, 2)? == f64::NEG_INFINITY;
     let evidence = format!(
         "after the release at P ({:.2} deg), the follower has {} impacts above 1e-6 m/s; in the end each has {ratio:.4} of the speed of \
          the one before. They accumulate {:.3} deg after P, at {:.3} deg, where the follower sticks. The next release at P is {} \
-         revolution later. Deviations are wiped out: {forgets}",
+         revolution later. The motion keeps nothing of a deviation: {forgets}",
         p.to_degrees(),
         round.felt(),
         round.accumulation.to_degrees(),
@@ -84,12 +84,12 @@ pub(in crate::paper) fn chattering(context: &Context<'_>, rpm: f64) -> Decision 
     decide(geometric && round.period == 1 && round.releases == 0 && forgets, Verdict::Refuted, evidence)
 }
 
-/// Several impacts and an accumulation at every speed of the figure, up to where the accumulation reaches P.
+/// Checks that at every speed of the figure there are several impacts that accumulate, until the accumulation reaches P.
 pub(in crate::paper) fn impact_diagram_of_slow_cams(context: &Context<'_>) -> Decision {
     const SEVERAL: usize = 10;
     let [_, p, ..] = corners(context);
     let at = |rpm: f64| Round::new(&machine(context, rpm), p);
-    // Right above detachment the hops are there, but a thousandth of a millimetre per second.
+    // Just above detachment the follower hops at only a thousandth of a millimetre per second.
     let mut all = true;
     for rpm in 115..=198 {
         let round = at(f64::from(rpm))?;
@@ -99,7 +99,7 @@ pub(in crate::paper) fn impact_diagram_of_slow_cams(context: &Context<'_>) -> De
     let one_release = first_speed(130.0, 140.0, |rpm| Ok(at(rpm)?.releases == 0))?;
     let end = first_speed(198.0, 198.6, |rpm| Ok(at(rpm)?.period != 1))?;
     let reach = (p + at(end - tolerance::SPEED_FOUND.value)?.accumulation).to_degrees() - 360.0;
-    // How many revolutions instead is for rounding to decide: each multiplies a deviation by a large number.
+    // Rounding decides after how many revolutions it returns instead: each revolution multiplies a deviation by a large number.
     let above = at(200.0)?.period != 1;
     let evidence = format!(
         "at each of 115, 116, ..., 198 rpm there is one revolution from release to release at P, with more than {SEVERAL} impacts that \
@@ -112,11 +112,11 @@ pub(in crate::paper) fn impact_diagram_of_slow_cams(context: &Context<'_>) -> De
     decide(all && ends_at_p && above, Verdict::Refuted, evidence)
 }
 
-/// Impacts after the release that are followed, and the step of speeds between which a crossing is looked for, rpm.
+/// Number of impacts that are followed after the release; and the step of the speeds between which crossings are searched for, rpm.
 const FOLLOWED: usize = 8;
 const STEP: f64 = 0.25;
 
-/// Behaviour of the angle where impacts accumulate, where an impact's line crosses a corner.
+/// Extremum of the angle of accumulation at a speed where the line of an impact crosses a corner.
 #[derive(Clone, Copy, PartialEq)]
 enum Turn {
     Peak,
@@ -124,11 +124,11 @@ enum Turn {
     Neither,
 }
 
-/// Every crossing of a corner by the line of one of the first impacts, and whether the accumulation has a peak there.
+/// Finds every crossing of a corner by the line of one of the first impacts, and checks whether the accumulation has a peak there.
 pub(in crate::paper) fn resonant_peaks(context: &Context<'_>) -> Decision {
     /// Distance from the crossing at which the accumulation is compared, rpm.
     const BESIDE: f64 = 1e-3;
-    /// Right above detachment hops are too low to be distinguished; above the range, the accumulation is past P.
+    /// Range of speeds, rpm. Just above detachment the hops are too low to be distinguished; above the range the accumulation is past P.
     const RANGE: [f64; 2] = [115.5, 198.5];
     const NAMES: [&str; 6] = ["R", "P", "Q", "Q'", "P'", "R'"];
     let p = corners(context)[1];
@@ -159,7 +159,7 @@ pub(in crate::paper) fn resonant_peaks(context: &Context<'_>) -> Decision {
             if reached.to_degrees() <= tolerance::DRAWN_DEGREES.value {
                 found.push((corner, turn(rpm)?));
             } else {
-                // A line that jumps over the corner, where an impact up to it becomes a graze, does not cross it.
+                // A line does not cross the corner if it jumps over it, where its impact or an earlier one becomes a graze.
                 let up_to_it = before.impacts.iter().take(index + 1).chain(here.impacts.iter().take(index + 1));
                 slowest = worse(slowest, up_to_it.fold(f64::INFINITY, |least, [_, velocity]| least.min(*velocity)));
                 jumps.push((corner, turn(rpm)?));
@@ -213,7 +213,7 @@ pub(in crate::paper) fn period_adding(context: &Context<'_>) -> Decision {
     let evidence = format!(
         "there are stable motions of {} revolutions at {} rpm. Each has one more revolution of three impacts, and the windows \
          accumulate, five times closer each time. There are also motions of {} revolutions at {} rpm. Windows of other periods lie in \
-         between. Up to 198.56 rpm there are none: every motion has period one",
+         between. Up to 198.56 rpm there is no such window: every motion has period one",
         listed(&ones),
         listed(ADDING_ONE.iter().map(|rpm| format!("{rpm:.3}"))),
         listed(&twos),

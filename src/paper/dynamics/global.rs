@@ -1,5 +1,5 @@
-//! The chaotic motion that coexists with the one of one impact a revolution: the border of their basins, the speed where it is lost, and
-//! how the motion goes over to it when its orbit is gone.
+//! Checks of the chaotic motion that coexists with the motion of one impact a revolution: the border of their basins, the speed at which the
+//! chaotic motion is lost, and the change to it when the orbit of one impact has vanished.
 
 use super::transition::{from_x_star, is_period_one, map};
 use super::{listed, machine, one_impact};
@@ -17,11 +17,12 @@ use crate::study::basins::boundary::{approach, border};
 use crate::study::basins::{Curve, Extent, Reversed, Saddle};
 use crate::tolerance;
 
-/// Distances below the corner impact at which revolutions are counted until the motion has left, rpm; and its distance then, m.
+/// Distances below the corner impact, rpm, at which the revolutions are counted until the motion has left x*; and the distance from x* that
+/// counts as having left, m.
 const BELOW: [f64; 4] = [1e-2, 1e-4, 1e-6, 1e-8];
 const LEFT: f64 = 1e-3;
 
-/// The settled motion, with the speed lowered through the corner impact in one small step; and how it leaves.
+/// Lowers the speed of the settled motion through the corner impact in one small step, and checks how it leaves x*.
 pub(in crate::paper) fn transition(context: &Context<'_>) -> Decision {
     const BESIDE: f64 = 1e-4;
     let at = &context.findings.at;
@@ -53,7 +54,7 @@ pub(in crate::paper) fn transition(context: &Context<'_>) -> Decision {
     decide(above && !below && agree, Verdict::Refuted, evidence)
 }
 
-/// Revolutions within which a motion must have left.
+/// Number of revolutions within which a motion must have left.
 const PATIENCE: u64 = 100_000;
 
 fn shown(count: Option<u64>) -> String {
@@ -72,7 +73,7 @@ pub(in crate::paper) fn coexisting(context: &Context<'_>) -> Decision {
         both &= growth(&machine, motion, 1000)? > tolerance::CHAOTIC_GROWTH.value;
         both &= one_impact(&machine, motion, 10_000)?.is_none() && is_period_one(context, rpm, 3000)?;
     }
-    // Above it the chaotic motion is left within some hundred revolutions.
+    // Above that, runs leave the chaotic set within some hundred revolutions.
     let machine = machine(context, 683.0);
     let alone = one_impact(&machine, machine.start_on_cam(0.0, 0.0)?, 20_000)?.is_some();
     let (lines, farthest) = borders(context, 678.0)?;
@@ -80,8 +81,8 @@ pub(in crate::paper) fn coexisting(context: &Context<'_>) -> Decision {
     let lost = lost(context)?;
     let evidence = format!(
         "at {} rpm, a start at rest on the cam does not settle in 10000 revolutions, with a Lyapunov exponent above {} a \
-         revolution, and a start at x* settles on one impact a revolution: {both}. At 678 rpm, the border of their basins, by halving on \
-         {lines} lines, is within {:e} m of the stable manifold of the unstable orbit of one impact, by runs backwards: \
+         revolution; a start at x* settles on one impact a revolution: {both}. At 678 rpm, the border of their basins, found by halving on \
+         {lines} lines, is within {:e} m of the stable manifold of the unstable orbit of one impact, found by runs backwards in time: \
          {parted}. The unstable manifold of that orbit, which the chaotic motion fills, meets the stable one at {lost:.2} rpm. At 683 rpm \
          the start at rest settles on one impact a revolution, too: {alone}",
         listed(COEXISTING),
@@ -92,7 +93,7 @@ pub(in crate::paper) fn coexisting(context: &Context<'_>) -> Decision {
     decide(both && alone && parted && between, Verdict::Refuted, evidence)
 }
 
-/// The saddle of one impact a revolution and the half of its stable manifold on the cam's side.
+/// Returns the saddle of one impact a revolution, with the half of its stable manifold on the cam's side.
 fn parting(
     context: &Context<'_>,
     map: &StroboscopicMap,
@@ -113,9 +114,9 @@ fn parting(
     Ok(saddle.and_then(curve))
 }
 
-/// Number of lines of one velocity on which each border was found, and its largest distance from the stable manifold, m.
+/// Returns the number of lines of constant velocity on which the border was found, and its largest distance from the stable manifold, m.
 fn borders(context: &Context<'_>, rpm: f64) -> Result<(usize, f64), SimulateError> {
-    /// Velocities between the saddle's and the first cusp's, m/s.
+    /// Velocities of the lines, between that of the saddle and that of the first cusp, m/s.
     const VELOCITIES: [f64; 6] = [-18.0, -14.0, -10.0, -6.0, -2.0, 2.0];
     let map = map(context, rpm);
     let Some((_, curve)) = parting(context, &map, 27)? else { return Ok((0, f64::NAN)) };
@@ -129,7 +130,7 @@ fn borders(context: &Context<'_>, rpm: f64) -> Result<(usize, f64), SimulateErro
     Ok((found, farthest))
 }
 
-/// The speed at which the saddle's unstable manifold meets its stable one, rpm, by secants through the distance between
+/// Returns the speed at which the saddle's unstable manifold meets its stable one, rpm, by the secant method for the distance between
 /// them; NaN where there is no saddle.
 fn lost(context: &Context<'_>) -> Result<f64, SimulateError> {
     const SAMPLES: [u32; 2] = [1000, 40];

@@ -1,8 +1,8 @@
-//! Statements about runs: the motion of the follower at a speed, decided by the simulator.
+//! Checks, by the simulator, of statements about the follower's motion at a speed.
 //!
-//! `chattering` is about slow cams, where the follower comes to rest on the cam once a revolution; `transition` about
-//! fast ones, around the corner impact; `global` about what coexists there and how the motion goes over. Evidence must not
-//! depend on the computer: for a chaotic run it contains only what any run shows.
+//! `chattering` is about slow cams, where the follower comes to rest on the cam once a revolution; `transition` is
+//! about fast ones, near the corner impact; `global` is about the motions that coexist there, and the change from one to the other.
+//! Evidence must not depend on the computer: for a chaotic run it contains only results that every run shows.
 
 mod chattering;
 mod global;
@@ -22,19 +22,18 @@ fn listed(numbers: impl IntoIterator<Item = impl ToString>) -> String {
     numbers.into_iter().map(|number| number.to_string()).collect::<Vec<_>>().join(", ")
 }
 
-/// The paper's machine at a speed.
+/// Returns the paper's machine at a speed, rpm.
 fn machine(context: &Context<'_>, rpm: f64) -> Machine {
     Machine::new(context.cam.clone(), &context.model.follower, angular_velocity(rpm))
 }
 
-/// The angles of the corners R, P, Q, Q', P', R', rad; NaN where the cam has fewer.
+/// Returns the angles of the corners R, P, Q, Q', P', R', rad; NaN where the cam has fewer.
 fn corners(context: &Context<'_>) -> [f64; 6] {
     let corners = context.cam.corners();
     std::array::from_fn(|index| corners.get(index).map_or(f64::NAN, |corner| corner.angle))
 }
 
-/// The motion of one impact a revolution, in one state, to which `motion` converges within `transient` revolutions, or so many after a
-/// rest.
+/// Returns the orbit of one impact a revolution to which `motion` converges within `transient` revolutions, or within as many after a rest.
 fn one_impact(machine: &Machine, motion: Motion, transient: u64) -> Result<Option<PeriodicOrbit>, SimulateError> {
     let budget = Budget { transient, record: 1, longest: 1, patience: 0 };
     Ok(match long_run(machine, motion, budget)?.ending {

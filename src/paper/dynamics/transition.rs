@@ -19,12 +19,12 @@ use crate::tolerance;
 /// The speeds between 660 and 750 rpm at which runs are compared with the paper's diagrams.
 const ABOVE: [f64; 6] = [673.3, 680.0, 700.0, 720.0, 735.0, 739.0];
 
-/// x*, on a machine of another speed.
+/// Starts a motion in x* on a machine of another speed.
 pub(super) fn from_x_star(context: &Context<'_>, machine: &Machine) -> Result<Motion, SimulateError> {
     machine.start(context.findings.at.section_angle(), context.findings.at.state)
 }
 
-/// Whether `revolutions` from x* at `rpm` end on one impact a revolution.
+/// Whether a run of `revolutions` from x* at `rpm` ends on one impact a revolution.
 pub(super) fn is_period_one(context: &Context<'_>, rpm: f64, revolutions: u64) -> Result<bool, SimulateError> {
     let machine = machine(context, rpm);
     Ok(one_impact(&machine, from_x_star(context, &machine)?, revolutions)?.is_some())
@@ -34,8 +34,8 @@ pub(super) fn map(context: &Context<'_>, rpm: f64) -> StroboscopicMap {
     StroboscopicMap { machine: machine(context, rpm), cam_angle: context.findings.at.section_angle() }
 }
 
-/// The stable orbit at `rpm` of `revolutions` with one impact in each, followed over `range`, rpm, to the special point that
-/// `is` looked for.
+/// Follows the stable orbit at `rpm` of `revolutions`, with one impact in each, over `range`, rpm. Returns the first special point for which
+/// `is` is true.
 fn special(
     context: &Context<'_>,
     rpm: f64,
@@ -45,14 +45,14 @@ fn special(
 ) -> Result<BranchPoint, Box<dyn Error>> {
     let wanted = Search { revolutions, impacts: Some(revolutions as usize) };
     let orbits = search(&machine(context, rpm), &wanted)?;
-    let stable = orbits.iter().find(|orbit| orbit.is_stable()).ok_or("no such stable orbit to follow")?;
+    let stable = orbits.iter().find(|orbit| orbit.is_stable()).ok_or("the search found no such stable orbit")?;
     let following = Following { parameter: Parameter::Speed, range, longest_step: 0.05, most_points: 400 };
     let mut points = Branch::through(context.model, rpm, stable, &following)?.points.into_iter();
     let found = points.find(|point| point.special.is_some_and(|special| is(special.kind)));
-    found.ok_or_else(|| "no such point on the branch".into())
+    found.ok_or_else(|| "the branch has no such special point".into())
 }
 
-/// The speed where a multiplier of the motion of one impact a revolution passes -1, rpm.
+/// Returns the speed at which a multiplier of the motion of one impact a revolution passes -1, rpm.
 fn flip(context: &Context<'_>) -> Result<f64, Box<dyn Error>> {
     Ok(special(context, 700.0, 1, [690.0, 745.0], |kind| kind == SpecialKind::Flip)?.rpm)
 }
@@ -70,7 +70,7 @@ pub(in crate::paper) fn period_one_above(context: &Context<'_>) -> Decision {
             let is_proved = one_stable_orbit(&proved, context.findings.at.speed_rpm(), flip);
             (is_proved, format!("is proved: {is_proved}. That runs converge to it is not proved"))
         }
-        // The rest of the ledger needs no Python; what is missing is for the first line to say.
+        // The rest of the ledger needs no Python. The first line of the error says what is missing.
         Err(error) => {
             (true, format!("was not proved in this run: {}", error.to_string().lines().next().unwrap_or_default()))
         }
@@ -85,10 +85,10 @@ pub(in crate::paper) fn period_one_above(context: &Context<'_>) -> Decision {
     decide(settled.len() == ABOVE.len() && is_proved, Verdict::Refuted, evidence)
 }
 
-/// The speeds at every one of which orbits are counted, rpm.
+/// Range of speeds over which all orbits of one impact are counted, rpm.
 const RANGE: [f64; 2] = [600.0, 760.0];
 
-/// Whether there is no orbit of one impact below `corner`, and one that is stable, and no other such, from there to `flip`, rpm.
+/// Whether there is no orbit of one impact below `corner`, and exactly one stable one from there to `flip`, rpm.
 fn one_stable_orbit(proved: &ProvedCounts, corner: f64, flip: f64) -> bool {
     let is_near = |speed: f64, other: f64| (speed - other).abs() <= tolerance::SPEED_FOUND.value;
     let [below, beside, ..] = &proved.counts[..] else { return false };
@@ -100,7 +100,7 @@ fn one_stable_orbit(proved: &ProvedCounts, corner: f64, flip: f64) -> bool {
             .all(|(one, other)| is_near(*one, *other))
 }
 
-/// One impact line from 673.23 up, many impacts below; and the behaviour at the diagram's upper end.
+/// Checks for one impact line from 673.23 rpm up, scattered impacts below, and no line at the diagram's upper end.
 pub(in crate::paper) fn impact_diagram(context: &Context<'_>) -> Decision {
     let of_one_impact = |speeds: &[f64]| -> Result<Vec<bool>, SimulateError> {
         speeds.iter().map(|rpm| is_period_one(context, *rpm, 3000)).collect()
@@ -117,11 +117,11 @@ pub(in crate::paper) fn impact_diagram(context: &Context<'_>) -> Decision {
 }
 
 pub(in crate::paper) fn chaos_below(context: &Context<'_>) -> Decision {
-    /// Blocks of so many revolutions each.
+    /// Number of blocks, and of revolutions in each.
     const BLOCKS: (u32, u64) = (20, 250);
-    /// How many standard errors the exponent must be above 0.
+    /// Number of standard errors by which the exponent must be above 0.
     const SIGNIFICANT: f64 = 10.0;
-    // A chaotic mean moves in its second digit with the last bits: the evidence says what it is compared with.
+    // The second digit of a chaotic mean depends on the last bits, so the evidence gives only the threshold.
     let threshold = tolerance::CHAOTIC_GROWTH.value;
     let chaotic = machine(context, 670.0);
     let mut below = Record::over(BLOCKS.1);
@@ -130,8 +130,9 @@ pub(in crate::paper) fn chaos_below(context: &Context<'_>) -> Decision {
     let is_chaotic = below.value > threshold && below.value > SIGNIFICANT * below.error;
     let periodic = machine(context, 680.0);
     let above = growth(&periodic, from_x_star(context, &periodic)?, 4000)?;
-    // Covering alone: that there is a motion for each sequence, and not that there is but one.
-    let kept = known("osorio-2008").into_iter().find(|set| set.rpm == [670.0; 2]).ok_or("no h-set is kept")?;
+    // By covering alone, which proves at least one motion for each sequence, but not that it is the only one.
+    let kept =
+        known("osorio-2008").into_iter().find(|set| set.rpm == [670.0; 2]).ok_or("no h-set for 670 rpm is stored")?;
     let set = HSet { cone_slope: None, ..kept };
     let is_proved = prove(&chaotic, &set).is_ok();
     let evidence = format!(
@@ -147,7 +148,7 @@ pub(in crate::paper) fn chaos_below(context: &Context<'_>) -> Decision {
     decide(is_chaotic && is_proved && above < 0.0, Verdict::Refuted, evidence)
 }
 
-/// Both ends of the line of one impact: at P, and, of the motion of two revolutions that it has flipped to, at Q.
+/// Checks both ends of the line of one impact: at P, and at Q, which the motion of two revolutions reaches after the flip.
 pub(in crate::paper) fn transitions_at_corners(context: &Context<'_>) -> Decision {
     let [_, p, q, ..] = corners(context);
     let at = &context.findings.at;
@@ -175,15 +176,15 @@ pub(in crate::paper) fn transitions_at_corners(context: &Context<'_>) -> Decisio
     decide(at_corners && chaotic, Verdict::Refuted, evidence)
 }
 
-/// A motion that comes to rest on the cam has no past: from then on it repeats, chaotic or not. No number of revolutions shows whether
-/// motions right past the corner impact ever do.
+/// Searches long runs for a rest on the cam. A motion that comes to rest forgets its past, so from then on it repeats. No number of revolutions
+/// shows whether motions just below the corner impact ever come to rest.
 pub(in crate::paper) fn chaos_for_good(context: &Context<'_>) -> Decision {
-    /// Right past the corner impact, and how many revolutions from x* and from rest on the cam are looked through for a rest.
+    /// Speeds below the corner impact, rpm; and the number of revolutions, from x* and from rest on the cam, that are searched for a rest.
     const PAST: [f64; 6] = [670.0, 671.0, 672.0, 673.0, 673.2, 673.2344];
     const REVOLUTIONS: u64 = 300_000;
-    /// A speed with rests, some dozen times within so many revolutions.
+    /// A speed, rpm, at which the follower rests some dozen times within so many revolutions.
     const RESTING: f64 = 664.0;
-    /// The rests of a motion after its first revolution, up to three, each by the state that it is released in.
+    /// Returns up to three rests of a motion after its first revolution, each as the state of the release.
     fn rests(machine: &Machine, mut motion: Motion) -> Result<Vec<[f64; 3]>, SimulateError> {
         machine.revolve(&mut motion, 1)?;
         let (goal, mut releases) = (motion.after(REVOLUTIONS), Vec::new());
@@ -212,7 +213,7 @@ pub(in crate::paper) fn chaos_for_good(context: &Context<'_>) -> Decision {
     let evidence = format!(
         "in {REVOLUTIONS} revolutions from x*, and in as many from rest on the cam, the follower comes to rest on the cam at {} of the speeds \
          {} rpm (`corner-impact simulate --rpm 673.2344 --revolutions {REVOLUTIONS} --json` counts sticks and releases). At {RESTING} \
-         rpm, nine below the corner impact, it rests on the cam's top once in some thousand revolutions. It is then released at Q', \
+         rpm, 9 rpm below the corner impact, it rests on the cam's top once in some thousand revolutions. It is then released at Q', \
          each time in the same state: {repeats}. From there on the motion can only repeat. No run can show that a motion stays chaotic \
          for ever",
         resting.len(),
@@ -223,7 +224,8 @@ pub(in crate::paper) fn chaos_for_good(context: &Context<'_>) -> Decision {
 
 pub(in crate::paper) fn orbit_at_700(context: &Context<'_>) -> Decision {
     let machine = machine(context, 700.0);
-    let orbit = one_impact(&machine, from_x_star(context, &machine)?, 1000)?.ok_or("no motion is settled on")?;
+    let orbit = one_impact(&machine, from_x_star(context, &machine)?, 1000)?
+        .ok_or("the run does not settle on one impact a revolution")?;
     let impact = orbit.impacts().last().map_or(f64::NAN, |impact| impact.cam_angle);
     let corner = context.findings.at.corner.angle;
     let evidence = format!(
