@@ -23,7 +23,7 @@ pub struct Pinned {
 }
 
 impl Pinned {
-    /// Renames the pinned impact after the segment on the other side of the corner.
+    /// Renames the pinned impact by the segment on the other side of the corner.
     pub(super) fn other_side(&self, cycle: &Cycle, machine: &Machine) -> Cycle {
         let last = machine.cam().segments().len() - 1;
         let mut other = cycle.clone();
@@ -64,7 +64,7 @@ impl Held {
                 let segment = &machine.cam().segments()[segment];
                 cam_angle - if at_end { segment.end } else { segment.start }
             }
-            // It has no pole at a graze, as the determinant of the multiplier less M has.
+            // Unlike the determinant of the multiplier less M, this has no pole at a graze.
             Self::Multiplier(multiplier) => cycle.characteristic(machine, multiplier, velocity),
             Self::Touch(impact) => cycle.approach(machine, impact) / machine.angular_velocity() / velocity,
         }

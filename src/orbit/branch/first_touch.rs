@@ -62,7 +62,7 @@ pub enum Doubt {
     Flat,
     /// The cam is equally high at several places, which are not alike or not evenly spaced.
     Places,
-    /// Nothing returns the follower to where it was.
+    /// A follower that nothing returns to where it was.
     Unheld,
     /// The follower's oscillation is in resonance with the cam.
     Resonance,
@@ -75,7 +75,8 @@ pub enum Doubt {
 pub struct FirstTouch {
     /// Class of the motions beyond the graze.
     pub class: GrazeClass,
-    /// For a jump: passages of the cam's top after which the follower is struck deeper, and the depth from which on it need not be, m.
+    /// For a jump: the number of passages of the cam's top after which the follower is struck deeper, and the depth from which on it need
+    /// not be, m.
     pub back: Option<(u64, f64)>,
     /// Why the class is undecided.
     pub doubt: Option<Doubt>,
@@ -162,8 +163,8 @@ fn struck_deeper(angle: f64) -> Option<u64> {
     Some(halves.floor() as u64 + 1)
 }
 
-/// Reason why the class of a graze is undecided at a speed. On its two sides the class differs, or the passages after which the follower is
-/// struck deeper.
+/// Reason why the class of a graze is undecided at a speed. On the two sides of that speed the class differs, or the number of passages
+/// after which the follower is struck deeper.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[doc(hidden)]
 pub enum UndecidedGraze {

@@ -58,7 +58,7 @@ pub(super) fn least(cycle: &Cycle, machine: &Machine, index: usize, turned: f64)
         }
     }
     let at = 0.5 * (low + high);
-    // Sections see half the digits of where it is; the relative velocity, which is 0 there, sees all of them.
+    // Golden sections give half of the digits of the place. The relative velocity, which is 0 there, gives all of them.
     let mut sharp = at;
     for _ in 0..4 {
         let angle = (from + sharp).rem_euclid(TAU);

@@ -133,7 +133,7 @@ impl Equations for Problem<'_> {
                 moved[column] += step;
                 self.residual(&moved)
             };
-            // At the edge of what the model allows, on its other side.
+            // At the edge of the allowed values, the difference is taken on the other side.
             let derivative = match moved(DIFFERENCE) {
                 Ok(ahead) => (ahead - &residual) / DIFFERENCE,
                 Err(_) => (&residual - moved(-DIFFERENCE)?) / DIFFERENCE,
