@@ -1,6 +1,6 @@
 //! Curves of solutions: n - 1 equations in n unknowns, followed by pseudo-arclength (Keller 1977).
 //!
-//! From a point u with unit tangent t, the next point u' solves the equations together with `t (u' - u) = h`. There is one
+//! The next point u' after a point u with unit tangent t solves the equations together with `t (u' - u) = h`. There is one
 //! solution nearby even where the curve turns round in the parameter.
 
 use std::convert::Infallible;

@@ -16,7 +16,7 @@ use crate::progress::Watch;
 use crate::simulate::{EventKind, Machine, SimulateError};
 use crate::tolerance;
 
-/// Which orbits are looked for.
+/// Orbits to be looked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Search {
     /// Turns of the cam in one period, the smallest number.

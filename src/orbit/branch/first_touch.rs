@@ -47,7 +47,7 @@ pub enum GrazeClass {
     PeriodAddingChaos,
     /// Chaos of small impacts.
     Chaos,
-    /// None of these is certain.
+    /// No certain class.
     Undecided,
 }
 

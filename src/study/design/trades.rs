@@ -85,8 +85,8 @@ pub struct Trade {
     pub known: Evidence,
 }
 
-/// Finds what each need takes of each lever at each value of a number. `uncertain` is the model's own machine, whose separation is as
-/// uncertain by a measured cam as those with the values.
+/// Finds the value of each lever that meets each need, at each value of another number. `uncertain` is the uncertainty of the model's own
+/// machine. Its part of a measured cam is used at all values.
 pub(super) fn trades(
     machines: &PlausibleMachines<'_>,
     uncertain: &UncertainMachine<'_>,
@@ -103,7 +103,7 @@ pub(super) fn trades(
             let pair = |given: &f64| -> Result<RequiredPair, StudyError> {
                 let (model, cam) = given_machine(machines, path, *given)?;
                 let contact = Contact::new(&cam, model.follower);
-                // Of the cam, `uncertain` knows.
+                // The part of the cam is in `uncertain`.
                 let here = machines.uncertain().map(|_| PlausibleMachines::of_numbers(&model, &cam, model.errors));
                 let uncertain = UncertainMachine { machines: here.as_ref(), ..*uncertain };
                 let changed = Changed::new(&model, &contact).keeping_rest_of(machines.model);

@@ -1,4 +1,4 @@
-//! Where the runs of a survey begin.
+//! Starts of the runs of a survey.
 
 use std::f64::consts::TAU;
 
@@ -18,9 +18,9 @@ pub struct Start {
 /// State of the follower at the start.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Placed {
-    /// In this state.
+    /// A given state.
     At(State),
-    /// On the cam, leaving it at this velocity, m/s, zero or more.
+    /// A place on the cam, which the follower leaves at this velocity, m/s, zero or more.
     OnCam(f64),
 }
 

@@ -101,7 +101,7 @@ impl Layout {
         [0, 1].map(|axis| self.points[axis].div_ceil(self.sides[axis]))
     }
 
-    /// Whether every file of a block, counted row by row from 0, is there and undamaged; `None` if the time is over before that is known.
+    /// Whether every file of a block, counted row by row from 0, is there and undamaged; `None` if the time runs out before.
     pub(super) fn is_done(&self, folder: &Path, block: usize, until: Option<Instant>) -> Option<bool> {
         for variable in &VARIABLES {
             if until.is_some_and(|until| Instant::now() > until) {
