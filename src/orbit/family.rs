@@ -112,7 +112,7 @@ impl Family {
         Ok(self.changed(values)?.1.unwrap_or_else(|| self.model.clone()))
     }
 
-    /// Speed, rpm, and model with these values of the free numbers. The model is `None` where only the speed is free.
+    /// Speed, rpm, and model with these values of the free numbers. The model is `None` if only the speed is free.
     fn changed(&self, values: &[f64]) -> Result<(f64, Option<Model>), FamilyError> {
         let (mut rpm, mut model) = (self.rpm, None);
         for (parameter, value) in self.free.iter().zip(values) {

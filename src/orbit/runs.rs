@@ -111,8 +111,9 @@ impl<'a> LongRuns<'a> {
 
     /// Runs `motion` for up to `revolutions`, or until its outcome is decided.
     ///
-    /// An orbit counts if the run nearly repeats, Newton's method leads from there to a stable orbit, and the run's distance from it
-    /// shrinks as its multipliers predict: a chaotic run sometimes passes a stable orbit outside of its basin.
+    /// An orbit counts if the run nearly repeats, Newton's method leads from there to a stable orbit, and the run's distance from the orbit
+    /// shrinks as the multipliers predict. The last condition is needed since a chaotic run sometimes passes a stable orbit outside of its
+    /// basin.
     pub fn run(&self, motion: &mut Motion, revolutions: u64) -> Result<RunOutcome, SimulateError> {
         self.counted(motion, revolutions, &mut ImpactTally::default())
     }

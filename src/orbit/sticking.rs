@@ -64,8 +64,8 @@ pub fn anchor(events: &[Event], revolutions: u64) -> Option<f64> {
     Some(longest.0.midpoint(longest.1).rem_euclid(TAU)).filter(|angle| *angle < TAU)
 }
 
-/// Stretches on the cam among the events of one period, in their order: start and end, rad. The next event ends a stretch: the follower
-/// leaves the cam where it is released, or where a corner that turns up throws it off, as an impact does.
+/// Stretches on the cam among the events of one period, in their order: start and end, rad. The next event ends a stretch: a release, or an
+/// impact, where a corner that turns up throws the follower off the cam.
 fn stretches(events: &[Event], revolutions: u64) -> impl Iterator<Item = (f64, f64)> {
     let period = revolutions as f64 * TAU;
     let again = events.iter().map(move |first| (first.kind, first.turned_since(0.0) + period));

@@ -139,7 +139,7 @@ fn step(machine: &Machine, cycle: &Cycle, parts: usize) -> Matrix2<f64> {
 }
 
 impl PeriodicOrbit {
-    /// The orbit's impacts as a cycle; `None` where it rests on the cam or never meets it.
+    /// The orbit's impacts as a cycle; `None` if it rests on the cam or never meets it.
     pub fn cycle(&self) -> Option<&Cycle> {
         if let Course::Impacts(cycle) = &self.course { Some(cycle) } else { None }
     }

@@ -90,7 +90,7 @@ impl Held {
         }
     }
 
-    /// Cam angle of the event, rad, in `[0, 2 pi]`. For a multiplier it is that of the first impact.
+    /// Cam angle of the event, rad, in `[0, 2 pi]`; for a multiplier, the angle of the first impact.
     pub(super) fn cam_angle(self, cycle: &Cycle) -> f64 {
         match self {
             Self::Corner(Pinned { impact, .. }) | Self::Touch(impact) => cycle.impacts[impact].cam_angle,

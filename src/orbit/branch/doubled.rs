@@ -112,8 +112,8 @@ fn on_corner(cycle: &Cycle, machine: &Machine, segment: usize) -> impl Iterator<
 
 /// Unit direction from a flip in which the two halves of a period separate.
 ///
-/// The equations are nearly met there in two directions: towards the short orbits, whose halves move alike, and towards those of twice the
-/// period, whose halves move against each other.
+/// The equations are nearly met there in two directions. In the direction of the short orbits the two halves move alike. In the direction
+/// of the orbits of twice the period they move against each other.
 fn apart(problem: &Problem<'_>, at: &DVector<f64>) -> Result<DVector<f64>, NoPoint<FamilyError>> {
     let (_, jacobian) = problem.linear(at)?;
     // Two unknowns for each impact, and one more.

@@ -17,7 +17,7 @@
 //!
 //! A follower that oscillates has such an n, unless its oscillation is in resonance with the cam, `s(n T) = 0`. A follower that does not
 //! oscillate has `s > 0` always, and impacts stay small. Close to the graze the slower of its two rates then decides the motion, by the
-//! part of a deviation that is left after one passage, `lambda = e^(-slow T)` (Chin, Ott, Nusse, Grebogi 1994; Fredriksson, Nordmark 1997):
+//! part `lambda = e^(-slow T)` of a deviation that is left after one passage (Chin, Ott, Nusse, Grebogi 1994; Fredriksson, Nordmark 1997):
 //!
 //! ```text
 //! lambda < 1/4          stable orbits of one impact in n passages, each beside the next as well; n grows without end
@@ -152,7 +152,7 @@ fn bend(machine: &Machine, tops: &[Least]) -> Result<f64, Doubt> {
     if are_even && are_alike { Ok(first) } else { Err(Doubt::Places) }
 }
 
-/// First n with `sin(n angle) < 0`, rad; `None` where the sine is, or may be, 0 for an earlier n.
+/// First n with `sin(n angle) < 0`, rad; `None` if the sine is, or may be, 0 for an earlier n.
 fn struck_deeper(angle: f64) -> Option<u64> {
     let within = angle.rem_euclid(TAU);
     let halves = PI / within;

@@ -34,7 +34,7 @@ struct Rest {
 }
 
 impl Rest {
-    /// The follower at rest near `state`; `None` where it falls.
+    /// The follower at rest near `state`; `None` if it falls.
     fn at(family: &Family, value: f64, state: State) -> Result<Option<Self>, FamilyError> {
         let (machine, rpm) = family.machine(&[value])?;
         let orbit = at_rest(&machine, state);

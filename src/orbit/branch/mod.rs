@@ -108,7 +108,7 @@ document!(Special as it {
 #[derive(Clone, Debug, PartialEq)]
 #[doc(hidden)]
 pub struct OnCurve {
-    /// Cam angle of the impact on the corner, or of the touch; for other events that of the first impact; rad.
+    /// Cam angle, rad, of the impact on the corner, or of the touch; for other events, of the first impact.
     pub cam_angle: f64,
     /// Matrix of one period. For a corner impact: that with the law before the corner and that with the law after it.
     pub sides: Vec<Matrix2<f64>>,

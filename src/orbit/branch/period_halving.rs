@@ -19,7 +19,7 @@ pub(super) struct Flipped {
     pub(super) residual: f64,
 }
 
-/// Angle from the first half of a cycle to its second, rad, at the first impact; `None` where the halves do not correspond.
+/// Angle from the first half of a cycle to its second, rad, at the first impact; `None` if the halves do not correspond.
 pub(super) fn apart(cycle: &Cycle) -> Option<f64> {
     let other = cycle.second_half(0)?;
     Some(cycle.impacts[other].cam_angle - cycle.impacts[0].cam_angle)

@@ -26,8 +26,8 @@ pub(crate) struct Event<'a> {
 }
 
 impl<'a> Event<'a> {
-    /// The event at a special point of a branch in a number, with its machine. `range` is that of the number. `None` where the point has no
-    /// equations of its own.
+    /// Builds the event at a special point of a branch in a number, with its machine; `range` is the range of the number. `None` if the
+    /// point has no equations of its own.
     pub fn of_point(machine: &'a Machine, free: &Parameter, range: [f64; 2], point: &BranchPoint) -> Option<Self> {
         let Course::Impacts(cycle) = &point.orbit.course else { return None };
         let (cycle, held) = switch::held(point.special?.kind, cycle, machine)?;
@@ -41,7 +41,7 @@ impl<'a> Event<'a> {
         Self { machine, rpm, free: Parameter::Speed, value: rpm, span: rpm, cycle, held }
     }
 
-    /// Speed, rpm, or value of the free number of the event in another machine. `None` where Newton's method finds none nearby.
+    /// Speed, rpm, or value of the free number of the event in another machine. `None` if Newton's method finds none nearby.
     pub fn moved(&self, model: &Model, cam: &Cam) -> Option<f64> {
         self.solved(model, cam).map(|(_, value)| value)
     }

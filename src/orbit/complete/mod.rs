@@ -3,7 +3,7 @@
 //! | module | contents |
 //! |---|---|
 //! | `one_impact` | one equation in the impact's angle and the time of the flight, its roots, and the status of each |
-//! | `two_impacts` | two equations in the angles of both impacts, likewise |
+//! | `two_impacts` | two equations in the angles of both impacts, their roots, and the status of each |
 //! | `clearance` | whether a flight is clear of the cam on its way |
 //!
 //! Angles where nothing can be decided, next to a fold, a graze or a corner, are reported. The proofs apply to the machine whose numbers

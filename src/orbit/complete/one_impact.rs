@@ -1,7 +1,7 @@
 //! Orbits with one impact in n revolutions: one equation with two unknowns.
 //!
-//! A flight of `t = n T` from the cam at angle theta back to it, with the responses s(t), p(t) and the force f at c(theta), leaves with
-//! `v+ = -f p/s` and returns with `v- = v+ s' + f s`. The restitution law then gives
+//! A flight of `t = n T` begins and ends on the cam at angle theta. With the responses s(t), p(t) and the force f at c(theta), it leaves
+//! with `v+ = -f p/s` and returns with `v- = v+ s' + f s`. The restitution law then gives
 //!
 //! ```text
 //! E(theta, t) = -f a(t) - (1 + r) c' s = 0        a = p (1 + r s') - r s^2        c' = (2 pi n/t) dc/dtheta

@@ -147,7 +147,7 @@ pub struct Change {
     pub quantity: String,
     /// Value in the first model: a number, a word, or nothing if it has no such quantity.
     pub a: Option<Value>,
-    /// Value in the second model, likewise.
+    /// Value in the second model: a number, a word, or nothing.
     pub b: Option<Value>,
     /// Number b less number a.
     pub difference: Option<f64>,

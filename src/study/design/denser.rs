@@ -1,4 +1,4 @@
-//! Values between those of a table, so that a curve through them looks like one.
+//! Values between the values of a table, so that a curve through them looks smooth.
 
 use crate::study::survey::Spacing;
 use crate::uncertainty::SourcedUncertainty;

@@ -39,7 +39,7 @@ pub struct Attractor {
     pub ending: LongRun,
     /// The starts that settle on it, in order; none if only the motion of another speed reached it.
     pub starts: Vec<usize>,
-    /// Revolutions that the run from each start, or that of another speed, was followed for until it was judged.
+    /// Revolutions that the run from each start, or the run from another speed, was followed for until it was judged.
     pub followed: Vec<u64>,
     /// State of the first of these runs when it was judged.
     pub motion: Motion,

@@ -94,8 +94,8 @@ pub struct RecordRow {
     pub growth: Option<Estimate>,
 }
 
-/// Cam angles, rad, of the impacts on which a machine settles: those of `record` revolutions after `transient` from rest on the cam at
-/// angle 0.
+/// Cam angles, rad, of the impacts on which a machine settles, over `record` revolutions after `transient` revolutions from rest on the cam
+/// at angle 0.
 pub fn settled_impacts(machine: &Machine, transient: u64, record: u64) -> Result<Vec<f64>, SimulateError> {
     let mut motion = machine.start_on_cam(0.0, 0.0)?;
     machine.revolve(&mut motion, transient)?;

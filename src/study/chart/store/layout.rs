@@ -54,7 +54,7 @@ pub enum StoreError {
 const MOST_POINTS: usize = 1 << 24;
 /// Largest number of blocks of a store: with the default sides, 10^10 points.
 const MOST_BLOCKS: usize = 1 << 20;
-/// Time after which the blocks of a store are not looked at any further.
+/// Time after which no further block of a store is checked.
 const PATIENCE: Duration = Duration::from_millis(500);
 
 /// Numbers of points and blocks, each across and up.

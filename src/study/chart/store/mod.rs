@@ -297,7 +297,7 @@ pub fn attributes(chart: &Chart) -> Value {
     })
 }
 
-/// Describes the values of an axis well enough to tell them from others.
+/// Describes the values of an axis well enough to distinguish them from others.
 fn described_axis(axis: &Axis) -> Value {
     let [low, high] = axis.ends();
     json!({ "low": low, "high": high, "points": axis.values.len(), "crc32c": checksum::crc32c(&axis_bytes(axis)) })
