@@ -20,7 +20,7 @@
 //! part `lambda = e^(-slow T)` of a deviation that is left after one passage (Chin, Ott, Nusse, Grebogi 1994; Fredriksson, Nordmark 1997):
 //!
 //! ```text
-//! lambda < 1/4          stable orbits of one impact in n passages, each beside the next as well; n grows without end
+//! lambda < 1/4          stable orbits of one impact in n passages; neighbours coexist in part; n grows without end
 //! 1/4 < lambda < 2/3    the same orbits, with chaos between them
 //! 2/3 < lambda < 1      chaos
 //! ```
@@ -127,7 +127,7 @@ fn classified(machine: &Machine, tops: &[Least]) -> Result<(GrazeClass, u64, f64
     Ok((class, 0, 0.0))
 }
 
-/// Curvature at the cam's tops, `-c''` on the side that comes first, m/rad^2. An error where the tops are not alike.
+/// Curvature at the cam's tops, `-c''` on the side that comes first, m/rad^2. Fails if the tops are not alike.
 fn bend(machine: &Machine, tops: &[Least]) -> Result<f64, Doubt> {
     let flat = tolerance::FLAT_TOP.value * lift_size(machine);
     let mut bends = Vec::new();
@@ -168,9 +168,9 @@ fn struck_deeper(angle: f64) -> Option<u64> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[doc(hidden)]
 pub enum UndecidedGraze {
-    /// The eigenvalue has this value.
+    /// An eigenvalue at the boundary of two classes.
     Eigenvalue(f64),
-    /// The follower is back at its equilibrium so many passages after an impact.
+    /// A resonance: the follower is back at its equilibrium this number of passages after an impact.
     Resonance(u64),
 }
 

@@ -7,8 +7,8 @@
 //!
 //! | module | contents |
 //! |---|---|
-//! | `find` | the branches through given orbits and what branches off; those of a range of speeds, and its corner impacts |
-//! | `doubled` | orbits of twice the period next to a special point, and those of a branch that crosses |
+//! | `find` | the branches through given orbits and what branches off; the branches of a range of speeds, and their special points |
+//! | `doubled` | orbits of twice the period next to a special point, and orbits of a branch that crosses |
 //! | `follow` | one direction of a branch, step by step; `chatter` where the follower sticks |
 //! | `problem`, `constraint` | the equations, with numbers of the model free; the condition added along a curve in two of them |
 //! | `step_event`, `least_gap`, `period_halving` | events within a step: corners, folds, flips; grazes; the end of a doubled period |
@@ -110,7 +110,7 @@ document!(Special as it {
 pub struct OnCurve {
     /// Cam angle, rad, of the impact on the corner, or of the touch; for other events, of the first impact.
     pub cam_angle: f64,
-    /// Matrix of one period. For a corner impact: that with the law before the corner and that with the law after it.
+    /// Matrix of one period. For a corner impact, the matrix with the law before the corner, then the matrix with the law after it.
     pub sides: Vec<Matrix2<f64>>,
     /// Class of the graze of an orbit without impacts.
     pub class: Option<GrazeClass>,
@@ -123,7 +123,7 @@ pub enum End {
     Range,
     /// The start of the branch again: the branch is closed.
     Closed,
-    /// The model allows no further value.
+    /// An edge of the values that the model allows.
     Edge {
         /// Whether the last value is the largest allowed; otherwise it is the smallest.
         largest: bool,
@@ -294,8 +294,8 @@ impl Branch {
         Self { points, ends: [first, last] }
     }
 
-    /// Lines of the impacts along the branch, for orbits that do not stick. Each impact is followed from orbit to orbit, whatever its
-    /// number from angle 0 on.
+    /// Lines of the impacts along the branch, for orbits that do not stick. Each impact is followed from orbit to orbit, even if its index
+    /// from angle 0 changes.
     ///
     /// A line ends where the number of impacts or the stability changes, or where the impact passes angle 0.
     pub fn lines(&self) -> Vec<ImpactLine> {
