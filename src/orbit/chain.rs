@@ -31,14 +31,14 @@ struct Eliminated {
     left: Vector2<f64>,
 }
 
-/// Reflects the equations from `first` on, so that only equation `first` keeps an entry in the column of that number (Householder).
+/// Reflects the equations from `first` on (Householder), so that of these only equation `first` keeps an entry in column `first`.
 fn reflect(columns: &mut Reflected, first: usize) {
     let dot = |one: &[f64; 4], other: &[f64; 4]| {
         one[0] * other[0] + one[1] * other[1] + (one[2] * other[2] + one[3] * other[3])
     };
     let mut normal = columns[first];
     normal[..first].fill(0.0);
-    // Of the sign that cancels nothing.
+    // This sign avoids cancellation in the next line.
     let kept = -dot(&normal, &normal).sqrt().copysign(normal[first]);
     normal[first] -= kept;
     let half_square = -kept * normal[first];
@@ -87,11 +87,12 @@ fn eliminate(links: &[Link], right: &DVector<f64>) -> Option<Eliminated> {
 /// Determinant of the equations; 1 if there are none.
 pub fn determinant(links: &[Link]) -> f64 {
     let Some(Eliminated { rows, last, .. }) = eliminate(links, &DVector::zeros(2 * links.len())) else { return 1.0 };
-    // Two reflections have the determinant 1, and to bring x_0 to the end moves two columns past pairs of others.
+    // Two reflections have determinant 1. Moving the two columns of x_0 to the end keeps the sign, since both pass the same columns.
     rows.iter().map(|columns| columns[0][0] * columns[1][1]).product::<f64>() * last.determinant()
 }
 
-/// Solves for the unknowns, two for each impact in turn. Where the equations do not determine them: `None`, or values that are not finite.
+/// Solves for the unknowns, two for each impact in turn. If the equations do not determine them, returns `None` or values that are not
+/// finite.
 pub fn solve(links: &[Link], right: &DVector<f64>) -> Option<DVector<f64>> {
     let Eliminated { rows, last, left } = eliminate(links, right)?;
     let first = last.try_inverse()? * left;

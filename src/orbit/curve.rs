@@ -1,6 +1,6 @@
 //! Curves of solutions: n - 1 equations in n unknowns, followed by pseudo-arclength (Keller 1977).
 //!
-//! From a point u with unit tangent t, the next point u' solves the equations together with `t (u' - u) = h`. There is one
+//! The next point u' after a point u with unit tangent t solves the equations together with `t (u' - u) = h`. There is one
 //! solution nearby even where the curve turns round in the parameter.
 
 use std::convert::Infallible;
@@ -51,10 +51,11 @@ pub fn first_tangent<E: Equations>(equations: &E, unknowns: &DVector<f64>) -> Re
     Ok(direction)
 }
 
-/// The `N` unit directions with the smallest images under a matrix, the smallest first. `None` where it is not finite or has fewer columns.
+/// Returns the `N` unit directions with the smallest images under a matrix, the smallest first. `None` if the matrix is not finite or has
+/// fewer than `N` columns.
 pub fn least_seen<const N: usize>(matrix: DMatrix<f64>) -> Option<[DVector<f64>; N]> {
     let [rows, columns] = [matrix.nrows(), matrix.ncols()];
-    // As many rows as columns, of zeros where there are fewer: a direction for each column, from most to least.
+    // Rows of zeros fill a flat matrix up to a square, so that each column has a direction, from most to least stretched.
     let directions = matrix.resize_vertically(rows.max(columns), 0.0).svd(false, true).v_t?;
     let row = |back: usize| Some(directions.row(columns.checked_sub(back)?).transpose());
     let least: Vec<DVector<f64>> = (1..=N).map(row).collect::<Option<_>>()?;
@@ -71,7 +72,7 @@ pub fn step<E: Equations>(
     closed(equations, from, along, step, from + along * step)
 }
 
-/// Solves for the point of `step` from a guess.
+/// Solves for the same point as `step`, starting from a guess.
 pub fn closed<E: Equations>(
     equations: &E,
     from: &DVector<f64>,
@@ -90,15 +91,15 @@ pub fn closed<E: Equations>(
         let matrix = bordered(jacobian, along).lu();
         let correction = matrix.solve(&right).ok_or(NoPoint::NotClosed)?;
         let length = correction.norm();
-        // Away from the solution, or twice as far as the step itself.
+        // No convergence: the correction has at least doubled, or is at least eight times as long as the step.
         if !(length < 2.0 * last.min(step.abs().max(tolerance::CYCLE_CLOSED.value) * 4.0)) {
             return Err(NoPoint::NotClosed);
         }
         unknowns += correction;
-        // The next correction would be of the size of this one's square.
+        // Newton's method converges quadratically: the next correction would be about the square of this one.
         if length <= tolerance::CYCLE_CLOSED.value {
-            // [J; along] t = (0, 1): the tangent, as long as it is not across `along`. J is that of before a correction which
-            // turns it no further than it is long.
+            // The tangent t solves [J; along] t = (0, 1), unless it is across `along`. J is taken before the last correction, which turns
+            // the tangent by no more than its own length.
             let across = DVector::from_fn(unknowns.len(), |row, _| f64::from(row + 1 == unknowns.len()));
             let tangent = matrix.solve(&across).ok_or(NoPoint::NotClosed)?;
             return Ok(CurvePoint { unknowns, tangent: unit(tangent)?, steps });
@@ -108,7 +109,7 @@ pub fn closed<E: Equations>(
     Err(NoPoint::NotClosed)
 }
 
-/// Scales a direction to length 1. An error where its length is 0 or not finite.
+/// Scales a direction to length 1. Fails if its length is 0 or not finite.
 pub fn unit<E>(direction: DVector<f64>) -> Result<DVector<f64>, NoPoint<E>> {
     let length = direction.norm();
     if length.is_normal() { Ok(direction / length) } else { Err(NoPoint::NotClosed) }
@@ -123,7 +124,7 @@ pub fn limit(value: f64, beyond: f64, is_refused: impl Fn(f64) -> bool) -> Optio
     }
     let Ok([last, _]) =
         halve([value, beyond], Width::Halvings(BINARY_DIGITS), |at| Ok::<_, Infallible>(is_refused(at)));
-    // Halving comes to 0 as near as there are doubles.
+    // Halving approaches a limit of exactly 0 only up to rounding.
     let is_zero = last.abs() <= tolerance::ULP.value * (value - beyond).abs() && !is_refused(0.0);
     Some(if is_zero { 0.0 } else { last })
 }

@@ -146,8 +146,9 @@ impl Cycle {
         (residual, rows)
     }
 
-    /// Determinant of that derivative for deviations that grow by `multiplier` in one period, with velocities over omega by a unit, m/rad.
-    /// The determinant is 0 for a multiplier of the orbit. Its rows have length 1, so its size is at most 1 (Hadamard).
+    /// Determinant of the derivative in [`Cycle::linear`] for deviations that grow by `multiplier` in one period, with velocities over
+    /// omega in the unit `velocity`, m/rad. It is 0 for a multiplier of the orbit. Its rows have length 1, so its size is at most 1
+    /// (Hadamard).
     pub fn characteristic(&self, machine: &Machine, multiplier: f64, velocity: f64) -> f64 {
         let (_, mut links) = self.equations(machine);
         let is_alone = links.len() == 1;
@@ -183,7 +184,7 @@ impl Cycle {
             off[2 * index + 1] = (end.velocity - self.impacts[next].velocity_before) / omega;
             let propagator = flight.propagator_by(&response);
             let moving = Vector2::new(end.velocity, flight.acceleration(end)) / omega;
-            // The start moves along the cam, and the flight is as much shorter.
+            // As the start moves along the cam, the flight becomes shorter by as much.
             let by_angle = propagator * Vector2::new(from.lift.slope, (1.0 + r) * omega * from.lift.curvature) - moving;
             let by_velocity = propagator * Vector2::new(0.0, -r * omega);
             let block = |by_angle: Vector2<f64>, by_velocity: Vector2<f64>| {
@@ -255,8 +256,8 @@ impl Cycle {
         order
     }
 
-    /// The state when the cam is at `cam_angle`, rad, in `[0, 2 pi)`, in revolution 0; and the matrix that carries a small
-    /// deviation of it once around the orbit, 2x2: propagators of flights, saltation matrices of impacts.
+    /// Returns the state when the cam is at `cam_angle`, rad, in `[0, 2 pi)`, in revolution 0, and the 2x2 matrix that carries a small
+    /// deviation of it once around the orbit. The matrix is a product of flights' propagators and impacts' saltation matrices.
     pub fn at_section(&self, machine: &Machine, cam_angle: f64) -> (State, Matrix2<f64>) {
         let order = self.turned_from(cam_angle);
         let (omega, count) = (machine.angular_velocity(), order.len());
@@ -273,7 +274,7 @@ impl Cycle {
         (state, machine.flight().propagator(since) * matrix)
     }
 
-    /// Determinant of the matrix of one period, `r^(2 n) e^(-b T/m)` with n impacts in a period T. Computed from the matrix itself, it
+    /// Determinant of the matrix of one period, `r^(2 n) e^(-b T/m)` with n impacts in a period T. The determinant of the computed matrix
     /// would be lost to rounding where a small deviation grows a millionfold on the way.
     pub fn determinant(&self, machine: &Machine) -> f64 {
         let period = self.revolutions as f64 * TAU / machine.angular_velocity();
@@ -304,7 +305,7 @@ impl Cycle {
         }
     }
 
-    /// Its impacts as events of a run.
+    /// The impacts as events of a run.
     pub fn events(&self, machine: &Machine) -> Vec<Event> {
         let event = |(index, impact): (usize, &Impact)| {
             let struck = self.struck(machine, index);
@@ -323,7 +324,7 @@ impl Cycle {
     }
 }
 
-/// Span of the cam's lift, m, by which lengths of an orbit are measured. For a cam that does not move, its distance from 0.
+/// Span of the cam's lift, m, by which lengths of an orbit are measured. For a constant lift, its absolute value.
 pub fn lift_size(machine: &Machine) -> f64 {
     let segments = machine.cam().segments();
     let low = segments.iter().fold(f64::INFINITY, |low, segment| low.min(segment.bounds.lift[0]));
@@ -333,8 +334,8 @@ pub fn lift_size(machine: &Machine) -> f64 {
     if span > 4.0 * tolerance::RANGE_ROUNDING.value * lift { span } else { lift.max(f64::MIN_POSITIVE) }
 }
 
-/// Natural speed of the machine, rpm: the speed at which the cam would move with the follower's own acceleration. `None` where no force
-/// gives it one. With a damper alone it is `b/m`.
+/// Natural speed of the machine, rpm: the speed at which the cam would move with the follower's own acceleration. With a
+/// damper alone it is `b/m`. `None` if neither a force nor a damper acts.
 ///
 /// ```text
 /// omega^2 = k/m + |g + k (c_min - rest)/m| / (c_max - c_min)

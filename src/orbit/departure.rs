@@ -10,11 +10,11 @@ use crate::tolerance;
 /// Event at which the motion on the actual cam leaves a cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Departure {
-    /// An impact lies outside of its segment.
+    /// An impact outside of its segment.
     Beyond { impact: usize },
-    /// The follower would come out of the cam at an impact, or only touches it.
+    /// An impact at which the follower would come out of the cam, or only touches it.
     Tangent { impact: usize },
-    /// The flight that starts at this impact meets the cam too early.
+    /// A flight that meets the cam too early.
     Earlier {
         /// Index of the impact that the flight starts at.
         impact: usize,
@@ -22,7 +22,7 @@ pub enum Departure {
         /// Angle turned since that impact, rad.
         turned: f64,
     },
-    /// The flight that starts at this impact does not arrive at the next. Or there is no flight, since the follower sticks.
+    /// A flight that does not arrive at the next impact, or no flight at all, since the follower sticks.
     Elsewhere {
         /// Index of the impact that the flight starts at.
         impact: usize,
@@ -30,13 +30,13 @@ pub enum Departure {
 }
 
 impl Cycle {
-    /// Returns where the motion on the actual cam leaves this cycle, by simulation of each flight. `None` where it does not.
+    /// Simulates each flight, and returns where the motion on the actual cam leaves this cycle. `None` if it follows the cycle.
     pub fn departure(&self, machine: &Machine) -> Result<Option<Departure>, SimulateError> {
         self.departure_but_for(machine, None)
     }
 
-    /// Checks an orbit that grazes, one of whose impacts is a `touch`. The flight that the touch cuts in two is simulated up to there, and
-    /// on from where the gap has opened again.
+    /// Checks an orbit that grazes: its impact `touch` is only a touch. The flight across the touch is simulated up to it, and again from
+    /// where the gap has opened.
     pub fn departure_but_for(
         &self,
         machine: &Machine,
@@ -79,8 +79,8 @@ impl Cycle {
         Ok(None)
     }
 
-    /// Returns the first event after an impact, seen from `since`, rad, on, and the angle turned to it from the impact, rad. `None` where
-    /// there is none for somewhat longer than `turn`, or the follower does not leave the cam.
+    /// Returns the first event after an impact, and the angle turned from the impact to the event, rad. The search begins `since`, rad,
+    /// after the impact and ends shortly after `turn`. `None` if there is no event, or if the follower does not leave the cam.
     fn next_event(
         &self,
         machine: &Machine,
@@ -90,7 +90,7 @@ impl Cycle {
     ) -> Result<Option<(Event, f64)>, SimulateError> {
         let impact = &self.impacts[index];
         let struck = self.struck(machine, index);
-        // An impact that rounding puts outside of its revolution is at the end of it.
+        // Rounding may put an impact outside of its revolution; then it is at angle 0.
         let on_cam = |angle: f64| if (0.0..TAU).contains(&angle) { angle } else { 0.0 };
         let from = on_cam(impact.cam_angle);
         let mut motion = if since > 0.0 {
@@ -101,7 +101,7 @@ impl Cycle {
             if relative < 0.0 {
                 return Ok(None);
             }
-            // Without a rebound it is on the cam, or flies off at once where the cam falls away.
+            // A follower without rebound stays on the cam, or flies off at once where the cam falls away.
             let motion = machine.start_on_cam(from, relative)?;
             if motion.contact {
                 return Ok(None);

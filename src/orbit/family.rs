@@ -23,7 +23,7 @@ pub enum FamilyError {
     /// The cam would not turn.
     #[error("{rpm} rpm: {ABOVE_0}")]
     Speed { rpm: f64 },
-    /// A segment of the cam would lose its width, or one without width would gain some, so that segments would be counted differently.
+    /// The cam would have another number of segments, since a segment would lose its width, or gain one.
     #[error("the cam would have {found} segments instead of {own}")]
     Segments { own: usize, found: usize },
 }
@@ -42,7 +42,7 @@ impl FamilyError {
 }
 
 impl Parameter {
-    /// Finds the parameter that a user calls `name`: `rpm`, a dotted path, or the end of one that no other field has.
+    /// Finds the parameter with a name: `rpm`, a dotted path, or an end of a path that no other field shares.
     pub fn named(model: &Model, name: &str) -> Result<Self, FamilyError> {
         if name == "rpm" {
             return Ok(Self::Speed);
@@ -77,13 +77,13 @@ pub struct Family {
 }
 
 impl Family {
-    /// `model` at `rpm`, with `free` to be chosen.
+    /// Builds the family of `model` at `rpm`, with the numbers `free` to be chosen.
     pub fn new(model: &Model, rpm: f64, free: Vec<Parameter>) -> Result<Self, FamilyError> {
         let machine = Machine::new(Cam::new(model)?, &model.follower, speed(rpm)?);
         Ok(Self { model: model.clone(), machine, rpm, free })
     }
 
-    /// The machines of `model`, whose own is `machine`, at `rpm`, with `free` to be chosen.
+    /// Builds the family of `model` at `rpm`, with the numbers `free` to be chosen; `machine` is the model's own.
     pub(crate) fn of(model: &Model, machine: &Machine, rpm: f64, free: Vec<Parameter>) -> Self {
         Self { model: model.clone(), machine: machine.clone(), rpm, free }
     }
@@ -112,7 +112,7 @@ impl Family {
         Ok(self.changed(values)?.1.unwrap_or_else(|| self.model.clone()))
     }
 
-    /// Speed, rpm, and model with these values of the free numbers. The model is `None` where only the speed is free.
+    /// Speed, rpm, and model with these values of the free numbers. The model is `None` if only the speed is free.
     fn changed(&self, values: &[f64]) -> Result<(f64, Option<Model>), FamilyError> {
         let (mut rpm, mut model) = (self.rpm, None);
         for (parameter, value) in self.free.iter().zip(values) {
@@ -126,8 +126,8 @@ impl Family {
         Ok((rpm, model))
     }
 
-    /// Machine with these values of the free numbers, and its speed, rpm. An error where the cam has another number of segments, since
-    /// cycles name segments by index.
+    /// Machine with these values of the free numbers, and its speed, rpm. Fails if the cam has another number of segments, since cycles
+    /// name segments by index.
     pub fn machine_of_cycles(&self, values: &[f64]) -> Result<(Machine, f64), FamilyError> {
         let (machine, rpm) = self.machine(values)?;
         match [&self.machine, &machine].map(|machine| machine.cam().segments().len()) {

@@ -1,7 +1,7 @@
 //! The long-run motion that a run ends on, and the budget of revolutions within which it is judged.
 //!
-//! Every command uses this one rule. [`super::runs`] follows a run until it settles on an orbit, stays on the cam or rests there;
-//! `study::survey` judges several at once, and lets those that wander share the revolutions that decide whether such motions ever rest.
+//! All commands judge runs by this rule. [`super::runs`] follows a run until it settles on an orbit, stays on the cam or rests there.
+//! `study::survey` judges several runs at once. Those that wander share the revolutions that decide whether such motions ever rest.
 
 use std::f64::consts::LN_2;
 
@@ -24,8 +24,8 @@ pub struct Budget {
     pub record: u64,
     /// The longest period looked for, revolutions.
     pub longest: u64,
-    /// Revolutions for which all runs that settle on nothing are followed together, before their growth is recorded. Chaos that is left
-    /// once in a tenth of them is seen to be left.
+    /// Total revolutions for which all runs that settle on nothing are followed before their growth is recorded. A motion that runs leave
+    /// once in a tenth of these revolutions is seen to be left.
     pub patience: u64,
 }
 
@@ -46,7 +46,7 @@ impl Budget {
 
     /// Revolutions within which a follower that has rested should rest again.
     pub fn rest(&self) -> u64 {
-        /// The patience is divided by this.
+        /// Divisor of the patience.
         const SHARE: u64 = 5;
         self.transient.max(self.patience / SHARE)
     }
@@ -74,9 +74,9 @@ pub enum LongRun {
     Orbit(PeriodicOrbit),
     /// The follower rests on the cam, and repeats its motion from an earlier rest.
     Sticking(StickingOrbit),
-    /// None of these within the revolutions of the run, and small deviations grow exponentially.
+    /// Chaotic: no period found within the run, and small deviations grow exponentially.
     Chaotic(Recorded),
-    /// None of these, and the growth is not above 0 by its error, or not faster than that of a power.
+    /// Undecided: no period found within the run, and exponential growth is not certain either.
     Undecided(Recorded),
 }
 
@@ -86,7 +86,7 @@ pub enum LongRun {
 pub struct Recorded {
     /// Growth of a small deviation per revolution, a natural logarithm.
     pub growth: Estimate,
-    /// Growth over the first half of the record and over the second, in all, not per revolution.
+    /// Total growth over the first half of the record and over the second, not per revolution.
     pub halves: [f64; 2],
     /// Tally of the impacts.
     pub met: ImpactTally,
@@ -176,7 +176,7 @@ impl LongRun {
         }
     }
 
-    /// Decides by the record of a motion that settles on nothing.
+    /// Classifies a motion that settles on nothing by its record, as chaotic or undecided.
     pub fn by_growth(recorded: Recorded) -> Self {
         if recorded.is_chaotic() { Self::Chaotic(recorded) } else { Self::Undecided(recorded) }
     }
@@ -243,8 +243,7 @@ pub struct StickingOrbit {
     pub impacts: u64,
     /// Speed of the fastest impact, of follower and cam against each other, m/s.
     pub impact_speed: f64,
-    /// Largest growth of a deviation from a release to the next rest, a natural logarithm; where rounding decides what follows, a lower
-    /// bound of it.
+    /// Largest growth of a deviation from a release to the next rest, a natural logarithm; a lower bound if rounding decides what follows.
     pub growth: f64,
 }
 
@@ -260,7 +259,7 @@ impl StickingOrbit {
         self.growth > Self::long()
     }
 
-    /// Growth beyond which rounding decides what follows: it makes two releases of one ulp.
+    /// Growth beyond which rounding decides what follows: one ulp becomes the distance from which on two releases differ.
     pub(super) fn long() -> f64 {
         elementary::ln(tolerance::SAME_ORBIT.value / tolerance::ULP.value)
     }

@@ -1,7 +1,7 @@
 //! Periodic orbits, stable or not: their impacts, their multipliers, and the branches that they form when a number of the
 //! model changes.
 //!
-//! | module | what it holds |
+//! | module | contents |
 //! |---|---|
 //! | `cycle` | an orbit as its impacts, the equations that close it, Newton's method |
 //! | `chain` | linear equations that link each impact with the next, in one pass |
@@ -78,7 +78,7 @@ pub struct PeriodicOrbit {
     pub known: Evidence,
 }
 
-// Impacts apart from sticks and releases; the multipliers instead of the matrix.
+// The document lists impacts separately from sticks and releases, and the multipliers instead of the matrix.
 document!(PeriodicOrbit as orbit {
     known: orbit.known,
     revolutions: orbit.revolutions,
@@ -116,9 +116,9 @@ document!(Rest<'_> as it { event: it.0.kind, revolution: it.0.revolution, cam_an
 pub enum Course {
     /// Impacts, and flights from one to the next.
     Impacts(Cycle),
-    /// The follower sticks to the cam when this is at an angle, rad. The motion after that follows from the angle alone.
+    /// Sticking: the follower sticks to the cam at this cam angle, rad. The angle alone determines the motion after it.
     Sticking(f64),
-    /// The follower never meets the cam.
+    /// Flight without impacts: the follower never meets the cam.
     Free,
 }
 
@@ -184,7 +184,7 @@ impl PeriodicOrbit {
         match (&self.course, &other.course) {
             (Course::Impacts(one), Course::Impacts(other)) => one.is_same(other),
             (Course::Sticking(_), Course::Sticking(_)) => {
-                // One motion at most goes through a state in contact.
+                // At most one motion passes through a state in contact, so equal rests are equal motions.
                 let [one, two] =
                     [self, other].map(|orbit| orbit.rests().map(|event| event.cam_angle).collect::<Vec<_>>());
                 let is_known =
@@ -203,7 +203,7 @@ pub enum OrbitError {
     /// A run could not go on.
     #[error(transparent)]
     Simulate(#[from] SimulateError),
-    /// No such machine.
+    /// The machine with these numbers is impossible.
     #[error(transparent)]
     Family(#[from] FamilyError),
     /// Newton's method did not converge.

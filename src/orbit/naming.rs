@@ -16,7 +16,7 @@ impl Cycle {
         let segments = machine.cam().segments();
         let mut renamed = self.clone();
         for impact in &mut renamed.impacts {
-            // As many moves as there are segments lead once round.
+            // After one move for each segment, the impact is back where it was.
             for _ in 0..segments.len() {
                 let segment = &segments[impact.segment];
                 if impact.cam_angle < segment.start && !is_corner(impact.segment) {

@@ -37,10 +37,10 @@ pub fn near(
     Ok(close(machine, &Cycle::of_events(revolutions, &events).in_order()))
 }
 
-/// Returns the orbit near a guess, by Newton's method. `None` where that does not converge, or converges to no motion of the actual cam, or
-/// to one that repeats sooner.
+/// Finds the orbit near a guess by Newton's method. `None` if the method does not converge, if the result is no motion of the actual cam,
+/// or if it repeats sooner.
 pub fn close(machine: &Machine, guess: &Cycle) -> Option<PeriodicOrbit> {
-    // An impact or so a revolution is no chattering, however many revolutions there are.
+    // Up to four impacts per revolution are no chatter, however many revolutions there are.
     if guess.impacts.len() > MOST_IMPACTS.max(4 * guess.revolutions as usize) {
         return None;
     }
@@ -87,7 +87,7 @@ pub(super) fn near_run(
             sticking::through(machine, 0.0, turns)?
         } else if impacts {
             let guess = Cycle::of_events(turns, &events);
-            // Near an attracting orbit a run attracts its neighbours, or nearly. Most runs that only pass near an earlier state do not.
+            // A run near an attracting orbit attracts its neighbours, or nearly so. Most runs that only pass near an earlier state do not.
             let modulus = eigenvalues(&guess.at_section(machine, 0.0).1).into_iter().map(Eigenvalue::modulus);
             if modulus.fold(0.0, f64::max) <= NEARLY_DRAWS { close(machine, &guess) } else { None }
         } else {
@@ -102,13 +102,13 @@ pub(super) fn near_run(
     Ok(None)
 }
 
-/// The follower at rest above the cam, near `state`. `None` where it falls or meets the cam.
+/// Returns the follower at rest above the cam, near `state`. `None` if it falls or meets the cam.
 pub(super) fn free(machine: &Machine, state: State) -> Option<PeriodicOrbit> {
     at_rest(machine, state).filter(|orbit| orbit.state.position > machine.cam().highest().value)
 }
 
-/// The follower at rest near `state`, where no force acts on it, wherever the cam is. Without a spring or gravity it may rest anywhere.
-/// `None` where it falls.
+/// Returns the follower at rest near `state`, where no force acts on it, wherever the cam is. Without a spring or gravity it may rest
+/// anywhere. `None` if it falls.
 pub(super) fn at_rest(machine: &Machine, state: State) -> Option<PeriodicOrbit> {
     let (flight, force) = (machine.flight(), machine.flight().force(state.position));
     let above = if force == 0.0 { 0.0 } else { force / flight.omega0_squared() };

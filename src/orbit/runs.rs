@@ -1,7 +1,7 @@
 //! The runs of one machine: where they settle, and what follows when the cam releases the follower.
 //!
-//! A run that rests on the cam has no past: the speed decides the angle at which the cam releases it, and the motion after that is the same
-//! each time. So what follows a rest is computed once for each release, however many runs rest ([`LongRuns::after_release`]).
+//! A rest on the cam erases the past of a run: the speed alone decides the angle of the release, and the motion after it is the same each
+//! time. So the motion after a rest is computed once for each release, however many runs rest ([`LongRuns::after_release`]).
 
 use std::ops::ControlFlow;
 
@@ -24,9 +24,9 @@ pub enum RunOutcome {
     Arrives(PeriodicOrbit),
     /// The follower stays on the cam for good.
     PermanentContact,
-    /// The follower has rested on the cam, which released it at this angle, rad.
+    /// A release of the follower at this cam angle, rad, after a rest.
     Released(f64),
-    /// None of these.
+    /// No decision within the revolutions: the run wanders.
     Wanders,
 }
 
@@ -36,18 +36,18 @@ pub enum RunOutcome {
 pub enum AfterRelease {
     /// A release that recurs in the end.
     Recurs(StickingOrbit),
-    /// A stable periodic orbit, and the run at it.
+    /// A stable periodic orbit, and the run when it is on that orbit.
     Arrives(PeriodicOrbit, Motion),
-    /// Neither, in the revolutions allowed from one rest to the next.
+    /// Neither a rest nor an orbit within the revolutions allowed from one rest to the next.
     Wanders {
-        /// The run at its release.
+        /// The run at the release.
         released: Motion,
         /// The run after those revolutions.
         end: Motion,
     },
 }
 
-/// Revolutions after which a run has forgotten its start, if its further motion is to decide its outcome.
+/// Revolutions after which a wandering run has forgotten its start.
 const SETTLED: u64 = 100;
 
 /// The runs of one machine, with its stable orbits that are known beforehand. A run that converges to a known orbit is decided sooner, and
@@ -68,7 +68,7 @@ pub struct LongRuns<'a> {
 }
 
 impl<'a> LongRuns<'a> {
-    /// Creates the runs of `machine`, with the stable orbits of one impact known beforehand.
+    /// Builds the runs of `machine`, with the stable orbits of one impact known beforehand.
     pub fn new(machine: &'a Machine, budget: Budget) -> Result<Self, SimulateError> {
         /// The most revolutions of an orbit with one impact.
         const ONE_IMPACT: u64 = 3;
@@ -88,7 +88,7 @@ impl<'a> LongRuns<'a> {
         orbits.iter().try_for_each(|orbit| self.know(orbit))
     }
 
-    /// Creates the runs of `machine` without known orbits, for a run or a few. A search for orbits takes as long as thousands of
+    /// Builds the runs of `machine` without known orbits, for one run or a few. A search for orbits takes as long as thousands of
     /// revolutions.
     pub fn unaided(machine: &'a Machine, budget: Budget) -> Self {
         let top = machine.cam().top();
@@ -96,7 +96,7 @@ impl<'a> LongRuns<'a> {
         Self { machine, budget, size: lift_size(machine), top, floats, known: Vec::new() }
     }
 
-    /// The orbits known.
+    /// The known orbits.
     pub fn known(&self) -> impl Iterator<Item = &PeriodicOrbit> {
         self.known.iter().map(|(orbit, _)| orbit)
     }
@@ -111,8 +111,9 @@ impl<'a> LongRuns<'a> {
 
     /// Runs `motion` for up to `revolutions`, or until its outcome is decided.
     ///
-    /// An orbit counts if the run nearly repeats, Newton's method leads from there to a stable orbit, and the run's distance from it
-    /// shrinks as its multipliers predict: a chaotic run sometimes passes a stable orbit outside of its basin.
+    /// An orbit counts if the run nearly repeats, Newton's method leads from there to a stable orbit, and the run's distance from the orbit
+    /// shrinks as the multipliers predict. The last condition is needed since a chaotic run sometimes passes a stable orbit outside of its
+    /// basin.
     pub fn run(&self, motion: &mut Motion, revolutions: u64) -> Result<RunOutcome, SimulateError> {
         self.counted(motion, revolutions, &mut ImpactTally::default())
     }
@@ -164,7 +165,7 @@ impl<'a> LongRuns<'a> {
                 continue;
             }
             look = revolutions.min(2 * look);
-            // A search takes revolutions: it is made only where the run has come back to near where it was, and over as many.
+            // A search costs revolutions. So it is made only if the run has returned near an earlier state, and only up to that period.
             let near = tolerance::NEARLY_REPEATS.value * self.size;
             let before = past.iter().position(|state| motion.state.apart(*state, omega) <= near);
             let repeats_after = before.map(|before| (past.len() - before) as u64);
@@ -179,7 +180,7 @@ impl<'a> LongRuns<'a> {
         Ok(RunOutcome::Wanders)
     }
 
-    /// Whether the follower is off the cam for good: its flight never comes down to the top of the cam.
+    /// Whether the follower is off the cam for good: its flight never returns to the top of the cam.
     pub fn is_off_for_good(&self, motion: &Motion) -> bool {
         self.floats
             && motion.state.position > self.top
@@ -214,8 +215,8 @@ impl<'a> LongRuns<'a> {
         Ok(self.machine.advance(&mut motion, goal, &mut |_: &Event| ControlFlow::Break(()))?.is_continue())
     }
 
-    /// Whether `motion`, at cam angle 0, is so near to a stable orbit, with its `states` there, that it stays: its distance shrinks as the
-    /// multipliers predict.
+    /// Whether `motion`, at cam angle 0, has converged to a stable orbit with these `states` there: its distance from the orbit shrinks as
+    /// the multipliers predict.
     fn has_arrived(&self, mut motion: Motion, orbit: &PeriodicOrbit, states: &[State]) -> Result<bool, SimulateError> {
         /// Most periods in which the distance must shrink.
         const MOST: f64 = 100.0;
@@ -228,7 +229,7 @@ impl<'a> LongRuns<'a> {
             return Ok(false);
         }
         let modulus = orbit.multipliers().iter().fold(0.0_f64, |largest, one| largest.max(one.modulus()));
-        // As many periods as leave a tenth, or as can be waited for.
+        // Periods after which a tenth of the distance is left, up to the most allowed.
         let periods = (elementary::ln(0.1_f64) / elementary::ln(modulus)).ceil().clamp(1.0, MOST);
         let goal = motion.after(periods as u64 * orbit.revolutions);
         if self.to_release(&mut motion, goal, &mut ImpactTally::default())?.is_some() {
@@ -238,15 +239,15 @@ impl<'a> LongRuns<'a> {
         Ok(distance(&motion) <= shrunk.max(tolerance::ORBIT_CLOSURE.value * size))
     }
 
-    /// Follows a run from its release at `cam_angle`, rad, with up to `rest` revolutions to each next rest. It stops at a release whose
-    /// continuation is `known`. Also returns the revolutions that it followed.
+    /// Follows a run from its release at `cam_angle`, rad, with up to `rest` revolutions to each next rest. Stops at a release whose
+    /// continuation is `known`. Also returns the number of revolutions followed.
     pub fn after_release(
         &self,
         cam_angle: f64,
         rest: u64,
         known: impl Fn(f64) -> Option<AfterRelease>,
     ) -> Result<(AfterRelease, u64), SimulateError> {
-        // Each release with the revolutions and what was met from it to the next.
+        // Each release, with the revolutions and the impacts from it to the next.
         let mut releases: Vec<(f64, u64, ImpactTally)> = Vec::new();
         let (mut release, mut followed) = (cam_angle, 0);
         loop {
@@ -281,8 +282,8 @@ impl<'a> LongRuns<'a> {
         }
     }
 
-    /// Orbit on which some slightly faster runs from a release, rad, settle, where rounding decides what follows. Then the motion that
-    /// bounces there is on its way to this orbit.
+    /// Looks for an orbit on which runs settle that leave a release, rad, slightly faster; for use where rounding decides what follows. If
+    /// there is one, the motion that bounces there is on its way to this orbit.
     fn by_chance(&self, cam_angle: f64) -> Result<Option<AfterRelease>, SimulateError> {
         /// Number of runs, each a little faster at the release than the one before.
         const RUNS: u32 = 4;
@@ -296,10 +297,10 @@ impl<'a> LongRuns<'a> {
         Ok(None)
     }
 
-    /// Largest growth of a deviation from one of these releases, rad, to the next rest, a natural logarithm. On a long way only the beginning
-    /// is followed, and nothing beyond a growth that rounding alone makes long.
+    /// Largest growth of a deviation from one of these releases, rad, to the next rest, a natural logarithm. Only the beginning of a long
+    /// way is followed. The search stops at a growth at which rounding decides what follows.
     fn grown(&self, releases: &[f64]) -> Result<f64, SimulateError> {
-        /// Revolutions after which a deviation is as large as the motion, if it ever is, and after how many of them it is looked at.
+        /// Revolutions after which a deviation is as large as the motion, if it ever is, and revolutions from one look at it to the next.
         const LOOKED_AT: u64 = 200;
         const OFTEN: u64 = 20;
         let mut most = 0.0_f64;
@@ -323,25 +324,25 @@ impl<'a> LongRuns<'a> {
         Ok(motion)
     }
 
-    /// Continues a run that wanders from a release until it has forgotten that. This is long before the end of the allowed revolutions,
-    /// where the follower may be about to rest.
+    /// Continues a run that wanders after a release until it has forgotten the release. At the end of the allowed revolutions, much later,
+    /// the follower may be about to rest.
     pub fn settled(&self, mut released: Motion) -> Result<Motion, SimulateError> {
         self.machine.revolve(&mut released, SETTLED)?;
         Ok(released)
     }
 
-    /// Decides the motion of a run that has settled on nothing: chaotic or undecided by the growth of a small deviation, over up to so many
-    /// records, or the motion on which it settles before that. A release whose continuation is `known` is not followed again.
+    /// Judges a run that has settled on nothing, over up to `records` records of the growth of a small deviation. The result is chaotic,
+    /// undecided, or the motion on which the run settles in the meantime. A release whose continuation is `known` is not followed again.
     pub fn by_growth(
         &self,
         mut motion: Motion,
         records: u64,
         known: &dyn Fn(f64) -> Option<AfterRelease>,
     ) -> Result<LongRun, SimulateError> {
-        /// Revolutions from one record to the next, in which an orbit is looked for.
+        /// Revolutions from one record to the next, in which a search for an orbit is made.
         const LOOK: u64 = 8;
         let (rest, later_rest) = (self.budget.rest(), self.budget.later_rest());
-        // That no rest came in fewer revolutions does not answer for more.
+        // No rest within fewer revolutions says nothing about more.
         let answers = |after: &AfterRelease| later_rest == rest || !matches!(after, AfterRelease::Wanders { .. });
         let fresh = || Record::over(self.budget.block());
         let mut record = fresh();
@@ -356,14 +357,14 @@ impl<'a> LongRuns<'a> {
             if matches!(told, LongRun::Chaotic(_)) && !rests {
                 break;
             }
-            // The cam may have let go of it already; else the record goes on from where it is.
+            // A copy runs ahead, since the cam may have released the follower already. If it finds nothing, the record continues from here.
             let mut onward = motion;
             match self.run(&mut onward, if rests { later_rest } else { LOOK })? {
                 RunOutcome::Arrives(orbit) => return Ok(LongRun::Orbit(orbit)),
                 RunOutcome::PermanentContact => return Ok(LongRun::PermanentContact),
                 RunOutcome::Released(cam_angle) => {
                     match self.after_release(cam_angle, later_rest, |angle| known(angle).filter(answers))?.0 {
-                        // What rests that seldom may do so any number of times.
+                        // Rests this rare may recur any number of times.
                         AfterRelease::Wanders { .. } if released => break,
                         AfterRelease::Wanders { end, .. } => (record, motion, released) = (fresh(), end, true),
                         settled => return self.ending_after(&settled, known),

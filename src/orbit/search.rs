@@ -16,7 +16,7 @@ use crate::progress::Watch;
 use crate::simulate::{EventKind, Machine, SimulateError};
 use crate::tolerance;
 
-/// Which orbits are looked for.
+/// Orbits to be looked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Search {
     /// Turns of the cam in one period, the smallest number.
@@ -36,29 +36,29 @@ const START_VELOCITIES: usize = 20;
 /// Number of long runs, and revolutions in which they settle.
 const LONG_RUNS: usize = 6;
 const SETTLING: u64 = 600;
-/// Revolutions in which runs settle that come to rest on the cam.
+/// Revolutions within which a run that comes to rest on the cam settles.
 const SETTLING_STICKING: u64 = 6;
 
-/// Orbits found by a search, and the numbers of impacts for which they are all there are.
+/// Orbits found by a search, with the completeness of the list.
 #[derive(Clone, Debug)]
 pub struct Searched {
     /// Sorted by the number of impacts, then by the angle of the first impact.
     pub orbits: Vec<PeriodicOrbit>,
-    /// Numbers of impacts of which all orbits were looked for, and whether that is proved.
+    /// Numbers of impacts for which all orbits were looked for, and whether the list is proved complete.
     pub complete: Vec<Complete>,
-    /// Angles where that could not be decided.
+    /// Angles at which orbits may be missing.
     pub undecided: Vec<Undecided>,
 }
 
 /// Returns every orbit found, sorted by the number of impacts, then by the angle of the first impact.
 ///
-/// An error only where no orbit was found and a run could not go on.
+/// Fails only if no orbit was found and a run could not go on.
 pub fn search(machine: &Machine, wanted: &Search) -> Result<Vec<PeriodicOrbit>, SimulateError> {
     let found = Found::new(machine, wanted);
     found.search().map(|searched| searched.orbits)
 }
 
-/// Finds also all orbits of two impacts in one revolution, where these are wanted. This takes seconds.
+/// Searches as `search` does, and also finds all orbits of two impacts in one revolution, if these are wanted. This takes seconds.
 pub fn search_all(machine: &Machine, wanted: &Search, watch: &dyn Watch) -> Result<Searched, SimulateError> {
     let mut found = Found::new(machine, wanted);
     if wanted.revolutions == 1 && wanted.impacts.is_none_or(|impacts| impacts == 2) {
@@ -68,15 +68,15 @@ pub fn search_all(machine: &Machine, wanted: &Search, watch: &dyn Watch) -> Resu
     found.search()
 }
 
-/// Velocity that few impacts of the machine exceed, m/s: that of one revolution under the force at the top, plus four times the cam's
-/// fastest.
+/// Velocity that few impacts of the machine exceed, m/s: four times the cam's largest, plus the velocity gained in one revolution under the
+/// force at the top.
 #[doc(hidden)]
 pub fn velocity_scale(machine: &Machine) -> f64 {
     let cam = machine.cam();
     let omega = machine.angular_velocity();
     let steepest = cam.segments().iter().flat_map(|segment| segment.bounds.slope).fold(0.0_f64, |s, b| s.max(b.abs()));
     let force = machine.flight().force(cam.top()).abs();
-    // A flight of one revolution under that force, or the cam's own velocity.
+    // The cam's own velocity, and a flight of one revolution under that force.
     4.0 * omega * steepest + force * TAU / omega
 }
 
@@ -96,14 +96,14 @@ impl<'a> Found<'a> {
         found
     }
 
-    /// Adds everything that solves, or may solve, the equations of so many impacts.
+    /// Adds the certain and the possible solutions of the equations of `impacts` impacts.
     fn all(&mut self, impacts: usize, solved: Vec<Solved>) {
         let mut undecided = Vec::new();
         for Solved { guess, angles, velocities, standing } in solved {
             if standing == Standing::NoOrbit {
                 continue;
             }
-            // Newton's method gives the digits; where it leads elsewhere, they are not those of what is proved.
+            // Newton's method gives the digits. If it converges elsewhere, they do not belong to the proved orbit.
             let orbit = close(self.machine, &guess);
             let places: Vec<_> =
                 angles.iter().copied().zip(velocities).map(|(angle, before)| [angle, before]).collect();
@@ -115,7 +115,7 @@ impl<'a> Found<'a> {
                     <= tolerance::CYCLE_CLOSED.value
             };
             match orbit {
-                // Two that are proved are two, however near to each other.
+                // Two proved orbits are distinct, however near to each other.
                 Some(orbit)
                     if standing == Standing::Orbit && matches!(&orbit.course, Course::Impacts(it) if is_at(it)) =>
                 {
@@ -139,10 +139,10 @@ impl<'a> Found<'a> {
         self.searched.complete.push(Complete { revolutions, impacts, known });
     }
 
-    /// Searches in all other ways, and sorts the orbits.
+    /// Adds the follower at rest above the cam and the orbits that runs find, and sorts all.
     fn search(mut self) -> Result<Searched, SimulateError> {
         let mut error = None;
-        // The equilibrium, if the cam does not reach it: no run from the cam need come to it.
+        // The equilibrium above the cam: runs from the cam need not converge to it.
         let state = State { position: self.machine.cam().top(), velocity: 0.0 };
         if self.machine.flight().omega0_squared() > 0.0 {
             free(self.machine, state).into_iter().for_each(|orbit| self.keep(orbit));
@@ -155,7 +155,7 @@ impl<'a> Found<'a> {
         if self.wanted.impacts != Some(1) {
             for angle in 0..START_ANGLES {
                 for velocity in 0..START_VELOCITIES {
-                    // The middle of each cell, in angle and in the square of the velocity's part.
+                    // The middle of each cell, in the angle and in the square root of the velocity.
                     let angle = TAU * (angle as f64 + 0.5) / START_ANGLES as f64;
                     let part = (velocity as f64 + 0.5) / START_VELOCITIES as f64;
                     error = self.shoot(angle, part * part * velocity_scale(self.machine)).err().or(error);
@@ -191,7 +191,7 @@ impl<'a> Found<'a> {
     /// Keeps the orbit on which a long run settles.
     fn settle(&mut self, cam_angle: f64, relative_velocity: f64) -> Result<(), SimulateError> {
         let motion = self.machine.start_on_cam(cam_angle, relative_velocity)?;
-        // A follower that comes to rest on the cam has settled: what comes after repeats at once.
+        // A follower that comes to rest on the cam has settled: the motion after that repeats at once.
         let early = near_run(self.machine, motion, SETTLING_STICKING, self.wanted.revolutions)?;
         let sticks = early.as_ref().is_some_and(|orbit| matches!(orbit.course, Course::Sticking(_)));
         let settled = if sticks { early } else { near_run(self.machine, motion, SETTLING, self.wanted.revolutions)? };
@@ -201,7 +201,7 @@ impl<'a> Found<'a> {
         Ok(())
     }
 
-    /// Runs one period from the cam, whose impacts are a guess.
+    /// Runs one period from the cam, and takes its impacts as a guess.
     fn shoot(&mut self, cam_angle: f64, relative_velocity: f64) -> Result<(), SimulateError> {
         let mut motion = self.machine.start_on_cam(cam_angle, relative_velocity)?;
         let most = self.wanted.impacts.unwrap_or(MOST_IMPACTS);

@@ -8,8 +8,8 @@
 //! ```
 //!
 //! A lossless follower has det M = 1: its multipliers are a pair on the unit circle where |tr M| < 2. Between the two cases, within the
-//! error of the trace, a multiplier is 1 or -1. A decision by the trace needs no root, so nearly equal multipliers, which an error moves by
-//! its square root, do no harm.
+//! error of the trace, a multiplier is 1 or -1. The trace decides without a square root. So nearly equal multipliers do no harm, although
+//! an error moves them by its square root.
 
 use nalgebra::Matrix2;
 use serde::Serialize;
@@ -50,7 +50,8 @@ impl Stability {
         }
     }
 
-    /// Decides by the range of |tr M|, that of 1 + det M, and whether det M is below 1. `None` where a multiplier may be inside or outside.
+    /// Decides by the ranges of |tr M| and 1 + det M, and by whether det M is below 1. `None` if a multiplier may be inside or outside the
+    /// unit circle.
     #[doc(hidden)]
     pub fn of_trace([least, most]: [f64; 2], [low, high]: [f64; 2], loses: bool) -> Option<Self> {
         if least > high {
@@ -117,15 +118,15 @@ fn factors(machine: &Machine, cycle: &Cycle, places: &[Place]) -> Vec<Rows> {
     places.iter().enumerate().map(factor).collect()
 }
 
-/// The middle of each entry.
+/// Midpoints of the entries.
 fn middle(rows: &Rows) -> Matrix2<f64> {
     Matrix2::from_fn(|row, column| rows[row][column].middle())
 }
 
 /// Trace tr M of a product of factors, and its error to first order.
 ///
-/// With P the product of the factors before one of them, F, and R that of those after it, an error dF changes the trace by
-/// tr(R dF P) = tr(P R dF), and an error E of the product F P, whose rounding makes at most 2 u |F| |P|, by tr(R E):
+/// Let F be one factor, P the product of the factors before it, and R the product of those after it. An error dF changes the trace by tr(R
+/// dF P) = tr(P R dF). Rounding of the product F P makes an error E of at most 2 u |F| |P|, which changes the trace by tr(R E):
 ///
 /// ```text
 /// tr(|P R| |dF|)        2 u tr(|R| |F| |P|)        at most
@@ -148,10 +149,10 @@ pub fn trace(factors: &[Rows]) -> (f64, f64) {
     (before.trace(), error)
 }
 
-/// Bound on the distance of the eigenvalues of `matrix` from those with the trace and the determinant, which are known better.
+/// Bound on the distance of the computed eigenvalues of `matrix` from those that belong to a more accurate trace and determinant.
 ///
-/// A computed multiplier mu misses the true characteristic polynomial by p, and the true multipliers by d1 and d2 with d1 d2 = p. The
-/// nearer one is at most the root of p away, and at most 2 p/g where they are a distance g apart.
+/// At a computed multiplier mu the true characteristic polynomial has the value p. So the distances d1 and d2 of mu from the true
+/// multipliers have the product p. The nearer one is at most the root of p away, and at most 2 p/g if the two are a distance g apart.
 #[doc(hidden)]
 pub fn multipliers_error(matrix: &Matrix2<f64>, (trace, error): (f64, f64), determinant: f64) -> f64 {
     let pair = eigenvalues(matrix);
@@ -216,7 +217,7 @@ impl Judgement {
         Self { stability, known: Evidence::Computed, error }
     }
 
-    /// Verdict that holds for all impacts of a cycle within `places`. `None` where it is not the same for all of them.
+    /// Verdict that is proved for all impacts of a cycle within `places`; `None` if there is no single verdict.
     pub(super) fn proved(machine: &Machine, cycle: &Cycle, places: &[Place]) -> Option<Stability> {
         let factors = factors(machine, cycle, places);
         let determinant = |of: &Rows| of[0][0] * of[1][1] - of[0][1] * of[1][0];

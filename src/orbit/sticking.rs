@@ -1,4 +1,4 @@
-//! Orbits on which the follower sticks to the cam for a while. Everything after that follows from the cam alone.
+//! Orbits on which the follower sticks to the cam for a while. The cam alone determines the motion after that.
 
 use std::f64::consts::TAU;
 
@@ -9,8 +9,8 @@ use crate::flight::State;
 use crate::known::Evidence;
 use crate::simulate::{Event, EventKind, Machine, SimulateError};
 
-/// The orbit of `revolutions` that sticks to the cam at `anchor`, rad, in `[0, 2 pi)`. `None` where a follower put on the cam there does
-/// not stick, or is not on the cam again one period later.
+/// Returns the orbit of `revolutions` that sticks to the cam at `anchor`, rad, in `[0, 2 pi)`. `None` if a follower put on the cam there
+/// does not stick, or is not on the cam one period later.
 pub fn through(machine: &Machine, anchor: f64, revolutions: u64) -> Result<Option<PeriodicOrbit>, SimulateError> {
     let mut motion = machine.start_on_cam(anchor, 0.0)?.with_each_impact();
     if !motion.contact {
@@ -23,7 +23,7 @@ pub fn through(machine: &Machine, anchor: f64, revolutions: u64) -> Result<Optio
         return Ok(None);
     }
     let closing = (motion.state.position - state.position).abs();
-    // Counted from angle 0 on, as every orbit is.
+    // Revolutions count from angle 0, as in every orbit.
     for event in &mut events {
         event.revolution %= revolutions;
     }
@@ -57,15 +57,15 @@ pub fn at_zero(machine: &Machine, anchor: f64) -> Result<State, SimulateError> {
     Ok(motion.state)
 }
 
-/// Middle of the longest stretch on the cam among the events of one period, rad, in `[0, 2 pi)`. `None` where the follower never comes to
-/// rest or never leaves the cam.
+/// Middle of the longest stretch on the cam among the events of one period, rad, in `[0, 2 pi)`. `None` if the follower never comes to rest
+/// or never leaves the cam.
 pub fn anchor(events: &[Event], revolutions: u64) -> Option<f64> {
     let longest = stretches(events, revolutions).max_by(|one, two| (one.1 - one.0).total_cmp(&(two.1 - two.0)))?;
     Some(longest.0.midpoint(longest.1).rem_euclid(TAU)).filter(|angle| *angle < TAU)
 }
 
-/// Stretches on the cam among the events of one period, in their order: start and end, rad. The next event ends a stretch: the follower
-/// leaves the cam where it is released, or where a corner that turns up throws it off, as an impact does.
+/// Stretches on the cam among the events of one period, in their order: start and end, rad. The next event ends a stretch: a release, or an
+/// impact, where a corner that turns up throws the follower off the cam.
 fn stretches(events: &[Event], revolutions: u64) -> impl Iterator<Item = (f64, f64)> {
     let period = revolutions as f64 * TAU;
     let again = events.iter().map(move |first| (first.kind, first.turned_since(0.0) + period));

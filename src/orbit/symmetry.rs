@@ -1,13 +1,13 @@
 //! Locates where an orbit over equal lobes loses its symmetry, by its own equations.
 //!
-//! Over a cam of equal lobes an orbit may repeat from lobe to lobe: p times in a period. The matrix M that carries a deviation once around
-//! is then the p-th power of the matrix S of a p-th of a period, and p is even where
+//! Over a cam of equal lobes an orbit may repeat p times in a period. The matrix M that carries a deviation once around is then the p-th
+//! power of the matrix S of a p-th of the period. The symmetry is lost at an even p where
 //!
 //! ```text
 //! M = S^p        1 + tr S + det S = 0: S has the multiplier -1, and M has 1 of a pair of orbits that branch off
 //! ```
 //!
-//! Nothing passes 0 there along either branch: 1 - tr M + det M only touches it. So S of the symmetric orbit is evaluated.
+//! Along either branch 1 - tr M + det M touches 0 there and does not pass it. So S of the symmetric orbit is evaluated instead.
 
 use std::f64::consts::{PI, TAU};
 
@@ -19,14 +19,14 @@ use crate::cam::Cam;
 use crate::simulate::Machine;
 use crate::tolerance;
 
-/// Returns the value near `begun` at whose `machine` the symmetric orbit near `near` has the multiplier -1 of a p-th of its period. Also
-/// returns that orbit right beside it, since the equations of the whole period do not determine it there. `None` where the cam has no such
-/// lobes, the orbit is not symmetric nearby, or the value is 0.
+/// Locates the value near `begun` at which the symmetric orbit near `near` loses its symmetry: a p-th of its period has the multiplier -1.
+/// Also returns that orbit right beside the value, since at the value the equations of the whole period do not determine it. `None` if the
+/// cam has no such lobes, no symmetric orbit is nearby, or the value is 0.
 pub fn breaking(machine: impl Fn(f64) -> Option<Machine>, begun: f64, near: &Cycle) -> Option<(f64, PeriodicOrbit)> {
-    /// Relative distances from the value at which the orbit is computed. They are far enough from where it is not determined, and so near
-    /// that a cubic through the results errs by less than rounding.
+    /// Relative distances from the value at which the orbit is computed. They are large enough to determine the orbit, and so small that a
+    /// cubic through the results errs by less than rounding.
     const BESIDE: [f64; 4] = [-2e-4, -1e-4, 1e-4, 2e-4];
-    /// Rounds of this, each about the result of the one before.
+    /// Most rounds of interpolation, each about the result of the one before.
     const ROUNDS: usize = 8;
     /// Largest distance of the result from the start, relative to the value.
     const FAR: f64 = 0.02;
@@ -54,7 +54,8 @@ pub fn breaking(machine: impl Fn(f64) -> Option<Machine>, begun: f64, near: &Cyc
     None
 }
 
-/// Root of the polynomial through these points, each a value and its place, by Neville's scheme. `None` where two values are the same.
+/// Place at which the value is 0, by inverse interpolation through points of a value and its place (Neville's scheme). `None` if two values
+/// are equal.
 fn at_zero(seen: &[(f64, f64)]) -> Option<f64> {
     let mut row: Vec<f64> = seen.iter().map(|(_, place)| *place).collect();
     for width in 1..seen.len() {
@@ -66,10 +67,10 @@ fn at_zero(seen: &[(f64, f64)]) -> Option<f64> {
     row.first().copied().filter(|place| place.is_finite())
 }
 
-/// Number of parts in which the cycle nearly repeats, an even number. `None` where the cycle does not repeat, or the cam does not.
+/// Even number of parts in which the cycle nearly repeats. `None` if the cycle or the cam does not repeat.
 fn parts(cam: &Cam, cycle: &Cycle) -> Option<usize> {
-    /// Tolerance, rad, and relative for velocities: near the branching, orbits differ from symmetric ones by the root of their distance
-    /// from it.
+    /// Tolerance in rad, and relative for velocities. Near the branching point, orbits differ from symmetric ones by the root of their
+    /// distance from it.
     const NEAR: f64 = 0.2;
     let count = cycle.impacts.len();
     let fastest = cycle.impacts.iter().fold(0.0_f64, |most, impact| most.max(impact.velocity_before.abs()));
@@ -110,7 +111,7 @@ fn symmetric(cam: &Cam, cycle: &Cycle, parts: usize) -> Cycle {
         let first = cycle.impacts[index].turned();
         let of_part = |part: usize| {
             let impact = &cycle.impacts[(index + part * each) % count];
-            // Near to where the first is, whichever part it is numbered in.
+            // The angle nearest to the first part's, whatever revolution it is numbered in.
             let off = (impact.turned() - part as f64 * turn - first + PI).rem_euclid(period) - PI;
             (off, impact.velocity_before)
         };
@@ -138,7 +139,7 @@ fn step(machine: &Machine, cycle: &Cycle, parts: usize) -> Matrix2<f64> {
 }
 
 impl PeriodicOrbit {
-    /// The orbit's impacts as a cycle; `None` where it rests on the cam or never meets it.
+    /// The orbit's impacts as a cycle; `None` if it rests on the cam or never meets it.
     pub fn cycle(&self) -> Option<&Cycle> {
         if let Course::Impacts(cycle) = &self.course { Some(cycle) } else { None }
     }

@@ -20,7 +20,7 @@ pub struct CamSheet {
     pub lift_m: [f64; 2],
     /// Ratio of the lever between cam and follower, 1 without one.
     pub lever_ratio: f64,
-    /// Contour of a cam whose lift follows from it, and what it asks of the follower.
+    /// Contour of the cam, if its lift follows from one, with the demands on the follower.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub geometry: Option<CamGeometry>,
     /// Accuracy of the cam, if it is measured.
@@ -72,7 +72,7 @@ impl CamGeometry {
     /// Pressure angle from which a guide takes large forces across, rad: a rule of thumb of textbooks.
     pub const LARGE_PRESSURE_ANGLE: f64 = std::f64::consts::FRAC_PI_6;
 
-    /// Computes the geometry of a model's cam. `None` where the model gives a lift and no contour.
+    /// Computes the geometry of a model's cam. `None` if the model gives a lift and no contour.
     pub fn of(model: &Model, cam: &Cam) -> Option<Self> {
         let contact = model.cam.contact()?;
         let cam = cam.levered(model.cam.lever_ratio().recip());

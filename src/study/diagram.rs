@@ -85,7 +85,7 @@ impl Swept {
         mut take: impl FnMut(B) -> Result<(), E>,
     ) -> Result<Self, E> {
         let threads = match sweep.following {
-            // As many as RAYON_NUM_THREADS says, or one for each core.
+            // RAYON_NUM_THREADS gives the number, or there is one for each core.
             SweepStart::Nothing => threads.unwrap_or_else(rayon::current_num_threads).min(sweep.over.count()),
             SweepStart::Up | SweepStart::Down => 1,
         };

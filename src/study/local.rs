@@ -18,7 +18,7 @@ use crate::orbit::{Course, Cycle, Parameter, PeriodicOrbit, Search, Stability, s
 use crate::simulate::{Machine, angular_velocity};
 use crate::study::verify::Verification;
 
-/// Range of the changes of period, as a multiple of the smallest range over which a fixed point is a tenth off.
+/// Range of the changes of period, as a multiple of the least change at which a fixed point is wrong by a tenth.
 const BEYOND: f64 = 3.0;
 /// Step of a branch, as a share of that range.
 const STEP: f64 = 0.01;
@@ -54,7 +54,7 @@ pub struct NextToCorner {
     pub position: f64,
     /// Orbits of the local map.
     pub rays: Vec<Ray>,
-    /// Signs of the changes of period for which every motion of the local map leaves.
+    /// Signs of the changes of period for which every motion of the local map escapes.
     pub left: Vec<f64>,
     /// Orbits of the machine: change of the period, s, and position relative to x*, m.
     pub machine: Vec<Crossings>,
@@ -70,7 +70,7 @@ pub struct Crossings {
 }
 
 impl NextToCorner {
-    /// Computes both from a verification of the model, or says why there is nothing.
+    /// Computes both from a verification of the model. The error says why there is nothing to show.
     pub fn new(model: &Model, cam: &Cam, found: &Verification) -> Result<Self, String> {
         let at = &found.at;
         if found.outcomes.is_empty() {

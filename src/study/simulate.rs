@@ -92,7 +92,7 @@ pub struct Run {
     /// Motion at the end.
     #[serde(skip)]
     pub last: Motion,
-    /// A motion of the run before its last revolutions, of which the loads are told.
+    /// Motion before the last revolutions, whose loads are computed.
     #[serde(skip)]
     before_last: Motion,
 }
@@ -225,7 +225,7 @@ impl Simulation {
             watch.at("", (done * PARTS) as u64, (total as f64 * PARTS) as u64);
         };
         while impacts < most {
-            // The first of two marks so far apart is before the last revolutions wherever the run ends.
+            // With marks this far apart, the first one is before the last revolutions wherever the run ends.
             if motion.revolution >= marks[1].revolution + RunLoads::MOST {
                 marks = [marks[1], motion];
             }

@@ -47,8 +47,8 @@ pub struct SpeedSurvey {
     pub budget: Budget,
     /// Whether runs also began on the stable orbits of two impacts in one revolution.
     pub two_impacts: bool,
-    /// Speed above the lowest at which the follower first leaves the cam, by the contact force. Its error includes the uncertainty of the
-    /// machine. None if the speed does not vary.
+    /// First speed, above the lowest of the range, at which the follower leaves the cam, by the contact force. Its error includes the
+    /// uncertainty of the machine. None if the speed does not vary.
     pub separation: Option<Separation>,
     /// Uncertainty of the machine in that speed, rpm; none if the machine is exact.
     pub separation_error: Option<SourcedUncertainty>,
@@ -248,7 +248,7 @@ document!(PassedDanger as it {
 pub struct FailedValue {
     /// Place of the value.
     pub at: Place,
-    /// Number of starts that could not be run; none if nothing could.
+    /// Number of starts that could not be run; none if no start could.
     pub starts: Option<usize>,
     /// Reason.
     pub why: String,
@@ -260,8 +260,8 @@ document!(FailedValue as it { speed_rpm: it.at.rpm, value if_any: it.at.value, s
 const HIT: f64 = 2.995_732_273_553_991;
 
 impl SpeedSurvey {
-    /// Returns the share of the starts' rectangle that a basin needs so that the starts of a value hit it with 95 %, if they were drawn
-    /// by chance.
+    /// Returns the share of the starts' rectangle that a basin needs so that randomly drawn starts of a value hit it with a probability of
+    /// 95 %.
     pub fn missed(&self) -> f64 {
         (HIT / self.sample.count() as f64).min(1.0)
     }
@@ -340,7 +340,7 @@ impl AttractorRow {
 
     /// Returns the rate at which the attractor rests, if its runs wandered long enough.
     pub fn rests(&self) -> Option<Rests> {
-        /// Least number of revolutions: that of the runs of one value.
+        /// Least number of revolutions: as many as the runs of one value are followed for together.
         const TOLD: u64 = 100_000;
         let is_wandering = |at: &&At| matches!(at.ending, LongRun::Chaotic(_)) || at.ending.is_long();
         let all = self.at.iter().filter(is_wandering).fold(Wandering::default(), |all, at| all.with(at.wandering));

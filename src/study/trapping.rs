@@ -18,7 +18,7 @@ use crate::study::{StudyError, machine};
 pub struct Trapping {
     /// The region next to the corner impact, if there is one, before the region of all motions.
     pub regions: Vec<Trapped>,
-    /// For each size of squares without a region, how the attempt failed.
+    /// Reason why the attempt failed, for each size of squares without a region.
     pub escapes: Vec<OpenRegion>,
 }
 

@@ -56,7 +56,7 @@ pub struct Verification {
     pub comparisons: Vec<Agreement>,
     /// `(e, f)`: the impact comes before the corner where `e dx + f dT < 0`.
     pub border: LinearForm,
-    /// The map in normal form, with its parameter out of the border.
+    /// The map in normal form, in which the border does not depend on the parameter.
     pub normal_form: Result<NormalForm, Degenerate>,
     /// Classification of the corner impact.
     pub classification: Result<Classification, Refusal>,
@@ -76,7 +76,7 @@ pub struct Verification {
     pub published: Vec<PrintedNumber>,
     /// Routes and results that were not computed, with the reason.
     pub skipped: Vec<Skipped>,
-    /// Whether every comparison agrees, every printed number is as the ledger has it, and every route ran that should have.
+    /// Whether every comparison agrees, every printed number is as the ledger says, and every route ran that should have.
     pub agrees: bool,
 }
 
@@ -140,9 +140,9 @@ document!(LeftOpen as it {
 #[derive(Clone, Debug)]
 #[doc(hidden)]
 pub struct CornerUncertainty {
-    /// Of the speed, rpm.
+    /// Uncertainty of the speed, rpm.
     pub speed: SourcedUncertainty,
-    /// Of each entry of the map: A by rows, then B.
+    /// Uncertainty of each entry of the map: A by rows, then B.
     pub entries: Sides<[SourcedUncertainty; 6]>,
 }
 

@@ -19,7 +19,7 @@ pub(super) fn half(
     let (edge, end) = following.bound(family, value, direction);
     let longest = following.longest_step * span;
     let closest = tolerance::SPECIAL_POINT.value * span;
-    // One that never leaves the cam is anchored where the cam presses most, since what throws it off may begin anywhere else.
+    // An orbit that never leaves the cam is anchored where the cam presses most, since the place that throws it off may be anywhere else.
     let orbit_at = |value: f64, anchor: Option<f64>| -> Result<(Option<PeriodicOrbit>, f64), OrbitError> {
         let (machine, rpm) = family.machine(&[value])?;
         let anchor = anchor.unwrap_or_else(|| pressed_most(&machine));
@@ -38,7 +38,7 @@ pub(super) fn half(
             Err(OrbitError::Family(why)) => return Ok((points, End::edge(direction > 0.0, &why))),
             Err(error) => return Err(error),
         };
-        // The stretch on the cam moves with the parameter; its middle is the last to go.
+        // The stretch on the cam moves with the parameter; its middle vanishes last.
         let goes_on = orbit.filter(|orbit| step <= closest || leaves != orbit.events.is_empty());
         match goes_on {
             Some(orbit) => {
@@ -68,7 +68,7 @@ pub(super) fn half(
     Ok((points, end))
 }
 
-/// Cam angle, rad, of a number of samples, at which the cam presses most against a follower that moves with it.
+/// Sampled cam angle, rad, at which the cam presses most against a follower that moves with it.
 fn pressed_most(machine: &Machine) -> f64 {
     const PLACES: u32 = 256;
     let lifting = |angle: &f64| machine.lifting(&machine.cam().lift(*angle));

@@ -23,7 +23,7 @@ pub struct Pinned {
 }
 
 impl Pinned {
-    /// Renames the pinned impact after the segment on the other side of the corner.
+    /// Renames the pinned impact by the segment on the other side of the corner.
     pub(super) fn other_side(&self, cycle: &Cycle, machine: &Machine) -> Cycle {
         let last = machine.cam().segments().len() - 1;
         let mut other = cycle.clone();
@@ -64,7 +64,7 @@ impl Held {
                 let segment = &machine.cam().segments()[segment];
                 cam_angle - if at_end { segment.end } else { segment.start }
             }
-            // It has no pole at a graze, as the determinant of the multiplier less M has.
+            // Unlike the determinant of the multiplier less M, this has no pole at a graze.
             Self::Multiplier(multiplier) => cycle.characteristic(machine, multiplier, velocity),
             Self::Touch(impact) => cycle.approach(machine, impact) / machine.angular_velocity() / velocity,
         }
@@ -90,7 +90,7 @@ impl Held {
         }
     }
 
-    /// Cam angle of the event, rad, in `[0, 2 pi]`. For a multiplier it is that of the first impact.
+    /// Cam angle of the event, rad, in `[0, 2 pi]`; for a multiplier, the angle of the first impact.
     pub(super) fn cam_angle(self, cycle: &Cycle) -> f64 {
         match self {
             Self::Corner(Pinned { impact, .. }) | Self::Touch(impact) => cycle.impacts[impact].cam_angle,

@@ -31,7 +31,7 @@ pub fn crossing(family: &Family, following: &Following, branches: &[Branch]) -> 
             return None;
         };
         let Course::Impacts(last) = &before.orbit.course else { return None };
-        // What changes between the two, a touch or a half of the period, leaves no direction to come from.
+        // A touch or a halved period changes the number of impacts between the two. Then there is no direction to come from.
         if last.impacts.len() != cycle.impacts.len() {
             return None;
         }
@@ -58,8 +58,8 @@ fn at(family: &Family, following: &Following, branch: &Branch, index: usize) -> 
     exits.into_iter().filter_map(|exit| beyond(family, following, point.value, &cycle.twice(), exit)).collect()
 }
 
-/// The orbit next to `twice`, an orbit run twice, of which one period leaves by `exit`. At a flip there is no exit. `None` where there is
-/// no such orbit.
+/// Returns the orbit next to `twice`, an orbit run twice, one period of which leaves its cycle by `exit`. A flip has no exit. `None` if
+/// there is no such orbit.
 fn beyond(
     family: &Family,
     following: &Following,
@@ -91,7 +91,7 @@ fn stepped(
     let from = problem.unknowns(cycle, &machine, &[value]);
     let along = direction(&problem, &from).ok()?;
     let point = curve::step(&problem, &from, &along, FIRST * following.longest_step).ok()?;
-    // At this value alone Newton's method would as well lead back to the orbit that is known.
+    // The point is not refined with the value fixed: Newton's method could return to the known orbit.
     let (cycle, machine, _) = problem.unpack(&point.unknowns).ok()?;
     let residual = cycle.residual(&machine).amax() / lift_size(&machine);
     let is_orbit = matches!(cycle.departure(&machine), Ok(None));
@@ -112,8 +112,8 @@ fn on_corner(cycle: &Cycle, machine: &Machine, segment: usize) -> impl Iterator<
 
 /// Unit direction from a flip in which the two halves of a period separate.
 ///
-/// The equations are nearly met there in two directions: towards the short orbits, whose halves move alike, and towards those of twice the
-/// period, whose halves move against each other.
+/// The equations are nearly met there in two directions. In the direction of the short orbits the two halves move alike. In the direction
+/// of the orbits of twice the period they move against each other.
 fn apart(problem: &Problem<'_>, at: &DVector<f64>) -> Result<DVector<f64>, NoPoint<FamilyError>> {
     let (_, jacobian) = problem.linear(at)?;
     // Two unknowns for each impact, and one more.
@@ -129,8 +129,8 @@ fn apart(problem: &Problem<'_>, at: &DVector<f64>) -> Result<DVector<f64>, NoPoi
     curve::unit(DVector::from_fn(at.len(), |index, _| entry(index)))
 }
 
-/// Unit direction, where branches cross, that leads across the known branch, which goes on `along`. It lies in the plane of the two
-/// directions in which the equations change least.
+/// Unit direction across the known branch at a crossing, in the plane of the two directions in which the equations change least. The known
+/// branch continues `along`.
 fn across(
     problem: &Problem<'_>,
     at: &DVector<f64>,

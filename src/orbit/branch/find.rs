@@ -1,8 +1,8 @@
 //! Finds the branches through given orbits and what branches off from them. Also finds the branches of a range of speeds, and their special
-//! points: a range has all those that a wider range has in it.
+//! points, which are the same for any wider range.
 //!
-//! Orbits are looked for at speeds of a grid, which is the same for every range, as are its cells. The corner impacts of a cell are those
-//! found by searches and branches in a window around it, whatever the range. A range is cut out of whole cells.
+//! Searches for orbits run at the speeds of a grid. The grid and its cells do not depend on the range. The special points of a cell are
+//! found by searches and branches in a window around the cell, and a range is cut out of whole cells.
 
 use std::borrow::Borrow;
 use std::ops::Range;
@@ -42,7 +42,8 @@ pub struct FoundBranches {
 }
 
 impl FoundBranches {
-    /// Follows the branch through each orbit, at its value of the parameter, that is on no known branch. Each is a piece of the work.
+    /// Follows the branch through each orbit that is on no known branch. Each orbit comes with its value of the parameter, and is one piece
+    /// of the work.
     pub fn follow(
         &mut self,
         family: &Family,
@@ -102,8 +103,8 @@ struct Searched<'a> {
 }
 
 impl<'a> Searched<'a> {
-    /// Searches at the speeds in `steps` for the wanted orbits, and for those from which they may have branched off: of half as many
-    /// revolutions, again and again.
+    /// Searches at the speeds in `steps` for the wanted orbits, and for those of a half, a quarter and so on of their revolutions, from
+    /// which they may have branched off.
     fn at(model: &'a Model, steps: Range<i32>, wanted: &Search, watch: &dyn Watch) -> Result<Self, FamilyError> {
         let machine = Machine::new(Cam::new(model)?, &model.follower, angular_velocity(1.0));
         let speeds: Vec<f64> = steps.map(|step| grid(f64::from(step) + 0.5)).collect();

@@ -17,10 +17,10 @@
 //!
 //! A follower that oscillates has such an n, unless its oscillation is in resonance with the cam, `s(n T) = 0`. A follower that does not
 //! oscillate has `s > 0` always, and impacts stay small. Close to the graze the slower of its two rates then decides the motion, by the
-//! part of a deviation that is left after one passage, `lambda = e^(-slow T)` (Chin, Ott, Nusse, Grebogi 1994; Fredriksson, Nordmark 1997):
+//! part `lambda = e^(-slow T)` of a deviation that is left after one passage (Chin, Ott, Nusse, Grebogi 1994; Fredriksson, Nordmark 1997):
 //!
 //! ```text
-//! lambda < 1/4          stable orbits of one impact in n passages, each beside the next as well; n grows without end
+//! lambda < 1/4          stable orbits of one impact in n passages; neighbours coexist in part; n grows without end
 //! 1/4 < lambda < 2/3    the same orbits, with chaos between them
 //! 2/3 < lambda < 1      chaos
 //! ```
@@ -47,7 +47,7 @@ pub enum GrazeClass {
     PeriodAddingChaos,
     /// Chaos of small impacts.
     Chaos,
-    /// None of these is certain.
+    /// No certain class.
     Undecided,
 }
 
@@ -62,7 +62,7 @@ pub enum Doubt {
     Flat,
     /// The cam is equally high at several places, which are not alike or not evenly spaced.
     Places,
-    /// Nothing returns the follower to where it was.
+    /// A follower that nothing returns to where it was.
     Unheld,
     /// The follower's oscillation is in resonance with the cam.
     Resonance,
@@ -75,7 +75,8 @@ pub enum Doubt {
 pub struct FirstTouch {
     /// Class of the motions beyond the graze.
     pub class: GrazeClass,
-    /// For a jump: passages of the cam's top after which the follower is struck deeper, and the depth from which on it need not be, m.
+    /// For a jump: the number of passages of the cam's top after which the follower is struck deeper, and the depth from which on it need
+    /// not be, m.
     pub back: Option<(u64, f64)>,
     /// Why the class is undecided.
     pub doubt: Option<Doubt>,
@@ -126,7 +127,7 @@ fn classified(machine: &Machine, tops: &[Least]) -> Result<(GrazeClass, u64, f64
     Ok((class, 0, 0.0))
 }
 
-/// Curvature at the cam's tops, `-c''` on the side that comes first, m/rad^2. An error where the tops are not alike.
+/// Curvature at the cam's tops, `-c''` on the side that comes first, m/rad^2. Fails if the tops are not alike.
 fn bend(machine: &Machine, tops: &[Least]) -> Result<f64, Doubt> {
     let flat = tolerance::FLAT_TOP.value * lift_size(machine);
     let mut bends = Vec::new();
@@ -151,7 +152,7 @@ fn bend(machine: &Machine, tops: &[Least]) -> Result<f64, Doubt> {
     if are_even && are_alike { Ok(first) } else { Err(Doubt::Places) }
 }
 
-/// First n with `sin(n angle) < 0`, rad; `None` where the sine is, or may be, 0 for an earlier n.
+/// First n with `sin(n angle) < 0`, rad; `None` if the sine is, or may be, 0 for an earlier n.
 fn struck_deeper(angle: f64) -> Option<u64> {
     let within = angle.rem_euclid(TAU);
     let halves = PI / within;
@@ -162,14 +163,14 @@ fn struck_deeper(angle: f64) -> Option<u64> {
     Some(halves.floor() as u64 + 1)
 }
 
-/// Reason why the class of a graze is undecided at a speed. On its two sides the class differs, or the passages after which the follower is
-/// struck deeper.
+/// Reason why the class of a graze is undecided at a speed. On the two sides of that speed the class differs, or the number of passages
+/// after which the follower is struck deeper.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[doc(hidden)]
 pub enum UndecidedGraze {
-    /// The eigenvalue has this value.
+    /// An eigenvalue at the boundary of two classes.
     Eigenvalue(f64),
-    /// The follower is back at its equilibrium so many passages after an impact.
+    /// A resonance: the follower is back at its equilibrium this number of passages after an impact.
     Resonance(u64),
 }
 

@@ -52,7 +52,7 @@ impl<'a> Stride<'a> {
         Walk { stride: self, fresh: None, signs: Vec::new(), standing: 0, points: Vec::new() }.run()
     }
 
-    /// Reason why no step leads away from the start. The model may refuse a step to either side, for two reasons.
+    /// Reason why no step leads away from the start. The model may refuse steps to both sides, for two different reasons.
     fn stuck(&self, direction: f64) -> End {
         let mut beside = self.from.unknowns.clone();
         beside[self.from.unknowns.len() - 1] += direction * self.step;
@@ -78,7 +78,7 @@ pub(super) fn from_touch(family: &Family, start: &Start<'_>, following: &Followi
         let Ok(tangent) = switch::from_touch(&stride.problem(), &stride.from.unknowns) else {
             return Ok((Vec::new(), End::Graze));
         };
-        // A top where two segments meet is on the one that the impact moves into.
+        // At a top where two segments meet, the touch belongs to the segment that the impact moves into.
         let (machine, _) = family.machine(start.values)?;
         let segment = &machine.cam().segments()[cycle.impacts[impact].segment];
         let (angle, moves) = (cycle.impacts[impact].cam_angle, tangent[2 * impact]);
@@ -95,8 +95,8 @@ pub(super) fn from_touch(family: &Family, start: &Start<'_>, following: &Followi
     Walk { stride, fresh, signs: Vec::new(), standing: 0, points: Vec::new() }.run()
 }
 
-/// Follows the curve of the held condition in both directions, from the point at the last number's first value. Returns this point and both
-/// halves; `None` where there is no such point.
+/// Follows the curve of the held condition in both directions, from its point at the first value of the last number. Returns this point and
+/// both halves; `None` if there is no such point.
 pub(super) fn curve(
     family: &Family,
     start: &Start<'_>,
@@ -108,7 +108,7 @@ pub(super) fn curve(
     let count = stride.from.unknowns.len();
     let along = DVector::from_fn(count, |row, _| f64::from(row + 1 == count));
     let guess = stride.from.unknowns.clone();
-    // A located point has half of the digits of its own equations.
+    // A located point is accurate to half of the digits that its own equations give.
     let Ok(point) = curve::closed(&stride.problem(), &guess, &along, 0.0, guess.clone()) else { return Ok(None) };
     stride.from = point;
     let Ok(middle) = stride.branch_point(&stride.problem(), &stride.from, special) else { return Ok(None) };
@@ -149,7 +149,7 @@ impl Walk<'_> {
                     if let NoPoint::Outside(why) = &error
                         && let Some((last, end)) = self.at_bound(why)
                     {
-                        // A branch may begin there.
+                        // A branch that begins at this value has the point already.
                         if last.value != self.stride.value(&self.stride.from.unknowns) {
                             self.points.push(last);
                         }
@@ -173,7 +173,7 @@ impl Walk<'_> {
             let alike = one.eq(other);
             if alike && self.points.len() > 20 {
                 let away = &self.stride.from.unknowns - home;
-                // Behind a fold it may pass its start the other way, a step beside it.
+                // Behind a fold, the branch may pass close to its start in the other direction.
                 let is_onward = self.stride.from.tangent.dot(&begin.1.tangent) > 0.0;
                 if is_onward && away.norm() < self.stride.step {
                     return Ok((self.points, End::Closed));
@@ -202,7 +202,7 @@ impl Walk<'_> {
 
     /// Converts the curve to units of its present velocities. Returns whether these grow without bound.
     fn rescale(&mut self, home: &mut (Cycle, CurvePoint)) -> bool {
-        /// Factor from which the units are changed.
+        /// Least factor at which the units are changed.
         const FACTOR: f64 = 1.5;
         let Ok((cycle, machine, _)) = self.stride.problem().unpack(&self.stride.from.unknowns) else { return false };
         let units = BranchScales::of(&cycle, &machine);
@@ -233,13 +233,13 @@ impl Walk<'_> {
         let (value, slope) = (self.stride.value(&from.unknowns), from.tangent[count - 1]);
         let beyond = value + 2.0 * slope * span * self.stride.step;
         let bound = curve::limit(value, beyond, |value| problem.unpack(&with(value)).is_err())?;
-        // Along the number alone: nothing is asked of the model beyond its bound.
+        // Only the number is fixed, so that no machine beyond the model's bound is needed.
         let along = DVector::from_fn(count, |row, _| f64::from(row + 1 == count));
         let mut guess = &from.unknowns + &from.tangent * ((bound - value) / (slope * span));
         guess[count - 1] = bound / span;
         let point = curve::closed(&problem, &with(bound), &along, 0.0, guess).ok()?;
         let (cycle, machine, _) = problem.unpack(&point.unknowns).ok()?;
-        // What has no rebound leaves the cam as the orbits before it do, which no simulated flight begins with.
+        // An impact without rebound leaves the cam as the orbits before it do, but no simulated flight can begin with it.
         let is_orbit = matches!(self.stride.departure(&cycle, &machine), Ok(None | Some(Departure::Elsewhere { .. })));
         let point = self.stride.branch_point(&problem, &point, None).ok().filter(|_| is_orbit)?;
         Some((point, self.edge(why)))
@@ -252,7 +252,7 @@ impl Walk<'_> {
         if next.tangent.dot(&self.stride.from.tangent) < STRAIGHT {
             return Err(NoPoint::NotClosed);
         }
-        // The first that cuts the step short, of those that the equations tell.
+        // The first of the cuts that the equations show.
         let mut first: Option<Located> = None;
         let mut keep = |located: Located| {
             if first.as_ref().is_none_or(|first| located.step < first.step) {
@@ -265,7 +265,7 @@ impl Walk<'_> {
         if let Some(located) = self.stride.halved(&problem, &next)? {
             keep(located);
         }
-        // And those that only the simulator sees, on the way there.
+        // Then the cuts that only the simulator sees, before that first one.
         let part_way = |step: f64| {
             Ok::<_, NoPoint<FamilyError>>((
                 curve::step(&problem, &self.stride.from.unknowns, &self.stride.from.tangent, step)?,
@@ -273,12 +273,12 @@ impl Walk<'_> {
             ))
         };
         let mut clear = match &first {
-            // Where the halves of a period meet, the equations of both together are singular, and a multiplier is 1.
+            // Where the halves of a period meet, their common equations are singular, and a multiplier is 1.
             Some(Located { cut: Cut::Halved, step, .. }) => part_way(0.5 * step)?,
             Some(Located { step, .. }) => part_way(step * (1.0 - 1e-3))?,
             None => (next.clone(), self.stride.step),
         };
-        // Of two flights that touch, the simulator tells the one that does so first in time: the other may do so sooner along the step.
+        // Of two flights that touch, the simulator finds the one that touches first in time. The other may touch sooner along the step.
         for _ in 0..=self.stride.pattern.impacts.len() {
             let (cycle, at, _) = problem.unpack(&clear.0.unknowns)?;
             match self.stride.departure(&cycle, &at) {
@@ -289,7 +289,7 @@ impl Walk<'_> {
                     clear = part_way(located.step * (1.0 - 1e-3))?;
                     first = Some(located);
                 }
-                // So near to a cut that the simulator sees it already, or nothing that a shorter step would not show better.
+                // Either the simulator already sees the cut nearby, or a shorter step will show the event better.
                 Ok(Some(_)) if first.is_some() => break,
                 Ok(Some(_)) | Err(_) => return Err(NoPoint::NotClosed),
             }
@@ -308,13 +308,13 @@ impl Walk<'_> {
         let mut points = Vec::new();
         let mut folds = false;
         let mut signs = Vec::new();
-        // Along a continuum of orbits a multiplier is 1 but for rounding, whose signs tell nothing.
+        // Along a continuum of orbits a multiplier is 1 up to rounding, and the sign of the rounding means nothing.
         let stands = self.stride.stands(&end_point);
         let passed = if stands { Vec::new() } else { self.stride.passed() };
         for (index, cut) in passed.into_iter().enumerate() {
             let at = |point: &CurvePoint| self.stride.measure(&problem, cut, point);
             let (end, reach) = match &first {
-                // No multiplier is -1 there: one that passes -1 shortly before is told as well.
+                // No multiplier is -1 at that cut, so a flip shortly before it is found as well.
                 Some(Located { cut: Cut::Halved, step, .. }) if cut == Cut::Flip => &part_way(0.95 * step)?,
                 Some(Located { step, point, .. }) if smooth => &(point.clone(), *step),
                 // Just short of a graze, where the matrix has a pole.
@@ -332,7 +332,7 @@ impl Walk<'_> {
             let located = if (from < 0.0) != (to < 0.0) {
                 self.stride.locate(&problem, cut, *reach)?
             } else {
-                // At the corner that the step begins at.
+                // The root is at the corner where the step begins.
                 let (point, value) = (self.stride.from.clone(), self.stride.value(&self.stride.from.unknowns));
                 Located { step: 0.0, cut, point, bracket: [value; 2], residual: from.abs() }
             };
@@ -347,7 +347,7 @@ impl Walk<'_> {
         points.sort_by(|one, two| one.0.total_cmp(&two.0));
         let mut last = self.stride.branch_point(&problem, &end_point, special)?;
         if let Some(Located { cut: Cut::Exit(exit @ Exit::Tangent { .. }), .. }) = first {
-            // The impact that is none has no saltation matrix; the orbit without it has one.
+            // An impact that has become a touch has no saltation matrix. The orbit without it has a matrix.
             let (cycle, machine, _) = problem.unpack(&end_point.unknowns)?;
             if self.stride.held.is_none()
                 && let Some(without) = switch::beyond(exit, &cycle, &machine)
@@ -364,7 +364,7 @@ impl Walk<'_> {
         let grown = if end_point.steps <= 4 { 1.5 } else { 1.0 };
         drop(problem);
         self.points.extend(points.into_iter().map(|(_, point)| point));
-        // A seam of the cam that is no corner is passed without a word.
+        // A seam of the cam that is no corner gives no point of the branch.
         let silent = matches!(&first, Some(Located { cut: Cut::Exit(Exit::Corner { .. }), .. })) && special.is_none();
         if !silent {
             self.points.push(last);
@@ -401,13 +401,13 @@ impl Walk<'_> {
             other => other,
         };
         let exhausted = if matches!(exit, Exit::Corner { .. }) { End::Lost } else { End::Graze };
-        // Straight back where it came from: the direction could not be told.
+        // The branch would go straight back: its direction could not be determined.
         if self.fresh.is_some() {
             return Ok(Some(exhausted));
         }
         let Some(beyond) = switch::beyond(exit, &cycle, &machine) else { return Ok(Some(End::Graze)) };
         let ended = if matches!(exit, Exit::Corner { .. }) { End::Corner } else { End::Graze };
-        // A flight that meets the cam in a touch alone is no orbit of impacts.
+        // A cycle whose only contact with the cam is a touch is no orbit with impacts.
         let hits = |held: &Held| !held.orbit(&beyond).impacts.is_empty();
         let held = match self.stride.held.map(|held| switch::held_beyond(held, exit).filter(hits)) {
             Some(None) => return Ok(Some(ended)),

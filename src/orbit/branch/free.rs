@@ -1,7 +1,7 @@
 //! Branches of orbits without impacts, and the graze where the cam reaches the follower.
 //!
-//! Away from the cam nothing forces the follower: the cam moves, and positions are in fixed coordinates. So the follower rests at its
-//! equilibrium at any speed, and the cam touches it where the cam's top is as high:
+//! Away from the cam no force on the follower depends on time, since only the cam moves and positions are in fixed coordinates. So the
+//! follower rests at its equilibrium at any speed, and the cam touches it where the cam's top is as high:
 //!
 //! ```text
 //! gap = q_e - max c = 0        q_e = rest - g/omega0^2
@@ -34,7 +34,7 @@ struct Rest {
 }
 
 impl Rest {
-    /// The follower at rest near `state`; `None` where it falls.
+    /// The follower at rest near `state`; `None` if it falls.
     fn at(family: &Family, value: f64, state: State) -> Result<Option<Self>, FamilyError> {
         let (machine, rpm) = family.machine(&[value])?;
         let orbit = at_rest(&machine, state);
@@ -142,7 +142,7 @@ pub(super) fn onward(
     let trial = TRIAL * (following.range[1] - following.range[0]);
     let is_clear =
         |direction: &f64| Rest::at(family, value + direction * trial, state).is_ok_and(|rest| Rest::is_clear(&rest));
-    // A follower without damping may swing from touch to touch as well.
+    // A follower without damping may also swing from touch to touch.
     let is_at_rest = rest.gap.abs() <= tolerance::CYCLE_CLOSED.value * lift_size(&rest.machine);
     let Some(direction) = [-1.0, 1.0].into_iter().find(is_clear).filter(|_| is_at_rest) else {
         return Ok((points, end));
@@ -189,7 +189,7 @@ pub(crate) fn touches(
     Ok(curves)
 }
 
-/// Returns the curve of one of these grazes.
+/// Returns the curve of a graze of an orbit without impacts.
 fn touching(
     family: &Family,
     value: f64,

@@ -9,7 +9,7 @@ use crate::tolerance;
 /// Least gap, m, of the flight that starts at impact `index`, near an angle `turned`, rad, after its start; and where, rad
 /// after its start.
 ///
-/// `None` where the gap has no minimum there but falls to one of the flight's ends.
+/// `None` if the gap has no minimum there but falls to one of the flight's ends.
 pub(super) fn least(cycle: &Cycle, machine: &Machine, index: usize, turned: f64) -> Option<(f64, f64)> {
     /// First stride of the walk to the minimum, relative to the way to the nearer end of the flight. It is short enough to see a short hop
     /// in front of a long flight.
@@ -58,7 +58,7 @@ pub(super) fn least(cycle: &Cycle, machine: &Machine, index: usize, turned: f64)
         }
     }
     let at = 0.5 * (low + high);
-    // Sections see half the digits of where it is; the relative velocity, which is 0 there, sees all of them.
+    // Golden sections give half of the digits of the place. The relative velocity, which is 0 there, gives all of them.
     let mut sharp = at;
     for _ in 0..4 {
         let angle = (from + sharp).rem_euclid(TAU);

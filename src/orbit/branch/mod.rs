@@ -1,14 +1,14 @@
 //! Branches: periodic orbits followed in one number of the model, round folds and through corners, with the points located
 //! where something changes.
 //!
-//! Where an impact passes a corner, the orbits beyond obey the law of the next segment. Where a flight touches the cam,
-//! the orbits beyond have one more impact, and where an impact becomes a touch, one less. Either way the branch goes on
-//! with the equations of another cycle: it is continuous, but its direction may jump.
+//! Where an impact passes a corner, the orbits beyond obey the law of the next segment. Where a flight touches the cam, the orbits beyond
+//! have one more impact, and where an impact becomes a touch, one less. Either way the branch continues with the equations of another
+//! cycle: it is continuous, but its direction may jump.
 //!
-//! | module | what it holds |
+//! | module | contents |
 //! |---|---|
-//! | `find` | the branches through given orbits and what branches off; those of a range of speeds, and its corner impacts |
-//! | `doubled` | orbits of twice the period next to a special point, and those of a branch that crosses |
+//! | `find` | the branches through given orbits and what branches off; the branches of a range of speeds, and their special points |
+//! | `doubled` | orbits of twice the period next to a special point, and orbits of a branch that crosses |
 //! | `follow` | one direction of a branch, step by step; `chatter` where the follower sticks |
 //! | `problem`, `constraint` | the equations, with numbers of the model free; the condition added along a curve in two of them |
 //! | `step_event`, `least_gap`, `period_halving` | events within a step: corners, folds, flips; grazes; the end of a doubled period |
@@ -108,9 +108,9 @@ document!(Special as it {
 #[derive(Clone, Debug, PartialEq)]
 #[doc(hidden)]
 pub struct OnCurve {
-    /// Cam angle of the impact on the corner, or of the touch; for other events that of the first impact; rad.
+    /// Cam angle, rad, of the impact on the corner, or of the touch; for other events, of the first impact.
     pub cam_angle: f64,
-    /// Matrix of one period. For a corner impact: that with the law before the corner and that with the law after it.
+    /// Matrix of one period. For a corner impact, the matrix with the law before the corner, then the matrix with the law after it.
     pub sides: Vec<Matrix2<f64>>,
     /// Class of the graze of an orbit without impacts.
     pub class: Option<GrazeClass>,
@@ -121,9 +121,9 @@ pub struct OnCurve {
 pub enum End {
     /// The end of the range.
     Range,
-    /// The start of the branch again.
+    /// The start of the branch again: the branch is closed.
     Closed,
-    /// The model allows no further value.
+    /// An edge of the values that the model allows.
     Edge {
         /// Whether the last value is the largest allowed; otherwise it is the smallest.
         largest: bool,
@@ -136,9 +136,9 @@ pub enum End {
     Endless,
     /// An impact on the way to a rest at a corner, where the curve has a kink.
     Kink,
-    /// The follower goes another way to its rest, or does not rest.
+    /// Another way of the follower to its rest, or no rest at all.
     OtherWay,
-    /// Orbits of many amplitudes at one value, as far as a few steps show: it changes no more than rounding.
+    /// A continuum: orbits of many amplitudes at one value, which changes by no more than rounding over a few steps.
     Continuum,
     /// The requested number of points.
     MostPoints,
@@ -146,7 +146,7 @@ pub enum End {
     Chatter,
     /// The end of a range of speeds, for an orbit without impacts: its distance from the cam is the same at each speed.
     Clear,
-    /// No spring holds the follower above the cam any more.
+    /// A fall of the follower, which no spring supports above the cam any more.
     Falls,
     /// An impact of the orbit at a corner, beyond which the curve does not exist.
     Corner,
@@ -156,7 +156,7 @@ pub enum End {
     Shorter,
     /// An impact at a corner where the cam's velocity jumps: the map has a gap there.
     Gap,
-    /// No orbit was found nearby.
+    /// A loss of the branch: no orbit was found nearby.
     Lost,
 }
 
@@ -212,7 +212,7 @@ type HalfBranch = (Vec<BranchPoint>, End);
 pub struct Branch {
     /// The orbits in order along it.
     pub points: Vec<BranchPoint>,
-    /// Why it starts and ends where it does.
+    /// Reasons why it starts and ends where it does.
     pub ends: [End; 2],
 }
 
@@ -223,13 +223,13 @@ document!(Branch as it {
 });
 
 impl Branch {
-    /// The branch through `orbit`, an orbit of `model` at `rpm`.
+    /// Follows the branch through `orbit`, an orbit of `model` at `rpm`.
     pub fn through(model: &Model, rpm: f64, orbit: &PeriodicOrbit, following: &Following) -> Result<Self, OrbitError> {
         let family = Family::new(model, rpm, vec![following.parameter.clone()])?;
         Self::at(&family, following.parameter.value(model, rpm).unwrap_or(f64::NAN), orbit, following)
     }
 
-    /// The branch through `orbit`, of the machine at `value` of the followed parameter, the one free number of `family`.
+    /// Follows the branch through `orbit`, of the machine at `value` of the followed parameter, the one free number of `family`.
     pub(crate) fn at(
         family: &Family,
         value: f64,
@@ -252,8 +252,8 @@ impl Branch {
         Ok(Self::joined([half(-1.0)?, half(1.0)?], middle))
     }
 
-    /// The curve, in the plane of the speed and the followed parameter, of the event at `point`, a special point of a branch in the speed.
-    /// `None` where it is no such event. Speeds are measured against the range `speeds`, rpm.
+    /// Follows the curve of the event at `point`, a special point of a branch in the speed, in the plane of the speed and the followed
+    /// parameter. `None` if the point has no such curve. Speeds are measured against the range `speeds`, rpm.
     pub fn of_event(
         model: &Model,
         point: &BranchPoint,
@@ -294,15 +294,15 @@ impl Branch {
         Self { points, ends: [first, last] }
     }
 
-    /// Lines of the impacts along the branch, for orbits that do not stick. Each impact is followed from orbit to orbit, whatever its
-    /// number from angle 0 on.
+    /// Lines of the impacts along the branch, for orbits that do not stick. Each impact is followed from orbit to orbit, even if its index
+    /// from angle 0 changes.
     ///
     /// A line ends where the number of impacts or the stability changes, or where the impact passes angle 0.
     pub fn lines(&self) -> Vec<ImpactLine> {
         let (mut done, mut open) = (Vec::new(), Vec::<(usize, ImpactLine)>::new());
         for pair in self.points.windows(2) {
             let [one, other] = pair else { continue };
-            // A piece takes the stability of its end that is no special point.
+            // A piece has the stability of the end that is not a special point.
             let stability = if one.special.is_some() { other } else { one }.orbit.judgement.stability;
             let mut onward = Vec::new();
             for (from, to) in special::same_impacts(&one.orbit, &other.orbit) {
@@ -335,7 +335,7 @@ impl Branch {
         self.points.windows(2).filter(spans).any(|pair| {
             let nearest =
                 if (pair[0].value - value).abs() < (pair[1].value - value).abs() { &pair[0] } else { &pair[1] };
-            // No farther than from one point to the next: where branches meet, others are near.
+            // The distance between neighbouring points is the bound: where branches meet, orbits of other branches are near.
             let stride = special::apart(&pair[0].orbit, &pair[1].orbit).map_or(f64::INFINITY, |(stride, _)| stride);
             let reach = (stride + tolerance::SAME_ORBIT.value).min(tolerance::NEIGHBOURING.value);
             match (&nearest.orbit.course, &orbit.course) {

@@ -19,7 +19,7 @@ pub(super) struct Flipped {
     pub(super) residual: f64,
 }
 
-/// Angle from the first half of a cycle to its second, rad, at the first impact; `None` where the halves do not correspond.
+/// Angle from the first half of a cycle to its second, rad, at the first impact; `None` if the halves do not correspond.
 pub(super) fn apart(cycle: &Cycle) -> Option<f64> {
     let other = cycle.second_half(0)?;
     Some(cycle.impacts[other].cam_angle - cycle.impacts[0].cam_angle)
@@ -36,7 +36,7 @@ fn mean(cycle: &Cycle) -> Cycle {
     Cycle { revolutions: cycle.revolutions / 2, impacts }
 }
 
-/// Locates the flip between two cycles, at two values of the parameter, whose halves have changed places. `None` where there is no flip
+/// Locates the flip between two cycles, at two values of the parameter, whose halves have changed places. `None` if there is no flip
 /// between them.
 pub(super) fn flip(machine_at: impl Fn(f64) -> Option<Machine>, ends: [(f64, &Cycle); 2]) -> Option<Flipped> {
     /// Most steps. The guess is a step away, and secants need six or so.
@@ -52,7 +52,7 @@ pub(super) fn flip(machine_at: impl Fn(f64) -> Option<Machine>, ends: [(f64, &Cy
         let left = cycle.missing(&machine, -1.0);
         Some((cycle, left))
     };
-    // The parameter turns round at the flip: it is as far from it as the halves are apart, squared.
+    // The parameter turns round at the flip: its distance from there grows as the square of the halves' distance from each other.
     let span = (second - first).abs().max(tolerance::SPECIAL_POINT.value * first.abs());
     let mut cycle = mean(one);
     let mut value = |parameter: f64| {

@@ -26,8 +26,8 @@ pub(crate) struct Event<'a> {
 }
 
 impl<'a> Event<'a> {
-    /// The event at a special point of a branch in a number, with its machine. `range` is that of the number. `None` where the point has no
-    /// equations of its own.
+    /// Builds the event at a special point of a branch in a number, with its machine; `range` is the range of the number. `None` if the
+    /// point has no equations of its own.
     pub fn of_point(machine: &'a Machine, free: &Parameter, range: [f64; 2], point: &BranchPoint) -> Option<Self> {
         let Course::Impacts(cycle) = &point.orbit.course else { return None };
         let (cycle, held) = switch::held(point.special?.kind, cycle, machine)?;
@@ -41,12 +41,12 @@ impl<'a> Event<'a> {
         Self { machine, rpm, free: Parameter::Speed, value: rpm, span: rpm, cycle, held }
     }
 
-    /// Speed, rpm, or value of the free number of the event in another machine. `None` where Newton's method finds none nearby.
+    /// Speed, rpm, or value of the free number of the event in another machine. `None` if Newton's method finds none nearby.
     pub fn moved(&self, model: &Model, cam: &Cam) -> Option<f64> {
         self.solved(model, cam).map(|(_, value)| value)
     }
 
-    /// Cycle and value of the event in another machine, with its own as guesses.
+    /// Cycle and value of the event in another machine, with those of the event's own machine as guesses.
     pub fn solved(&self, model: &Model, cam: &Cam) -> Option<(Cycle, f64)> {
         /// Number of times that an impact may turn out to be on another segment.
         const SEGMENTS: usize = 6;
@@ -59,7 +59,7 @@ impl<'a> Event<'a> {
             let there = family.machine(&[next]).ok()?.0;
             let (named, _) = renamed(&found, held, &there, &there)?;
             let is_there = named.impacts.iter().zip(&cycle.impacts).all(|(one, two)| one.segment == two.segment);
-            // Where segments meet, each may say that it is on the other.
+            // Where two segments meet, each may pass the impact to the other.
             let is_between = (next - value).abs() <= tolerance::CYCLE_CLOSED.value * self.span;
             (cycle, value) = (named, next);
             if is_there || is_between {
@@ -78,14 +78,14 @@ fn renamed(cycle: &Cycle, held: Held, here: &Machine, there: &Machine) -> Option
     for (index, impact) in renamed.impacts.iter_mut().enumerate() {
         match held {
             Held::Corner(Pinned { impact: pinned, at_end }) if pinned == index => {
-                // At the start of the segment behind the same corner.
+                // The impact goes to the start of the segment behind the same corner.
                 let segment = &from[impact.segment];
                 let corner = within_a_turn(if at_end { segment.end } else { segment.start });
                 let order = here.cam().corners().iter().copied().find(|other| other.angle == corner)?.jump_order;
                 let alike = there.cam().corners().iter().copied().filter(|other| other.jump_order == order);
                 let nearest = alike.min_by(|one, two| apart(one.angle, corner).total_cmp(&apart(two.angle, corner)));
                 let nearest = nearest.filter(|one| apart(one.angle, corner) <= tolerance::NEIGHBOURING.value)?;
-                // The corner may be on the other side of angle 0 there: the impact stays where it is, in another revolution.
+                // The corner may be on the other side of angle 0 there. Then the impact keeps its place, in another revolution.
                 let turns = ((nearest.angle - impact.cam_angle) / TAU).round();
                 impact.cam_angle += TAU * turns;
                 impact.revolution -= turns as i64;

@@ -24,7 +24,7 @@ impl BranchScales {
         Self { lift, velocity: lift.max(fastest / machine.angular_velocity()) }
     }
 
-    /// Converts a point of a curve of cycles of so many impacts from these units to those of `other`.
+    /// Converts a point of a curve of cycles with `impacts` impacts from these units to the units `other`.
     pub fn convert(&self, point: &mut CurvePoint, impacts: usize, other: Self) {
         let factor = self.velocity / other.velocity;
         for index in (1..2 * impacts).step_by(2) {
@@ -85,7 +85,7 @@ impl<'a> Problem<'a> {
         cycle
     }
 
-    /// Scales the residual of the cycle by the lift, and appends that of the held condition, if any.
+    /// Scales the residual of the cycle by the lift, and appends the residual of the held condition, if any.
     fn with_held(&self, of_cycle: DVector<f64>, cycle: &Cycle, machine: &Machine) -> DVector<f64> {
         let of_cycle = of_cycle / self.units.lift;
         match self.held {
@@ -133,7 +133,7 @@ impl Equations for Problem<'_> {
                 moved[column] += step;
                 self.residual(&moved)
             };
-            // At the edge of what the model allows, on its other side.
+            // At the edge of the allowed values, the difference is taken on the other side.
             let derivative = match moved(DIFFERENCE) {
                 Ok(ahead) => (ahead - &residual) / DIFFERENCE,
                 Err(_) => (&residual - moved(-DIFFERENCE)?) / DIFFERENCE,

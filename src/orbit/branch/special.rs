@@ -39,7 +39,7 @@ pub enum SpecialKind {
     /// Along a curve of corner impacts or grazes: a fold or a flip meets the curve. A multiplier of the map on one side of the corner, or
     /// of the orbit without the touch, passes 1 or -1.
     Type {
-        /// Whether that side is the one after the corner; `None` for a graze.
+        /// Whether it is the map after the corner; `None` for a graze.
         after_corner: Option<bool>,
         /// 1 or -1.
         multiplier: f64,
@@ -121,8 +121,8 @@ impl SpecialKind {
     }
 }
 
-/// Returns the orbit at a special point with its verdict: neutral where the equations of the point make a multiplier 1 or -1, whichever
-/// side of the circle rounding has put it on. The other multiplier has the size of det M, which is 1 at most.
+/// Returns the orbit at a special point with its verdict. The verdict is neutral if the equations of the point make a multiplier 1 or -1,
+/// on whichever side of the circle rounding puts it. The other multiplier has the size of det M, which is 1 at most.
 pub(super) fn judged(orbit: PeriodicOrbit, special: Option<Special>) -> PeriodicOrbit {
     let on_circle = special
         .is_some_and(|special| matches!(special.kind, SpecialKind::Fold | SpecialKind::Flip | SpecialKind::Branching));
@@ -142,8 +142,8 @@ pub struct Special {
     pub residual: f64,
 }
 
-/// Distance of two neighbours on a branch, rad, and the shift from the numbers of one's impacts, from angle 0 on, to those of the other.
-/// `None` where they have different numbers of revolutions or impacts, or stick.
+/// Distance of two neighbours on a branch, rad, and the shift between the indices of their impacts, counted from angle 0. `None` if they
+/// have different numbers of revolutions or impacts, or stick.
 ///
 /// The order in which impacts follow one another stays the same along a branch: the shift is the one that moves the impacts least.
 pub(super) fn apart(one: &PeriodicOrbit, other: &PeriodicOrbit) -> Option<(f64, usize)> {
@@ -167,8 +167,7 @@ pub(super) fn apart(one: &PeriodicOrbit, other: &PeriodicOrbit) -> Option<(f64, 
     all.min_by(|one, two| one.0.total_cmp(&two.0))
 }
 
-/// Pairs each impact of one orbit with that of its neighbour on a branch, by their numbers from angle 0 on. Empty where they cannot be
-/// matched.
+/// Pairs each impact of one orbit with that of its neighbour on a branch, by their indices from angle 0. Empty if they cannot be matched.
 pub(super) fn same_impacts(one: &PeriodicOrbit, other: &PeriodicOrbit) -> Vec<(usize, usize)> {
     let count = one.impacts().count();
     let further = apart(one, other).map(|(_, further)| further);

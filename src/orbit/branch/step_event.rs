@@ -74,8 +74,8 @@ impl Stride<'_> {
         unknowns[unknowns.len() - 1] * self.spans[self.spans.len() - 1]
     }
 
-    /// Whether the value stays the same all the way to `next`, as along a continuum of orbits. At a fold it turns back at one place, and
-    /// changes on both sides.
+    /// Whether the value stays the same all the way to `next`, as along a continuum of orbits. At a fold the value changes on both sides of
+    /// the point where it turns back.
     pub(super) fn stands(&self, next: &CurvePoint) -> bool {
         let slope = |point: &CurvePoint| point.tangent[point.tangent.len() - 1].abs();
         self.held.is_none() && [&self.from, next].into_iter().all(|point| slope(point) <= tolerance::STANDING.value)
@@ -186,7 +186,7 @@ impl Stride<'_> {
                 sides.get(side).ok_or(NoPoint::NotClosed)?.missing(&machine, multiplier)
             }
             Cut::Cusp => {
-                // The two numbers go one way along the curve, more slowly towards the cusp, and back from there.
+                // Along the curve the two numbers move one way, more slowly towards the cusp, and back from there.
                 let numbers = |tangent: &DVector<f64>| tangent.rows(tangent.len() - 2, 2).into_owned();
                 numbers(&at.tangent).dot(&numbers(&self.from.tangent).normalize())
             }
@@ -205,13 +205,13 @@ impl Stride<'_> {
             return Err(NoPoint::NotClosed);
         }
         let value = |step: f64| match at(step) {
-            // As near as the singular equations let a point be found.
+            // The singular equations give no nearer point.
             Err(_) if cut == Cut::Branching => Ok(None),
             reached => reached.map(|seen| Some((seen.value, seen.with))),
         };
         let (ends, best) = regula_falsi([start, end], tolerance::ROOT_WIDTH.value * step, value)?;
         let residual = best.value.abs();
-        // Along the curve the parameter rounds as well.
+        // The parameter is rounded along the curve as well.
         let [low, high] = ends.map(|end| self.value(&end.with.unknowns));
         let between = self.value(&best.with.unknowns);
         let bracket = [low.min(high).min(between), low.max(high).max(between)];
@@ -256,7 +256,7 @@ impl Stride<'_> {
             }
             Cut::Exit(exit) => match (exit, self.order(exit, &cycle, &machine)) {
                 (Exit::Corner { .. }, None) => return Ok(None),
-                // Contacts are numbered as those of the orbit, from angle 0 on.
+                // Impacts are numbered as in the orbit, from angle 0.
                 (_, order) => match switch::kind(exit, &cycle, &machine, order.unwrap_or(0)) {
                     SpecialKind::Corner { impact, segment, jump_order } => {
                         SpecialKind::Corner { impact: cycle.place_in_order(impact), segment, jump_order }
@@ -268,7 +268,7 @@ impl Stride<'_> {
         Ok(Some(Special { kind, bracket: located.bracket, residual: located.residual }))
     }
 
-    /// Order of the corner by which an impact leaves its segment; `None` where it is no corner.
+    /// Order of the corner by which an impact leaves its segment; `None` if it is no corner.
     pub(super) fn order(&self, exit: Exit, cycle: &Cycle, machine: &Machine) -> Option<usize> {
         let Exit::Corner { impact, past_end } = exit else { return None };
         let segment = cycle.impacts[impact].segment;

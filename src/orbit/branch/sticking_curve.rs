@@ -84,7 +84,7 @@ impl Walk<'_> {
                     if step >= tolerance::SHORTEST_STEP.value * longest {
                         continue;
                     }
-                    // Each turn adds a point, of which there are so many at most.
+                    // Each turn adds a point, and the number of points is limited.
                     if !self.turn() {
                         let end = self.stopped(&error);
                         return (self.points, end);
@@ -109,7 +109,7 @@ impl Walk<'_> {
             let (unknowns, reached) = self.rest.refined(&next.unknowns, &next.tangent)?;
             let (machine, _) = self.rest.machine(&unknowns)?;
             let regions = regions(&machine, &reached);
-            // Past a kink it may be on another part of the curve.
+            // Beyond a kink, the solution may be on another part of the curve.
             if regions.iter().zip(&self.regions).any(|(one, other)| one != other) {
                 return Err(NoPoint::NotClosed);
             }
@@ -119,7 +119,7 @@ impl Walk<'_> {
             self.rest.contact = contact;
             return Ok(None);
         }
-        // Two places at once: up to there, and on from there with the other.
+        // Two places are first at once: this one up to there, and the other one from there.
         let is_beyond = |step: f64| {
             let (machine, _) = self.rest.machine(&reach(step)?.unknowns)?;
             Ok::<_, NoPoint<Nowhere>>(self.rest.contact.behind(&machine) > 0.0)
@@ -132,7 +132,8 @@ impl Walk<'_> {
         let contact = Contact::first(&self.rest.machine(&beyond.unknowns)?.0).ok_or(Nowhere::OtherWay)?;
         let other = Rest { contact, ..self.rest };
         let tangent = curve::first_tangent(&other, &beyond.unknowns)?;
-        // One way along its curve the follower leaves the cam there first, the other way where it did before.
+        // In one direction along the other curve the follower leaves the cam first at the other place, in the opposite direction at this
+        // one.
         let behind = [TRIAL, -TRIAL].map(|step| {
             let machine = other.machine(&(&beyond.unknowns + &tangent * step));
             machine.map_or(f64::INFINITY, |(machine, _)| contact.behind(&machine))
@@ -143,8 +144,8 @@ impl Walk<'_> {
         Ok(None)
     }
 
-    /// Goes on from a kink, where an impact on the way to the rest is at a corner. On a small circle around it the equation changes its
-    /// sign where the curve came from and where it goes on, in whatever direction. Returns whether the curve goes on.
+    /// Continues from a kink, where an impact on the way to the rest is at a corner. On a small circle around the kink the equation changes
+    /// its sign where the curve arrives and where it leaves, in whatever direction. Returns whether the curve continues.
     fn turn(&mut self) -> bool {
         let Some(((kind, residual), on)) = self.at_corner().zip(self.beyond_kink()) else { return false };
         let Ok(point) = self.rest.branch_point(&on.unknowns, &on.tangent, self.revolutions, None) else { return false };
@@ -159,21 +160,20 @@ impl Walk<'_> {
         true
     }
 
-    /// Point where the curve goes on, on the first of three circles that distinguishes it from where it came.
+    /// Point where the curve leaves a kink, on the first of three circles on which it is distinct from the curve's arrival.
     fn beyond_kink(&self) -> Option<CurvePoint> {
         [0.1, 0.01, 1.0].into_iter().find_map(|part| self.on_circle(part * AROUND * self.following.longest_step))
     }
 
     fn on_circle(&self, radius: f64) -> Option<CurvePoint> {
-        /// Least angle from where the curve came from, rad, and ratio of each next angle to the one before: both ways may be close
-        /// together.
+        /// Least angle from the curve's arrival, rad, and ratio of each angle to the one before: both ways may be close together.
         const LEAST: f64 = 0.002;
         const RATIO: f64 = 1.5;
         let kink = &self.from.unknowns;
         let away = |point: &BranchPoint| {
             DVector::from_vec(vec![point.rpm / self.rest.spans[0], point.value / self.rest.spans[1]]) - kink
         };
-        // Where it came from, in a straight line from the last point outside of the circle.
+        // Direction from the kink back to the last point outside of the circle.
         let back = self.points.iter().rev().map(away).find(|away| away.norm() >= radius)?.normalize();
         let direction = |turn: f64| {
             let (sin, cos) = elementary::sin_cos(turn);
@@ -210,7 +210,7 @@ impl Walk<'_> {
         (off < tolerance::KINK.value).then_some((kind, off))
     }
 
-    /// End of the curve where no step leads on.
+    /// End of the curve if no step leads further.
     fn stopped(&self, error: &NoPoint<Nowhere>) -> End {
         let reached = self.rest.reached(&self.from.unknowns);
         match () {
@@ -221,7 +221,7 @@ impl Walk<'_> {
         }
     }
 
-    /// Adds the point at a value of the second number.
+    /// Adds the point of the curve at a value of the second number.
     fn end_at(&mut self, bound: f64) -> Result<(), NoPoint<Nowhere>> {
         let slope = self.from.tangent[0] / self.from.tangent[1];
         let mut guess = self.from.unknowns.clone();
@@ -247,22 +247,22 @@ impl Walk<'_> {
     }
 }
 
-/// The corners at which the acceleration of an impact jumps, and with it the slope of a curve.
+/// Corners at which the velocity or the acceleration of the lift jumps. An impact there makes a kink in a curve.
 fn kinks(machine: &Machine) -> impl Iterator<Item = Corner> {
     machine.cam().corners().iter().copied().filter(|corner| corner.jump_order <= 2)
 }
 
-/// The one of two ways, as angles from where a curve came from, that leads on: the wider. None where the other is not much nearer to where it
-/// came from, so that either may be the one that it came by.
+/// Chooses the way that leads on from two ways, given as angles from the curve's arrival: the wider one. `None` unless the other is much
+/// nearer to the arrival, since then either may be the way back.
 pub fn onward(mut ways: Vec<f64>) -> Option<f64> {
-    /// Most of the wider angle that the other is.
+    /// Largest ratio of the other angle to the wider one.
     const CLOSER: f64 = 0.2;
     ways.sort_by(|one, two| one.abs().total_cmp(&two.abs()));
     let [came, onward] = ways[..] else { return None };
     (came.abs() <= CLOSER * onward.abs()).then_some(onward)
 }
 
-/// The impacts that are tracked one by one; those after them are at no corner but the last.
+/// Impacts that are tracked one by one. Impacts after these are at no corner except the last one.
 fn told(reached: &Reached) -> &[Event] {
     let told = if let Contact::Resting { impact, .. } = reached.contact { impact } else { 0 };
     &reached.impacts[..told.min(reached.impacts.len())]
@@ -283,13 +283,13 @@ impl Rest<'_> {
 
     /// Solves for the point of the curve across `along`, from one near it.
     fn settled(&self, near: &DVector<f64>, along: &DVector<f64>) -> Result<CurvePoint, NoPoint<Nowhere>> {
-        /// Largest difference, in spans, between the points that impacts give.
+        /// Largest difference, in spans, between the points that different impacts give.
         const MOVED: f64 = 1e-4;
         curve::closed(self, &(near - along * MOVED), along, MOVED, near.clone())
     }
 
     /// Refines the point across `along`, near one, by later and later impacts, until the last one is used or the point no longer moves.
-    /// Also returns the evaluation there. An error where the next impact gives another point.
+    /// Also returns the evaluation there. Fails if the next impact gives another point.
     fn refined(&self, near: &DVector<f64>, along: &DVector<f64>) -> Result<(DVector<f64>, Reached), NoPoint<Nowhere>> {
         /// Most steps from one impact to a later one.
         const STEPS: usize = 50;
@@ -308,7 +308,7 @@ impl Rest<'_> {
             reached = later.reached(&next.unknowns)?;
             unknowns = next.unknowns;
         }
-        // The roundings of a run grow from impact to impact as well, and what is left of them is no curve.
+        // Rounding errors of a run grow from impact to impact as well. A point that still moves because of them is not on the curve.
         if moved <= tolerance::SAME_ORBIT.value { Ok((unknowns, reached)) } else { Err(NoPoint::NotClosed) }
     }
 

@@ -1,19 +1,19 @@
 //! Events of a follower on the cam: where it first leaves the cam, and where it no longer comes to rest on it. Each is one equation in two
 //! numbers of the model.
 //!
-//! Detachment: the acceleration of the gap of a follower that moves with the cam is 0 where it is greatest. The place is kept until another
-//! is first.
+//! Detachment: for a follower that moves with the cam, the greatest acceleration of the gap is 0. Its place is kept until another place
+//! becomes the first.
 //!
-//! Onset of resting: the infinitely many impacts after a release end just where the cam releases the follower. Where this is a corner, the
-//! law before it is continued, and the impacts end on that. Where the release is smooth, the gap's acceleration is -J tau at a time tau
-//! before, and impacts shrink towards it self-similarly: from tau to (1 - d) tau each, at
+//! Onset of resting: the infinitely many impacts after a release end just where the cam releases the follower. If this is a corner, the law
+//! before it is continued, and the impacts end on the continued law. If the release is smooth, the gap's acceleration is -J tau at a time
+//! tau before, and impacts shrink towards it self-similarly: from tau to (1 - d) tau each, at
 //!
 //! ```text
 //! u = rho J tau^2,   rho = d/2 - d^2/6 = r (d/2 - d^2/3)/(1 - d)^2
 //! ```
 //!
-//! A faster follower passes, a slower one rests. The error of this law at an impact is of the size tau^2, and deviations from rho grow from
-//! one impact to the next. So a later impact locates the event better, but needs a nearer start.
+//! A faster follower passes the place, a slower one rests. The error of this law at an impact is of the size tau^2, and deviations from rho
+//! grow from one impact to the next. So a later impact locates the event better, but needs a nearer start.
 
 use std::convert::Infallible;
 use std::f64::consts::TAU;
@@ -45,10 +45,10 @@ pub(super) const MANY_IMPACTS: usize = 20_000;
 /// Event that a curve follows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Contact {
-    /// The follower leaves the cam.
+    /// Detachment of the follower at a place.
     Detachment(Place),
-    /// The follower flies from one place and comes to rest at another, or the same, after so many rad. The impact of this number on the way
-    /// shows where the impacts end.
+    /// Flight of the follower from one place to a rest at another, or the same, after `turned`, rad. The impact with index `impact` on the
+    /// way shows where the impacts end.
     Resting { from: Place, to: Place, turned: f64, impact: usize },
 }
 
@@ -67,14 +67,14 @@ pub(super) struct Rest<'a> {
     pub(super) contact: Contact,
 }
 
-/// Greatest acceleration of the gap over omega^2, m/rad^2, of all wanted places, and its place.
+/// Greatest acceleration of the gap over omega^2, m/rad^2, among the wanted places, and its place.
 fn greatest(machine: &Machine, is_wanted: impl Fn(Place) -> bool) -> Option<(f64, Place)> {
-    /// Places of a segment; between two of them designed cams have one extreme at most.
+    /// Samples of a segment; between two of them designed cams have one extreme at most.
     const SAMPLES: usize = 64;
     let (cam, segments) = (machine.cam(), machine.cam().segments());
     let mut jumps = vec![false; segments.len()];
     cam.corners().iter().filter(|corner| corner.jump_order <= 2).for_each(|corner| jumps[corner.segment] = true);
-    // On a dwell that a slack spring does not press on it is 0 at every speed.
+    // On a dwell on which a slack spring does not press, the acceleration is 0 at every speed.
     let is_slack = |segment: &Segment| {
         let lift = segment.law.lift(segment.start);
         segment.bounds.slope == [0.0; 2] && machine.lifting(&lift).abs() <= machine.lifting_rate(&lift).1
@@ -90,7 +90,7 @@ fn greatest(machine: &Machine, is_wanted: impl Fn(Place) -> bool) -> Option<(f64
             }
         };
         let rises = |angle: f64| machine.lifting_rate(&lift(angle)).0 > 0.0;
-        // Where it jumps either side may be the greatest; elsewhere segments meet in the middle of a rise or a fall, or at the top of one.
+        // At a jump either side may be the greatest. Elsewhere segments meet within a rise or a fall, or at a maximum.
         let next = (index + 1) % segments.len();
         let rises_behind = machine.lifting_rate(&segments[next].law.lift(segments[next].start)).0 > 0.0;
         if is_slack(segment) {
@@ -113,8 +113,8 @@ fn greatest(machine: &Machine, is_wanted: impl Fn(Place) -> bool) -> Option<(f64
     best
 }
 
-/// Place where the cam would release the follower by the law of a segment, rad, near `cam_angle`, and the lift there. `None` where it does
-/// not.
+/// Cam angle, rad, near `cam_angle` where the cam would release the follower by the law of a segment, and the lift there. `None` if it
+/// would not.
 fn lets_go(machine: &Machine, segment: &Segment, mut cam_angle: f64) -> Option<(f64, Lift)> {
     /// Most Newton steps. They double the digits of a place that is known to a step along the curve.
     const STEPS: usize = 20;
@@ -139,7 +139,7 @@ impl Place {
         Self { segment: event.segment, cam_angle: event.cam_angle, is_corner }
     }
 
-    /// The place on another machine. `None` where that cam does not release the follower nearby.
+    /// The place on another machine. `None` if that cam does not release the follower nearby.
     fn on(self, machine: &Machine) -> Option<Self> {
         /// Number of segments that the place may move to.
         const SEGMENTS: usize = 3;
@@ -156,15 +156,15 @@ impl Place {
             if (segment.start..=segment.end).contains(&on.cam_angle) {
                 return Some(on);
             }
-            // It has gone over to another segment, or past angle 0.
+            // The place has moved to another segment, or past angle 0.
             on.cam_angle = within_a_turn(on.cam_angle);
             on.segment = cam.segment_at(on.cam_angle);
         }
         None
     }
 
-    /// Angle by which infinitely many impacts from `last` on, with `left` to go to here, rad, end beyond this place. `None` where they do
-    /// not arrive here by the law before.
+    /// Angle, rad, by which the infinitely many impacts from `last` on end beyond this place, which is `left`, rad, ahead of `last`. `None`
+    /// if they do not arrive here by the law before.
     fn passed(self, machine: &Machine, last: &Event, left: f64) -> Option<f64> {
         if self.is_corner {
             return self.rest_beyond(machine, last, left).map(|turn| turn - left);
@@ -178,7 +178,7 @@ impl Place {
 
     /// Angle from `last` at which infinitely many impacts end, rad, by the law before the corner, continued past it.
     fn rest_beyond(self, machine: &Machine, last: &Event, left: f64) -> Option<f64> {
-        /// Length by which the law is continued, rad, where the segment behind is as long.
+        /// Largest length by which the law is continued, rad; it is at most half of the segment behind.
         const REACH: f64 = 0.05;
         let cam = machine.cam();
         let corner = cam.corners().iter().find(|corner| corner.segment == self.segment)?;
@@ -196,9 +196,9 @@ impl Place {
         rest
     }
 
-    /// How much later the cam would release the follower by the law of a segment, rad, and the lift there. Right behind a seam, as between
-    /// rows of a table, all impacts but the last follow the law of an earlier segment. `None` where this is not less than what an impact
-    /// has `left`.
+    /// Angle, rad, by which the cam would release the follower later by the law of a segment, and the lift there. Right behind a seam, as
+    /// between rows of a table, all impacts but the last follow the law of an earlier segment. `None` if the angle is not less than the
+    /// distance `left` from an impact to the place.
     fn by_law_of(self, machine: &Machine, segment: usize, left: f64) -> Option<(f64, Lift)> {
         let here = self.cam_angle + if segment > self.segment { TAU } else { 0.0 };
         let (cam_angle, lift) = lets_go(machine, &machine.cam().segments()[segment], here)?;
@@ -224,8 +224,8 @@ impl Contact {
         greatest(machine, |_| true).map(|(_, place)| Self::Detachment(place))
     }
 
-    /// Excess by which a follower is thrown off the cam at another place, in units of the cam's lift per radian squared: 0 or more, and 0
-    /// for a rest.
+    /// Excess of the greatest acceleration of the gap over the one at this place, in units of the cam's lift per radian squared; 0 for a
+    /// rest.
     pub(super) fn behind(self, machine: &Machine) -> f64 {
         let Self::Detachment(here) = self else { return 0.0 };
         let of = |found: Option<(f64, Place)>| found.map_or(f64::NEG_INFINITY, |(lifting, _)| lifting);
@@ -233,13 +233,13 @@ impl Contact {
         (first - here) / lift_size(machine)
     }
 
-    /// Whether a follower that leaves the cam leaves it first here, up to rounding. A cam that is its own mirror image is left at two
-    /// places at once all along a curve.
+    /// Whether this is the place where the follower first leaves the cam, up to rounding. On a cam that is its own mirror image, two places
+    /// are first at once all along a curve.
     pub(super) fn is_first(self, machine: &Machine) -> bool {
         self.behind(machine) <= tolerance::CYCLE_CLOSED.value
     }
 
-    /// Evaluates the event on a machine; `None` where the follower goes another way.
+    /// Evaluates the event on a machine; `None` if the follower goes another way.
     pub(super) fn reached(self, machine: &Machine) -> Option<Reached> {
         match self {
             Self::Detachment(place) => {
@@ -257,7 +257,8 @@ impl Contact {
                     to.passed(machine, event, turned - event.turned_since(from.cam_angle))
                 };
                 let last = impacts.len().checked_sub(1)?;
-                // Where it has gone over to a law before, as at a row of a table, the first after it that has not.
+                // An impact may have moved to the law of an earlier segment, as at a row of a table. Then the first later impact that has
+                // not is used.
                 let (impact, off) = (impact.min(last)..=last).find_map(|later| Some((later, passed(later)?)))?;
                 Some(Reached { off, contact: Self::Resting { from, to, turned, impact }, impacts })
             }
@@ -271,13 +272,13 @@ impl Contact {
         to.is_corner || !later.any(|event| turned - event.turned_since(from.cam_angle) > tolerance::CHATTER_LEFT.value)
     }
 
-    /// The event as two impacts locate it: the first of those near their end, and the last that is still on its way there. The first stays
-    /// the same over long steps along the curve. The last locates the end better, since the error of the equation shrinks from one impact
-    /// to the next. Before a corner there is no error, and both are the first.
+    /// Locates the event by two impacts: the first one near the end, and the last one that is still on its way there. The first stays the
+    /// same over long steps along the curve. The last locates the end better, since the error of the equation shrinks from one impact to
+    /// the next. Before a corner there is no error, and both are the first.
     pub(super) fn told(self, machine: &Machine, reached: &Reached) -> [Self; 2] {
         /// Distance from their end, rad, within which impacts nearly follow the known law.
         const ALIKE: f64 = 0.05;
-        /// Largest error of an impact, relative to what is left to the place, from which Newton's method goes on.
+        /// Largest error of an impact, relative to its distance from the place, from which Newton's method converges.
         const FOLLOWED: f64 = 0.1;
         let Self::Resting { from, to, turned, .. } = reached.contact else { return [reached.contact; 2] };
         let left = |event: &Event| turned - event.turned_since(from.cam_angle);
@@ -335,8 +336,8 @@ impl Equations for Rest<'_> {
     fn linear(&self, unknowns: &DVector<f64>) -> Result<(DVector<f64>, DMatrix<f64>), Nowhere> {
         /// Difference for derivatives, in spans of a number. It steers Newton's method and the tangent.
         const DIFFERENCE: f64 = 1e-7;
-        /// Difference before a smooth release, where a late impact moves by hundreds of times as much, and by no more than it has left. At
-        /// a corner the wider difference carries a curve on over the small kinks between impacts.
+        /// Smaller difference before a smooth release, where a late impact moves by hundreds of times as much, but must not pass the place.
+        /// At a corner the wider difference carries a curve over the small kinks between impacts.
         const SMALL: f64 = 1e-9;
         let is_smooth = matches!(self.contact, Contact::Resting { to, .. } if !to.is_corner);
         let difference = if is_smooth { SMALL } else { DIFFERENCE };
@@ -349,13 +350,13 @@ impl Equations for Rest<'_> {
                 self.reached(&moved).map(|reached| (moved[column], reached.off))
             };
             let here = (unknowns[column], off);
-            // At the edge of what the model allows, on one side only.
+            // At the edge of the allowed values, the difference is one-sided.
             let (ahead, behind) = match (moved(difference), moved(-difference)) {
                 (Ok(ahead), Ok(behind)) => (ahead, behind),
                 (Ok(ahead), Err(_)) => (ahead, here),
                 (Err(_), behind) => (here, behind?),
             };
-            // By what the doubles differ by.
+            // The divisor is the actual difference of the doubles.
             slopes[column] = (ahead.1 - behind.1) / (ahead.0 - behind.0);
         }
         Ok((DVector::from_element(1, off), slopes))
@@ -368,10 +369,10 @@ pub(super) fn contact(kind: SpecialKind, orbit: &PeriodicOrbit, machine: &Machin
     if kind == SpecialKind::Detachment {
         return Contact::first(machine);
     }
-    // The rest around the anchor is the one that goes: from the release before it to that after it.
+    // The rest around the anchor is the one that vanishes. Its event goes from the release before it to the release after it.
     let period = orbit.revolutions as f64 * TAU;
     let releases: Vec<&Event> = orbit.rests().filter(|event| event.kind == EventKind::Release).collect();
-    // A rest that a corner ends by an impact is none of these.
+    // An orbit has no such event if a corner ends one of its rests by an impact.
     if 2 * releases.len() != orbit.rests().count() {
         return None;
     }

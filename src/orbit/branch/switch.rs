@@ -68,7 +68,7 @@ pub(super) fn held(kind: SpecialKind, cycle: &Cycle, machine: &Machine) -> Optio
     }
 }
 
-/// Condition in the cycle beyond `exit`; `None` where it applies to the impact that the exit removes.
+/// Condition in the cycle beyond `exit`; `None` if it applies to the impact that the exit removes.
 pub(super) fn held_beyond(held: Held, exit: Exit) -> Option<Held> {
     let moved = |index: usize| match exit {
         Exit::Tangent { impact } => match index.cmp(&impact) {
@@ -86,7 +86,7 @@ pub(super) fn held_beyond(held: Held, exit: Exit) -> Option<Held> {
     })
 }
 
-/// The cycle on the other side of `exit`, at the same angles; `None` where no impact would be left.
+/// The cycle on the other side of `exit`, at the same angles; `None` if no impact would be left.
 pub(super) fn beyond(exit: Exit, cycle: &Cycle, machine: &Machine) -> Option<Cycle> {
     let segments = machine.cam().segments();
     let mut beyond = cycle.clone();
@@ -130,17 +130,17 @@ pub(super) fn direction(
 ) -> Result<DVector<f64>, NoPoint<FamilyError>> {
     growing(problem, unknowns, |cycle, machine| match exit {
         Exit::Corner { impact, past_end } => {
-            // From the corner, which a number of the cam may move.
+            // The distance from the corner, which a number of the cam may move.
             let impact = &cycle.impacts[impact];
             let segment = &machine.cam().segments()[impact.segment];
             if past_end { impact.cam_angle - segment.start } else { segment.end - impact.cam_angle }
         }
-        // An impact needs an approach, a flight a gap.
+        // A new impact needs an approach, and a flight in place of an impact needs a gap.
         Exit::Touch { .. } => moved_impact(exit).map_or(f64::NAN, |impact| cycle.approach(machine, impact)),
         Exit::Tangent { impact } => {
             let count = from.impacts.len();
             let before = (impact + count - 1) % count;
-            // In the cycle without the impact the one before it has this index.
+            // In the cycle without the impact, the one before it has this index.
             let index = if impact == 0 { count - 2 } else { before };
             least_gap::least(cycle, machine, index, from.turn(before)).map_or(f64::NAN, |(gap, _)| gap)
         }
@@ -167,7 +167,7 @@ fn growing(
         let (cycle, machine, _) = problem.unpack(&(unknowns + &tangent * step))?;
         Ok(quantity(&cycle, &machine))
     };
-    // Where it cannot be measured, neither is the greater.
+    // A quantity that cannot be measured gives no direction.
     match measure(TRIAL)?.partial_cmp(&measure(-TRIAL)?) {
         Some(Ordering::Greater) => Ok(tangent),
         Some(Ordering::Less) => Ok(-tangent),

@@ -1,8 +1,8 @@
 //! Proves or refutes that a flight is clear of the cam from one impact to the next.
 //!
-//! The gap G(phi) = q - c is 0 at both ends. Next to the first end it is positive where it rises all over a stretch from there, next to the
-//! other where it falls all over a stretch up to there. Between them it is positive where its Taylor sum about the middle m of a stretch
-//! is, with G'' anywhere on it:
+//! The gap G(phi) = q - c is 0 at both ends. Next to the first end it is positive if it rises all over a stretch that begins there. Next to
+//! the other end it is positive if it falls all over a stretch that ends there. Between them it is positive on a stretch if its Taylor sum
+//! about the middle m is, with G'' enclosed over the stretch:
 //!
 //! ```text
 //! G(m + x) = G(m) + x G'(m) + x^2/2 G''(...)
@@ -19,7 +19,7 @@ use crate::tolerance;
 /// Impact on the cam at which a flight begins or ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Struck {
-    /// Index of the segment whose law the flight that begins or ends here sees.
+    /// Index of the segment whose law applies to the flight that begins or ends here.
     pub segment: usize,
     /// Cam angle, rad.
     pub angle: Interval,
@@ -64,7 +64,7 @@ impl Hop {
         }
     }
 
-    /// Whether the flight is clear of the cam. `None` where this cannot be decided.
+    /// Whether the flight is clear of the cam. `None` if this cannot be decided.
     pub(super) fn is_clear(&self, cam: &Cam, flight: &Flight) -> Option<bool> {
         /// Most boxes that are halved. A flight next to a graze takes some hundreds.
         const MOST: usize = 100_000;

@@ -1,9 +1,9 @@
 //! Finds all orbits of a machine with one impact in so many revolutions, or with two in one, by enclosures that leave no case out.
 //!
-//! | module | what it holds |
+//! | module | contents |
 //! |---|---|
 //! | `one_impact` | one equation in the impact's angle and the time of the flight, its roots, and the status of each |
-//! | `two_impacts` | two equations in the angles of both impacts, likewise |
+//! | `two_impacts` | two equations in the angles of both impacts, their roots, and the status of each |
 //! | `clearance` | whether a flight is clear of the cam on its way |
 //!
 //! Angles where nothing can be decided, next to a fold, a graze or a corner, are reported. The proofs apply to the machine whose numbers
@@ -62,7 +62,7 @@ pub fn joined<B: AsRef<[Interval]> + AsMut<[Interval]>>(mut boxes: Vec<B>) -> Ve
     for mut next in boxes {
         let touches =
             |last: &B, next: &B| last.as_ref().iter().zip(next.as_ref()).all(|(one, two)| one.common(*two).is_some());
-        // A hull may touch what none of its parts does.
+        // A hull may touch a box that none of its parts touches.
         while let Some(index) = joined.iter().rposition(|last| touches(last, &next)) {
             let last = joined.swap_remove(index);
             next.as_mut().iter_mut().zip(last.as_ref()).for_each(|(side, other)| *side = side.hull(*other));

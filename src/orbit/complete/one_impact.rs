@@ -1,7 +1,7 @@
 //! Orbits with one impact in n revolutions: one equation with two unknowns.
 //!
-//! A flight of `t = n T` from the cam at angle theta back to it, with the responses s(t), p(t) and the force f at c(theta), leaves with
-//! `v+ = -f p/s` and returns with `v- = v+ s' + f s`. The restitution law then gives
+//! A flight of `t = n T` begins and ends on the cam at angle theta. With the responses s(t), p(t) and the force f at c(theta), it leaves
+//! with `v+ = -f p/s` and returns with `v- = v+ s' + f s`. The restitution law then gives
 //!
 //! ```text
 //! E(theta, t) = -f a(t) - (1 + r) c' s = 0        a = p (1 + r s') - r s^2        c' = (2 pi n/t) dc/dtheta
@@ -67,7 +67,7 @@ impl OneImpact<'_> {
         }
     }
 
-    /// Velocities v- and v+, m/s; `None` where s may be 0.
+    /// Velocities v- and v+, m/s; `None` if s may be 0.
     pub(crate) fn velocities(&self, position: Interval, time: Interval) -> Option<[Interval; 2]> {
         let (response, force) = (self.flight.response_over(time), self.flight.force(position));
         let after = -(force * response.step / response.impulse);
@@ -84,7 +84,7 @@ impl OneImpact<'_> {
         if approach.is_negative() {
             return Standing::NoOrbit;
         }
-        // Without the approach a follower that sticks would do as well as one that is hit.
+        // Without an approach, a follower that sticks would solve the equation as well.
         if !approach.is_positive() || self.restitution == 0.0 {
             return Standing::Undecided;
         }
@@ -96,7 +96,7 @@ impl OneImpact<'_> {
     }
 }
 
-/// Boxes after which a segment is left undecided. Where flights of every angle return, no number is enough.
+/// Boxes after which a segment is left undecided. If flights from every angle return, no number is enough.
 const MOST_BOXES: usize = 1 << 14;
 
 /// Solution, or possible solution, at the speed of a machine: its place, and whether it is certainly the only root there.
@@ -118,7 +118,7 @@ impl<'a> OneImpact<'a> {
     fn solutions(&self, time: Interval) -> Vec<Solution> {
         let (segments, response) = (self.cam.segments(), self.flight.response_over(time));
         let mut all = Vec::new();
-        // Where the hull of many segments' lifts leaves no root, none of them is looked at.
+        // If the equation has no root over the hull of several segments' lifts, none of them is examined.
         let mut left = vec![(0, segments.len())];
         while let Some((first, end)) = left.pop() {
             let over = segments[first..end].iter().map(|segment| segment.over).reduce(Lift::hull);
@@ -149,19 +149,19 @@ impl<'a> OneImpact<'a> {
     }
 }
 
-/// Returns guesses; every orbit of one impact has one near it.
+/// Returns guesses, one or more near every orbit of one impact.
 pub(crate) fn near_one_impact(machine: &Machine, revolutions: u64) -> impl Iterator<Item = Cycle> {
     let (equation, time) = OneImpact::of(machine, revolutions);
     equation.solutions(time).into_iter().map(|solution| solution.guess)
 }
 
-/// Returns every solution at the speed of a machine, and places that may be one.
+/// Returns every solution at the speed of a machine, and places that may be solutions.
 pub(crate) fn of_one_impact(machine: &Machine, revolutions: u64) -> Vec<Solved> {
     let (equation, time) = OneImpact::of(machine, revolutions);
     let standing = |&Solution { segment: index, angle, is_root, .. }: &Solution| {
         let segment = &equation.cam.segments()[index];
         let struck = |turns: u64| Struck { segment: index, angle, turns };
-        // On the border it is the law's of one side or the other's.
+        // A root on the border may belong to the law of either side.
         match is_root && angle.is_inside(segment.angles()) {
             true => equation.standing([struck(0), struck(revolutions)], &segment.law.lift_over(angle), time),
             false => Standing::Undecided,

@@ -77,7 +77,7 @@ impl Run {
 struct Pair<'a> {
     machine: &'a Machine,
     runs: [&'a Run; 2],
-    /// How often the cam passes angle 0 from the first to the second: 0 or 1.
+    /// Number of times that the cam passes angle 0 from the first to the second: 0 or 1.
     turns: u64,
 }
 
@@ -98,11 +98,11 @@ impl<'a> Pair<'a> {
         *y + Interval::TURN * self.turns as f64 - *x
     }
 
-    /// Derivatives of the lift from `x` to `y`: the slope all over, and the curvature if one law holds all over.
+    /// Derivatives of the lift from `x` to `y`: the slope throughout, and the curvature if one law applies throughout.
     fn between(&self, [x, y]: &[Interval; 2]) -> [Interval; 2] {
         let segments = self.machine.cam().segments();
         let (first, last) = (self.runs[0].ends[0], self.runs[1].ends[1]);
-        // Borders on the way: a cam of one segment has one where it is passed at angle 0.
+        // Borders on the way; a cam of one segment has one where it passes angle 0.
         let borders = last + self.turns as usize * segments.len() - first;
         if borders == 0 {
             let lift = segments[first].law.lift_over(x.hull(*y));
@@ -117,13 +117,13 @@ impl<'a> Pair<'a> {
         [(1..=borders).map(slope).fold(slope(0), Interval::hull), Interval::EVERYTHING]
     }
 
-    /// The lift over angles of a run: of one of several segments, over all of it.
+    /// Lift over angles of a run; over the whole run if it has several segments.
     fn lift_over(&self, which: usize, angles: Interval) -> Lift<Interval> {
         let run = self.runs[which];
         if run.halves.is_some() { run.over } else { self.machine.cam().segments()[run.ends[0]].law.lift_over(angles) }
     }
 
-    /// Whether the second may be struck after the first within half a turn.
+    /// Whether the second run may be struck within half a turn after the first.
     fn follows(&self) -> bool {
         let [first, second] = self.runs;
         let is_behind = if self.turns == 0 { second.ends[1] >= first.ends[0] } else { second.ends[0] <= first.ends[1] };
@@ -131,7 +131,7 @@ impl<'a> Pair<'a> {
         is_behind && start - first.angles.high() <= PI
     }
 
-    /// Both halves of the wider run beside the other run; none of two segments.
+    /// Pairs of the other run with each half of the wider run; `None` if both runs are single segments.
     fn halved(&self) -> Option<[Self; 2]> {
         let [first, second] = self.runs;
         let is_first = first.angles.width() >= second.angles.width();
@@ -153,12 +153,12 @@ impl<'a> Pair<'a> {
         let forces = lifts.map(|lift| flight.force(lift.value));
         let responses = [flight.response_over(t1), flight.response_over(t2)];
         let [one, two] = &responses;
-        // How t1 changes with x and y; t2 the other way.
+        // Derivatives of t1 by x and y; those of t2 have the opposite sign.
         let later = Interval::from(1.0) / omega;
         let (by_x, by_y) = ([Interval::from(1.0), Interval::from(0.0)], [Interval::from(0.0), Interval::from(1.0)]);
         let (by_1, by_2) = ([-later, later], [later, -later]);
-        // The means of s' and of s over the flight, and half their means weighted by time: each as a quotient, or where the
-        // time may be next to nothing by its bounds.
+        // The means of s' and of s over the flight, and half their means weighted by time: as quotients, or by their bounds if the time may
+        // be nearly 0.
         let (mean, mean_by, step, step_by, rise, rise_by) = if t1.low() > t1.width() {
             let (mean, step, rise) = (one.impulse / t1, one.step / t1, (lifts[1].value - lifts[0].value) / h);
             let rise_by = [(rise - lifts[0].slope) / h, (lifts[1].slope - rise) / h];
@@ -190,7 +190,7 @@ impl<'a> Pair<'a> {
         [0, 1].map(|which| Dual::of(lifts[which].value, lifts[which].slope, by[which]))
     }
 
-    /// The equations. A root is wanted if it breaks no law of impacts or flights, and y is at most half a turn after x.
+    /// Evaluates the equations. A root is wanted if it breaks no law of impacts or flights, and y is at most half a turn after x.
     fn over(&self, place: &[Interval; 2]) -> BoxValues<2> {
         let flights = self.flights(place);
         let is_wanted = !flights.velocities(self.machine).is_broken
@@ -215,8 +215,8 @@ impl<'a> Pair<'a> {
         BoxValues { values: [at_x.value, at_y.value], derivatives: [at_x.by, at_y.by], is_wanted }
     }
 
-    /// Decides whether a solution is an orbit. One across an end of its segment is not proved: a flight passes over what is beyond that end,
-    /// up to the impact, where the gap is 0.
+    /// Decides whether a solution is an orbit. A solution across an end of its segment is not proved: a flight passes over the law beyond
+    /// that end up to the impact, where the gap is 0.
     fn standing(&self, place: &[Interval; 2]) -> Standing {
         if self.machine.restitution() == 0.0 {
             return Standing::Undecided;
@@ -236,8 +236,8 @@ impl<'a> Pair<'a> {
         let clear = hops.map(|hop| hop.is_clear(self.machine.cam(), self.machine.flight()));
         match clear {
             [Some(false), _] | [_, Some(false)] => Standing::NoOrbit,
-            // Both flights are proved clear, and so fall up to their ends: each impact is approached. Where s2 may be 0 the equations
-            // may be met by what comes back in one way only.
+            // Both flights are proved clear, and so fall up to their ends: each impact is approached. If s2 may be 0, the equations, which
+            // are multiplied by it, may hold although the laws of impact do not.
             [Some(true), Some(true)] if !flights.responses[1].impulse.holds_zero() => Standing::Orbit,
             _ => Standing::Undecided,
         }
@@ -265,8 +265,8 @@ struct Velocities {
 }
 
 impl Flights {
-    /// Velocities from the responses of the flights. Where a flight returns whatever velocity it leaves with, they follow from the other
-    /// flight and the law of impact.
+    /// Velocities from the responses of the flights. If a flight returns whatever its first velocity is, they follow from the other flight
+    /// and the law of impact.
     fn velocities(&self, machine: &Machine) -> Velocities {
         let omega = Interval::from(machine.angular_velocity());
         let r = machine.restitution();
@@ -286,7 +286,8 @@ impl Flights {
             }
         }
         let is_broken = (0..2).any(|which| {
-            // By the law of impact what leaves into the cam comes out of it: asked as well, it is seen in wider boxes.
+            // By the law of impact, a follower that leaves into the cam also comes out of it. Both are checked, since this decides wider
+            // boxes.
             (cam[which] - before[which]).is_negative()
                 || (after[which] - cam[which]).is_negative()
                 || thrown(which, before[which]).common(after[which]).is_none()
@@ -295,7 +296,7 @@ impl Flights {
     }
 }
 
-/// The pairs of segments that may hold an orbit, and runs of segments that were left when so many boxes had been looked at.
+/// Pairs of segments that may hold an orbit, and the runs of segments left when the largest number of boxes was reached.
 struct Candidates<'a> {
     pairs: Vec<Pair<'a>>,
     left: Vec<Pair<'a>>,
@@ -329,7 +330,7 @@ fn candidates<'a>(machine: &'a Machine, all: &'a Run, watch: &dyn Watch) -> Cand
     found
 }
 
-/// Returns every solution at the speed of a machine, and places that may be one.
+/// Returns every solution at the speed of a machine, and places that may be solutions.
 pub(crate) fn of_two_impacts(machine: &Machine, watch: &dyn Watch) -> Vec<Solved> {
     let segments = machine.cam().segments();
     let whole = Run::of(segments, [0, segments.len() - 1]);
@@ -338,12 +339,12 @@ pub(crate) fn of_two_impacts(machine: &Machine, watch: &dyn Watch) -> Vec<Solved
     let mut all: Vec<Solved> = Vec::new();
     let mut add = |pair: &Pair<'_>, place: [Interval; 2], standing: Standing| {
         let (turn, half) = (pair.turn(&place), Interval::TURN.half());
-        // With its impacts the other way round it is a root as well.
+        // With its impacts exchanged, it is a root as well.
         if (turn - half).is_positive() {
             return;
         }
-        // Half a turn apart either impact may be called the first: what is there already by the other name is the same, since each is alone
-        // in a box far wider than its own.
+        // Half a turn apart, either impact may be called the first. A known solution with the names exchanged is the same one, since each
+        // is alone in a box far wider than its own.
         let again = |known: &Solved| (0..2).all(|which| known.angles[which].common(place[1 - which]).is_some());
         if turn.common(half).is_some() && all.iter().any(again) {
             return;

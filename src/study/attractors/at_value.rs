@@ -97,7 +97,7 @@ impl AttractorsAtValue {
     pub(super) fn take(&mut self, attractor: Attractor) -> bool {
         match self.attractors.iter().position(|known| known.ending.is_same(&attractor.ending)) {
             Some(known) => {
-                // A run has reached what only a run that began on it had before.
+                // A run from elsewhere has now reached an attractor that only runs begun on it had shown.
                 if !self.is_reached(&self.attractors[known]) {
                     self.attractors[known].starts.clear();
                 }
@@ -126,7 +126,7 @@ impl AttractorsAtValue {
         let found = attractors_of(&runs, 1, |_| Ok(Some(motion)), &Unwatched).map_err(|(_, error)| error)?;
         let Some(attractor) = found.attractors.into_iter().next() else { return Ok(None) };
         let ending = &attractor.ending;
-        // Wandering does not last where other runs have left it.
+        // Other runs have left such a motion, so it does not last.
         let is_on_its_way =
             matches!(ending, LongRun::Undecided(_)) || (self.wandering.left > 0 && ending.period().is_none());
         Ok((!is_on_its_way).then_some(Attractor { starts: Vec::new(), ..attractor }))

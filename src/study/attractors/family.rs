@@ -300,7 +300,7 @@ impl AttractorFamily {
         by_runs(over, found.and_then(Result::<_, RunError>::ok).unwrap_or(ends))
     }
 
-    /// Value, for machines over the same number that differ slightly, of an end that is known by runs. None if it is not found nearby.
+    /// Locates, on slightly different machines over the same number, an end that is known by runs. None if it is not found nearby.
     pub fn moved(&self, other: &Over<'_>, grid: &ValueGrid, runs: StartsAndBudget<'_>, side: usize) -> Option<f64> {
         /// First step, in widths of the end's bracket. A bracket as narrow as that takes long, and steps are doubled.
         const FIRST: f64 = 16.0;
@@ -414,7 +414,8 @@ pub type StartsAndBudget<'a> = (&'a Sample, Budget);
 const STARTS: usize = 12;
 
 impl Wanted {
-    /// Whether one of a few starts settles on the motion, or the `motion` of another value continues as one. If so, replaces `motion`.
+    /// Whether the motion exists on a machine: one of a few starts settles on it, or the `motion` of another value continues as one. If so,
+    /// replaces `motion`.
     fn is_there(&self, machine: &Machine, motion: &mut Option<Motion>) -> Result<bool, SimulateError> {
         let here = AttractorsAtValue::new(machine, &self.sample, self.budget)?;
         let of_class = |it: &Attractor| Class::of(&it.ending) == self.class;

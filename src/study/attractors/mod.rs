@@ -5,7 +5,7 @@
 //! start from the attractors that the two neighbouring values have and this one lacks. The grid does not depend on the range: a part of a
 //! range has the attractors of that part.
 //!
-//! | module | what it holds |
+//! | module | contents |
 //! |---|---|
 //! | `at_value` | the attractors of one machine |
 //! | `stable_range` | the range over which a periodic orbit is stable, by the branch that it is on |
@@ -108,7 +108,8 @@ pub struct Attractors {
     pub families: Vec<AttractorFamily>,
     /// Ranges with several attractors.
     pub coexistence: Vec<FamilyCoexistence>,
-    /// Speed above the lowest at which the follower first leaves the cam, by the contact force; none if the speed does not vary.
+    /// First speed, above the lowest of the range, at which the follower leaves the cam, by the contact force; none if the speed does not
+    /// vary.
     pub separation: Option<Separation>,
 }
 

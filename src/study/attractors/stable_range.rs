@@ -80,7 +80,7 @@ impl StableRange {
         }
     }
 
-    /// Returns stable orbits next to the ends of this range, each with its value: those of twice the period that branch off, and those on
+    /// Returns stable orbits next to the ends of this range, each with its value: orbits of twice the period that branch off, and orbits on
     /// which runs settle just beyond.
     pub fn beyond(&self, over: &Over<'_>, step: f64) -> Vec<(f64, PeriodicOrbit)> {
         let mut found = self.doubled(over, step);
@@ -193,7 +193,7 @@ fn walk<'a>(
         pending.map_or_else(|| by_runs(over, between), of_point)
     };
     let mut last = middle.first()?.value;
-    // Where the value turns back without a change of stability, the orbits beyond are those of a lost symmetry.
+    // If the value turns back without a change of stability, the orbits beyond have lost a symmetry.
     let (begun, mut onward) = (last, 0.0);
     let mut pending: Option<&BranchPoint> = None;
     // A smooth corner changes nothing that a stable orbit depends on.

@@ -1,4 +1,4 @@
-//! Uncertainty of the values at which attractors begin and end: how far each event moves among the machines that may be there.
+//! Uncertainty of the values at which attractors begin and end: the shift of each event among the plausible machines.
 
 use rayon::prelude::*;
 
@@ -22,7 +22,7 @@ pub(crate) struct UncertainEnds<'a> {
     pub grid: &'a ValueGrid,
     /// Starts and budget of the runs.
     pub runs: StartsAndBudget<'a>,
-    /// Machines that may be there in place of the model's own.
+    /// Plausible machines in place of the model's own.
     pub machines: &'a PlausibleMachines<'a>,
     /// Uncertainty of the first separation, if the speed varies.
     pub separation: Option<SourcedUncertainty>,
@@ -73,7 +73,7 @@ impl UncertainEnds<'_> {
         }
     }
 
-    /// Value near `from`, where the survey's own follower begins or ceases to leave the cam, at which that of other machines does.
+    /// Value at which the follower of other machines begins or ceases to leave the cam, near the value `from` of the survey's own follower.
     fn leaves_elsewhere(&self, other: &Over<'_>, from: f64) -> Option<f64> {
         /// First step, as a part of the range, and number of doublings.
         const FIRST: f64 = 1e-6;

@@ -1,6 +1,6 @@
 //! The motion that each start ends on, and the borders between basins.
 //!
-//! | module | what it holds |
+//! | module | contents |
 //! |---|---|
 //! | [`grid`] | a grid of starts on a section, side by side |
 //! | `over` | the shares of the basins over a number of the model |

@@ -68,9 +68,10 @@ impl BasinSection {
         }
     }
 
-    /// Builds a grid of starts. Without a given range, the positions go from the cam to twice as far from it as its top or the farthest
-    /// orbit. The velocities then cover three times the range of the orbits' and the cam's velocities. That range is at least the speed of the
-    /// cam's whole height in a radian, in both directions: cam and orbits may hardly move at the section.
+    /// Builds a grid of starts. Without a given range, the positions go from the cam to twice the distance of its top or of the farthest
+    /// orbit. The velocities then cover three times the range of the velocities of the orbits and the cam. A range narrower than the speed
+    /// of the cam's whole height in a radian is replaced by that speed in both directions, since cam and orbits may hardly move at the
+    /// section.
     pub fn grid(
         &self,
         cells: [usize; 2],

@@ -156,7 +156,7 @@ pub struct ProvedEvent {
     pub cam_angle_rad: Ball,
     /// Kinds of all orbits at the speeds before the event; none if their number is not decided.
     pub before: Option<Vec<Option<OrbitKind>>>,
-    /// Kinds of all orbits at the speeds after the event, likewise.
+    /// Kinds of all orbits at the speeds after the event; none if their number is not decided.
     pub after: Option<Vec<Option<OrbitKind>>>,
 }
 

@@ -14,7 +14,7 @@ pub struct ProvedResting {
     /// Speed, rpm; the decimal as written.
     #[serde(skip)]
     pub speed_rpm: f64,
-    /// Precision of the balls, bits: as many as it took.
+    /// Precision of the balls that the proofs needed, bits.
     pub bits: u32,
     /// Ranges of cam angle, rad, in which the cam presses against a resting follower.
     pub pressed_rad: Vec<[f64; 2]>,

@@ -256,7 +256,7 @@ impl Findings {
     }
 }
 
-/// Returns the quantities that `compare` has of one model, in its own units: those of its cam, and those of its corner impact if given.
+/// Returns the quantities that `compare` has of one model, in its own units: the cam's, and the corner impact's if it is given.
 pub fn values(model: &Model, cam: &Cam, found: Option<&Verification>) -> NamedValues {
     let at = found.map(|found| (&found.at, found.classification.is_ok()));
     let mut all = found.map_or_else(NamedValues::new, |found| flattened(&besides(found), &model.units));

@@ -1,7 +1,7 @@
 //! Comparison of two models: every number that `verify`, `cam` and `design` find for both, by one name, with its uncertainty.
 //!
 //! A number that follows from A and B is computed from them by each route. The spread between the routes is its uncertainty. The
-//! uncertainty of the machines is computed on the machines that may be there, and is added.
+//! uncertainty of the machines is computed on plausible machines, and is added.
 
 mod findings;
 mod uncertain;
@@ -147,7 +147,7 @@ pub struct Change {
     pub quantity: String,
     /// Value in the first model: a number, a word, or nothing if it has no such quantity.
     pub a: Option<Value>,
-    /// Value in the second model, likewise.
+    /// Value in the second model: a number, a word, or nothing.
     pub b: Option<Value>,
     /// Number b less number a.
     pub difference: Option<f64>,

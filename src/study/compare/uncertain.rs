@@ -1,7 +1,7 @@
 //! Uncertainty of the differences between two machines: by a measured cam, and by the errors of the follower's numbers.
 //!
-//! One measured cam under both followers, and each number that has one value and one error in both models, move both machines alike, and leave
-//! less of the difference open. All else is independent of the other machine.
+//! A measured cam of both models, and each number that has one value and one error in both, change both machines alike. So they make the
+//! difference less uncertain. Everything else is independent of the other machine.
 
 use std::collections::BTreeMap;
 
@@ -55,7 +55,7 @@ pub(super) fn open(a: &Side<'_>, b: &Side<'_>) -> Result<(Open, Option<Measured>
     Ok((all, measured))
 }
 
-/// Adds what the errors of the followers' numbers leave open.
+/// Adds the uncertainty from the errors of the followers' numbers.
 fn add_numbers(all: &mut Open, a: &Side<'_>, b: &Side<'_>) -> Result<(), ModelError> {
     let [of_a, of_b] = [a, b].map(|side| side.model.errors);
     if of_a.are_none() && of_b.are_none() {
@@ -81,7 +81,7 @@ fn add_numbers(all: &mut Open, a: &Side<'_>, b: &Side<'_>) -> Result<(), ModelEr
     Ok(())
 }
 
-/// Adds what the cams that are as likely leave open.
+/// Adds the uncertainty from equally likely cams.
 fn add_cam(
     all: &mut Open,
     likely: &PlausibleCams,
@@ -92,12 +92,12 @@ fn add_cam(
     let open = likely.errors(&values, |model, cam| Some(in_order(numbers, &of(model, cam)?)));
     let open = open.unwrap_or_else(|| vec![f64::NAN; values.len()]);
     for (name, cam) in numbers.keys().zip(open) {
-        // Two cams are not known to be independent.
+        // Two cams may depend on each other, so their uncertainties are added.
         all.entry(name.clone()).or_default().cam += cam;
     }
 }
 
-/// Adds what the errors of numbers leave open among machines.
+/// Adds the uncertainty that the errors of numbers cause among machines.
 fn add(
     all: &mut Open,
     machines: &PlausibleMachines<'_>,
@@ -114,7 +114,7 @@ fn add(
     }
 }
 
-/// Numbers in the order of others; NaN for one that is not there.
+/// Numbers of `found` in the order of `order`; NaN for a missing one.
 fn in_order(order: &Numbers, found: &Numbers) -> Vec<f64> {
     order.keys().map(|name| found.get(name).copied().unwrap_or(f64::NAN)).collect()
 }

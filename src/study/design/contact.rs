@@ -43,10 +43,10 @@ struct Bottom {
     order: usize,
 }
 
-/// Where the follower first leaves the cam as the speed rises from 0.
+/// Separation: the lowest speed at which the follower leaves the cam, if there is such a speed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Separation {
-    /// At a speed, rpm, with its rounding error, and a cam angle, rad.
+    /// Separation at a certain speed and cam angle.
     At {
         /// Speed, rpm.
         rpm: f64,
@@ -57,18 +57,18 @@ pub enum Separation {
         /// Uncertainty of the cam angle for a measured cam, rad; none for an exact cam.
         angle_error: Option<f64>,
     },
-    /// At any speed, however slow. The spring does not press the follower on the cam here, or a damper holds back a follower without load.
-    /// In some range of higher speeds, inertia may press it on.
+    /// Separation at any speed, however slow. Here the spring does not press the follower on the cam, or a damper holds back a follower
+    /// without load. In some range of higher speeds, inertia may press it on.
     NotPressed {
         /// Cam angle, rad.
         cam_angle: f64,
     },
-    /// At any speed, however slow: the cam's velocity jumps here.
+    /// Separation at any speed, however slow: the cam's velocity jumps here.
     Kink {
         /// Cam angle, rad.
         cam_angle: f64,
     },
-    /// At no speed: the cam nowhere accelerates downwards.
+    /// No separation at any speed: the cam nowhere accelerates downwards.
     Never,
 }
 
@@ -102,7 +102,7 @@ impl<'a> Contact<'a> {
     pub fn new(cam: &'a Cam, follower: Follower) -> Self {
         let kink = cam.corners().iter().copied().find(|corner| corner.jump_order == 1).map(|corner| corner.angle);
         let mut contact = Self { cam, follower, kink, bottoms: Vec::new() };
-        // Without a damper only inertia can hold the follower back, and not on the way to rest.
+        // Without a damper only inertia can hold the follower back, and inertia does not do so near the lowest lift.
         if follower.damping > 0.0 {
             contact.bottoms = contact.bottoms();
         }
@@ -131,7 +131,7 @@ impl<'a> Contact<'a> {
     pub fn least(&self, rpm: f64) -> Least {
         let omega = angular_velocity(rpm);
         let weights = self.weights(omega);
-        // A damper may hold the follower back between two neighbouring angles of those that are looked at all round.
+        // A damper may hold the follower back between two neighbouring sampled angles.
         let before =
             self.bottoms.iter().filter_map(|bottom| self.cam.least_before(bottom.segment, bottom.angle, weights));
         let least =
@@ -228,11 +228,12 @@ impl<'a> Contact<'a> {
         self.bottoms.iter().find(|bottom| holds(bottom.order)).map(|bottom| bottom.angle)
     }
 
-    /// Places on the way down to a lowest lift where a damper may hold the follower back, each with its least angular velocity beyond which N
-    /// is negative: where this velocity is least, and where N is least at any velocity. With a damper and a small load, the first may be
-    /// nearer to the lowest lift than any sampled angle. With a load that the damper hardly overcomes, N is negative next to the second alone.
+    /// Places on the way down to a lowest lift where a damper may hold the follower back, each with the least angular velocity beyond which
+    /// N is negative there. They include the place where this velocity is least, and the place where N is least at any velocity. With a
+    /// damper and a small load, the first may be nearer to the lowest lift than any sampled angle. With a load that the damper hardly
+    /// overcomes, N is negative next to the second alone.
     fn first_before(&self, &Bottom { segment, angle: bottom, .. }: &Bottom, from: f64) -> Vec<(f64, Least)> {
-        /// Thirds that are dropped from the bracket of the best halving.
+        /// Number of times that a third of the bracket is dropped.
         const THIRDS: usize = 60;
         let way = bottom - self.cam.segments()[segment].start;
         let at = |before: f64| self.place(segment, bottom - before);
@@ -256,7 +257,7 @@ impl<'a> Contact<'a> {
         places.into_iter().map(|place| (root(&place.lift), place)).collect()
     }
 
-    /// Least N for this lift at any angular velocity above `from`, rad/s, where the cam is hollow; infinity where it is not.
+    /// Least N for this lift at any angular velocity above `from`, rad/s, where the cam is hollow; infinity elsewhere.
     ///
     /// ```text
     /// dN/dw = 2 m w c'' + b c'
@@ -319,7 +320,7 @@ impl<'a> Contact<'a> {
         for _ in 0..STEPS {
             let here = self.least(rpm(omega));
             let next = self.root(here.segment, &here.lift, from);
-            // Not on a dwell, where N may be 0 as well.
+            // A dwell, where N may be 0 as well, has no root and is no place of separation.
             if next.is_finite() {
                 at = here;
             }

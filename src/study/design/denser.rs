@@ -1,4 +1,4 @@
-//! Values between those of a table, so that a curve through them looks like one.
+//! Values between the values of a table, so that a curve through them looks smooth.
 
 use crate::study::survey::Spacing;
 use crate::uncertainty::SourcedUncertainty;
@@ -6,7 +6,7 @@ use crate::uncertainty::SourcedUncertainty;
 /// Number of values from which a curve is drawn: three to a millimetre of a column's width.
 pub const DRAWN: usize = 241;
 
-/// Values between each neighbouring pair of a table's, so that there are at least `count` in all with the table's own.
+/// Returns values between the neighbouring values of a table, so that there are at least `count` in all, the table's own included.
 pub(super) fn between(values: &[f64], spacing: Spacing, count: usize) -> Vec<f64> {
     let pieces = values.len().saturating_sub(1);
     let parts = count.saturating_sub(1).div_ceil(pieces.max(1)).max(1);
@@ -18,7 +18,7 @@ pub(super) fn between(values: &[f64], spacing: Spacing, count: usize) -> Vec<f64
     values.windows(2).flat_map(of_pair).collect()
 }
 
-/// Uncertainties at `value`, linearly between those at the neighbouring values of a table; none beside a value without them.
+/// Uncertainties at `value`, linear between the neighbouring values of a table; none if a neighbour has no uncertainties.
 pub(super) fn errors<const N: usize>(
     known: &[(f64, Option<[SourcedUncertainty; N]>)],
     value: f64,

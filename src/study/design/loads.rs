@@ -38,7 +38,7 @@ impl Load {
         if self == Self::Force { units.force.inside(value) } else { value }
     }
 
-    /// Converts a value from SI to the displayed unit; that of energy is the SI's.
+    /// Converts a value from SI to the displayed unit; energies are displayed in SI.
     pub fn of_si(self, units: &Units, value: f64) -> f64 {
         match self {
             Self::ImpactSpeed | Self::Gap => units.length.told(value),

@@ -47,11 +47,11 @@ pub struct Design {
     pub geometry: Option<CamGeometry>,
     /// Ratio of the lever between cam and follower, 1 without one. Forces are those on the follower.
     pub lever_ratio: f64,
-    /// Where the follower first leaves the cam; the error includes the uncertainty of the machine.
+    /// Separation of the follower from the cam. Its error includes the uncertainty of the machine.
     pub separation: Separation,
     /// Uncertainty of the machine in the separation's speed, rpm, and cam angle, rad; none if the machine is exact.
     pub separation_errors: Option<[SourcedUncertainty; 2]>,
-    /// Places where the follower may leave the cam first, if a measured cam leaves open which it is by more than 10 degrees.
+    /// Places where the follower may leave the cam first, if the uncertainty of a measured cam spreads them over more than 10 degrees.
     pub places: Vec<SeparationPlace>,
     /// Quality of the measured cam; none for an exact cam.
     pub measured: Option<Measured>,
@@ -71,7 +71,7 @@ pub struct Design {
     pub attractors: Vec<AttractorsAt>,
     /// Budget of the runs.
     pub budget: Budget,
-    /// Where each limit is first exceeded.
+    /// Limits, each with the value at which it is first exceeded.
     pub limits: Vec<Passed>,
     /// Values that meet each need.
     pub needs: Vec<Answer>,
@@ -155,7 +155,7 @@ struct RoundEntry {
     force_n: f64,
 }
 
-/// The machines of the table, with its values.
+/// The machines of the table, and its values.
 fn load_table<'a>(
     machines: &'a PlausibleMachines<'a>,
     separation: Separation,
@@ -193,7 +193,7 @@ pub fn design(model: &Model, asked: &Asked, watch: &dyn Watch) -> Result<Design,
     let places = separation_places(separation, &machines);
     let table = load_table(&machines, separation, asked)?;
     let at_each = table.values.iter().map(|value| table.force(*value)).collect::<Result<Vec<_>, _>>()?;
-    // Where the cam's velocity jumps there is no contact force, and the follower leaves the cam at any speed.
+    // If the cam's velocity jumps, there is no contact force, and the follower leaves the cam at any speed.
     let parted = table.values.iter().zip(&at_each).filter(|(_, at)| at.is_none_or(|(_, is_parted)| is_parted));
     let parted: Vec<f64> = parted.map(|(value, _)| *value).collect();
     let round = match (table.values.as_slice(), at_each.as_slice()) {

@@ -42,7 +42,7 @@ impl Lever {
         format!("follower.{self}")
     }
 
-    /// Whether a smaller value helps most.
+    /// Whether smaller values help, as of the mass; otherwise larger values help.
     pub fn is_upper_bound(self) -> bool {
         self == Self::Mass
     }
@@ -64,12 +64,12 @@ impl<'a> Changed<'a> {
         Self { model, contact: contact.clone(), lowest, preload: model.preload }
     }
 
-    /// Keeps the rest position where the file's own model gives it, although a preload is given in this one.
+    /// Keeps the rest position instead of the preload, if `own` gives the rest position although this model gives a preload.
     pub fn keeping_rest_of(self, own: &Model) -> Self {
         Self { preload: self.preload.filter(|_| own.preload.is_some()), ..self }
     }
 
-    /// Places another model on its cam, with what is kept here.
+    /// Builds the counterpart of another model on its cam, which keeps the preload only if this one does.
     fn on<'b>(&self, model: &'b Model, contact: &Contact<'b>) -> Changed<'b> {
         let changed = Changed::new(model, contact);
         Changed { preload: changed.preload.filter(|_| self.preload.is_some()), ..changed }
@@ -183,7 +183,7 @@ document!(Answer as it {
     known: it.known,
 });
 
-/// Finds the value of one number that meets a need, the others kept. `machines` are those that may be there; none if the machine is exact.
+/// Finds the value of one number that meets a need, the others kept. `machines` are the plausible ones; none if the machine is exact.
 pub(super) fn answer(
     of: &Changed<'_>,
     (need, text): (&Need, &str),
@@ -193,7 +193,7 @@ pub(super) fn answer(
     let known = need.known();
     let found = find(of, need, lever)?;
     let told = |value: f64| of.told(lever, value).0;
-    // Where the least possible value will do, nothing is uncertain.
+    // Nothing is uncertain if there is no value, or if the least possible value meets the need.
     let machines = machines.filter(|_| found.value.is_some() && found.note.is_empty());
     let ends = |found: &Found| [found.value, found.other].into_iter().flatten().collect::<Vec<f64>>();
     let there = |model: &Model, cam: &Cam| {
@@ -227,7 +227,7 @@ pub(super) fn answer(
         // At least as wide as the resolution of the runs.
         let width = if known == Evidence::Sampled { tolerance::NEEDED_BY_RUNS.value * value.abs() } else { 0.0 };
         let error = match error.total() {
-            // What is sought may be all that is uncertain.
+            // The sought number may be the only uncertain one.
             0.0 if !is_measured => error,
             0.0 => SourcedUncertainty { cam: width, ..error },
             total if total < width => error.times(width / total),
@@ -300,7 +300,7 @@ pub(super) fn find(of: &Changed<'_>, need: &Need, lever: Lever) -> Result<Found,
     let rise = of.contact.cam.top() - of.lowest;
     let size = match lever {
         Lever::Preload => of.value(lever).max(stiffness * rise).max(weight),
-        // The critical one, or what stops the mass in a radian.
+        // The critical damping, or the damping that stops the mass within a radian.
         Lever::Damping => of.value(lever).max(2.0 * (stiffness * mass).sqrt()).max(mass * angular_velocity(need.rpm)),
         _ => of.value(lever),
     };
@@ -308,7 +308,7 @@ pub(super) fn find(of: &Changed<'_>, need: &Need, lever: Lever) -> Result<Found,
         What::NoSeparation => (DOUBLINGS, tolerance::ROOT_WIDTH.value),
         What::Below(..) => (DOUBLINGS_OF_RUNS, tolerance::NEEDED_BY_RUNS.value),
     };
-    // A value at which a run makes no progress is not known to meet the need.
+    // A value at which a run makes no progress does not count as meeting the need.
     let stuck = Cell::new(None);
     let does = |value: f64| match of.with(lever, value).does(need) {
         Err(SimulateError::NoProgress { .. }) => {

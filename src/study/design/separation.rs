@@ -1,4 +1,4 @@
-//! Where the follower first leaves the cam, with what is uncertain about the machine.
+//! First separation of the follower from the cam, with the uncertainty of the machine.
 
 use std::f64::consts::{PI, TAU};
 
@@ -13,12 +13,12 @@ use crate::uncertainty::{PlausibleMachines, SourcedUncertainty, UncertaintyParts
 /// A place where the follower may leave a measured cam first.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct SeparationPlace {
-    /// Cam angles between which likely cams let go here, rad; the second may be of the next turn.
+    /// Range of cam angles at which the follower separates here on likely cams, rad; its end may be in the next turn.
     #[serde(rename = "cam_angles_rad")]
     pub cam_angles: [f64; 2],
-    /// Share of the likely cams that let go here first.
+    /// Share of the likely cams on which the follower separates here first.
     pub share: f64,
-    /// Number of likely cams that the share is of.
+    /// Number of likely cams that the share refers to.
     pub cams: usize,
 }
 
@@ -48,7 +48,7 @@ pub(super) struct Separated<'a> {
 }
 
 impl<'a> Separated<'a> {
-    /// The separation at a speed, with its uncertainties and the places that compete; none if there is no such speed.
+    /// Builds the separation at a speed, with its uncertainties and the competing places; none if there is no such speed.
     pub fn new(
         separation: Separation,
         errors: Option<[SourcedUncertainty; 2]>,
@@ -83,14 +83,14 @@ pub fn known(
     };
     let errors = machines.error([rpm, cam_angle], of).unwrap_or([SourcedUncertainty::UNKNOWN; 2]);
     let [open, angle_error] = errors.map(|error| error.total());
-    // An angle at a corner of an exact cam stays there.
+    // At a corner of an exact cam, the angle has no uncertainty.
     let angle_error = Some(angle_error).filter(|error| !(*error <= tolerance::UNCERTAINTY_SEEN.value));
     (Separation::At { rpm, error: error + open, cam_angle, angle_error }, Some(errors))
 }
 
-/// Returns the places where likely machines let go first, the likeliest first; none where they agree to 10 degrees.
+/// Returns the places where the follower first separates on likely machines, the likeliest first; none if they agree to 10 degrees.
 pub fn separation_places(separation: Separation, machines: &PlausibleMachines<'_>) -> Vec<SeparationPlace> {
-    /// Error up to which an angle is one place, and distance from which on two angles are two, rad.
+    /// Largest uncertainty of the angle of a single place, and largest distance of neighbouring angles of one place, rad.
     const ONE: f64 = PI / 18.0;
     let Separation::At { angle_error: Some(error), .. } = separation else { return Vec::new() };
     if !(error > ONE) {
@@ -102,7 +102,7 @@ pub fn separation_places(separation: Separation, machines: &PlausibleMachines<'_
     };
     let mut angles: Vec<f64> = machines.each(of);
     angles.sort_by(f64::total_cmp);
-    // A place at angle 0 has some of them at the end of the turn: from the first one that is far from the one before it on.
+    // Some angles of a place at angle 0 are at the end of the turn. So the list begins with an angle that is far from the one before it.
     let count = angles.len();
     let is_far = |index: &usize| (angles[*index] - angles[(index + count - 1) % count]).rem_euclid(TAU) > ONE;
     let first = (0..count).find(is_far).unwrap_or(0);

@@ -50,8 +50,8 @@ impl ForceAt {
 }
 
 impl LoadCurves {
-    /// Returns the largest contact force by rising value, with the range that its uncertainty leaves: of the cam as long as the follower stays
-    /// on it, else of the motions, without impacts.
+    /// Returns the largest contact force by rising value, with the range that its uncertainty leaves. As long as the follower stays on the
+    /// cam, it is the force of the cam. Beyond, it is the largest force of the motions, without impacts.
     pub fn greatest_forces(&self) -> Vec<(Place, f64, Option<[f64; 2]>)> {
         let parted = |place: Place| self.loads.iter().any(|loads| loads.place == place);
         let bounds =
@@ -132,7 +132,7 @@ pub(super) struct LoadTable<'a> {
     pub values: Vec<f64>,
     /// Spacing of the values.
     pub spacing: Spacing,
-    /// Machines that may be there in place of the model's own.
+    /// Plausible machines in place of the model's own.
     pub machines: &'a PlausibleMachines<'a>,
     /// Separation of the model's own machine.
     pub separation: Separation,
@@ -146,7 +146,7 @@ pub(super) struct LoadTable<'a> {
 pub(super) type ForceFound = Option<(ForceAt, bool)>;
 
 impl LoadTable<'_> {
-    /// Uncertainties of numbers at a value, among the machines that may be there; none if the machine is exact, or if they are unknown.
+    /// Uncertainties of numbers at a value, among the plausible machines; none if the machine is exact, or if they are unknown.
     fn errors<const N: usize>(
         &self,
         value: f64,
@@ -156,7 +156,7 @@ impl LoadTable<'_> {
         Ok(self.over.uncertain_at(self.machines, value, |machines| machines.error(numbers, of))?)
     }
 
-    /// Separation of the machine at a value, whose contact is this.
+    /// Separation of the machine at a value, from its contact.
     fn separation_at(&self, contact: &Contact<'_>) -> Separation {
         if self.over.is_speed() { self.separation } else { contact.separation() }
     }
@@ -184,7 +184,7 @@ impl LoadTable<'_> {
         Ok(Some((ForceAt { error, ..at }, is_parted)))
     }
 
-    /// Budget of runs whose motions are not judged. Loads are the same.
+    /// Budget of runs whose motions are not judged, which does not change the loads.
     fn unjudged(&self) -> Budget {
         Budget { record: 0, ..self.budget }
     }
@@ -193,7 +193,7 @@ impl LoadTable<'_> {
     fn plain_loads(&self, value: f64, budget: Budget) -> Result<(Loads, Vec<Attractor>), StudyError> {
         let (model, machine) = (self.over.family.model(&[value])?, self.over.machine(value)?);
         let (loads, found) = Loads::among(&model, &machine, self.starts, budget)?;
-        // As asked for, not as recomputed from the angular velocity.
+        // The place as requested, not as recomputed from the angular velocity.
         Ok((Loads { place: self.over.place(value), ..loads }, found))
     }
 

@@ -119,7 +119,7 @@ impl Place {
         Self { rpm, value: None }
     }
 
-    /// Unit that the name of a field of the value ends in: that of a speed, or none.
+    /// Unit in the name of a field with the value: the unit of a speed, or none.
     pub fn unit(&self) -> &'static str {
         if self.value.is_none() { "_rpm" } else { "" }
     }

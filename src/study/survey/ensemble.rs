@@ -39,7 +39,7 @@ pub struct Attractor {
     pub ending: LongRun,
     /// The starts that settle on it, in order; none if only the motion of another speed reached it.
     pub starts: Vec<usize>,
-    /// Revolutions that the run from each start, or that of another speed, was followed for until it was judged.
+    /// Revolutions that the run from each start, or the run from another speed, was followed for until it was judged.
     pub followed: Vec<u64>,
     /// State of the first of these runs when it was judged.
     pub motion: Motion,
@@ -122,9 +122,9 @@ pub fn long_run(machine: &Machine, motion: Motion, budget: Budget) -> Result<Jud
 /// Finds the long-run motions of `count` starts. Runs go side by side, and `watch` is notified of each. `start` returns none for an
 /// impossible start.
 ///
-/// The motion after a rest is found once for each release. Runs that neither rest nor settle on an orbit share the patience of the budget:
-/// if one of them settles on an orbit in the end, none of them is on an attractor yet. A run that cannot go on costs only its own start; it
-/// is an error if no other start is left.
+/// The motion after a rest is found once for each release. Runs that neither rest nor settle on an orbit share the patience of the budget.
+/// If one of them settles on an orbit in the end, none of them is on an attractor yet. A run that cannot go on affects only its own start.
+/// Fails if no other start is left.
 pub fn attractors_of(
     runs: &LongRuns<'_>,
     count: usize,
@@ -181,10 +181,10 @@ fn judged(
     let exits = exits(&ends, &releases);
     let wandering = Wandering { left: exits.len() as u64, ..wandering };
     let wanders = if exits.is_empty() { told_wandering(runs, &ends, &releases, outlast, watch)? } else { exits };
-    // A motion that is left sooner or later is also left from each of its rests.
+    // A motion that runs leave sooner or later is also left after each of its rests.
     let wanders_on = |ending: &LongRun| wandering.left > 0 && ending.wanders();
     let mut ensemble = Ensemble { wandering, failed, ..Ensemble::default() };
-    // Runs that wander share the endings in turn. Of an ending of several runs together, as many of them were recorded.
+    // Wandering runs get the endings in turn. An ending of several recorded runs gives their revolutions to as many of the wandering runs.
     let mut wanderers = (0_u64..).flat_map(|round| {
         wanders.iter().map(move |ending| {
             let growth = ending.of_growth().filter(|growth| round < growth.runs);
@@ -253,7 +253,7 @@ impl Ensemble {
 /// Runs the wandering runs on until their total reaches the patience of the budget. Runs that leave at first were only slow to settle and
 /// do not count. Returns also whether the wandering runs are on another motion than those that had rested by then.
 fn wait(runs: &LongRuns<'_>, ends: &mut [Option<End>], releases: &Releases, watch: &dyn Watch) -> (bool, Wandering) {
-    /// Least revolutions that are worth a look for an orbit.
+    /// Least revolutions after which an orbit is looked for.
     const LEAST: u64 = 32;
     let Budget { transient, patience, .. } = runs.budget;
     if patience == 0 {
@@ -296,7 +296,7 @@ fn wait(runs: &LongRuns<'_>, ends: &mut [Option<End>], releases: &Releases, watc
     }
 }
 
-/// Revolutions that a run of so many has wandered, and whether it rested, without the revolutions needed to forget its start.
+/// Revolutions for which a run of `revolutions` has wandered, without those that it needs to forget its start, and whether it rested.
 #[doc(hidden)]
 pub fn soon_rested(run: &Result<RunOutcome, SimulateError>, revolutions: u64) -> Wandering {
     /// Revolutions after which the start is forgotten.
@@ -354,7 +354,7 @@ fn exits(ends: &[Option<End>], releases: &Releases) -> Vec<LongRun> {
 
 /// Returns the motions assigned in turn to the runs that still wander, if no run has left.
 ///
-/// If some motion rests now and then, they are on it, unless they outlast the runs that rest.
+/// If some motion rests now and then, the runs are on it, unless they outlast the runs that rest.
 fn told_wandering(
     runs: &LongRuns<'_>,
     ends: &[Option<End>],

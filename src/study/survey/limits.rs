@@ -1,16 +1,15 @@
-//! Limits of the numbers that a user asks with, for the command line and Python alike. A complaint does not name the number: the caller adds
+//! Limits of the numbers that a user asks with, for the command line and Python alike. A message does not name the number: the caller adds
 //! the name that it has there.
 
 use super::axis::{Spacing, Values};
 use crate::orbit::Search;
 use crate::orbit::long_run::Budget;
 
-/// Most threads of a machine with fewer cores. A thread without work looks through all others for some, so that what is lost grows with the
-/// square of how many there are: a tenth of a second of one core with these, before anything is done, and more than a second with four
-/// times as many.
+/// Most threads on a machine with fewer cores. Idle threads search all others for work, so the loss grows with the square of their number.
+/// With this number it is a tenth of a second of one core, with four times as many more than a second.
 const MOST_THREADS: usize = 256;
 
-/// Whether so many threads may be started: what a machine has cores for, it may use.
+/// Checks a number of threads: at most `MOST_THREADS`, or one for each core if there are more cores.
 pub fn thread_count(count: u64) -> Result<usize, String> {
     let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
     let most = MOST_THREADS.max(cores);
@@ -18,7 +17,7 @@ pub fn thread_count(count: u64) -> Result<usize, String> {
     count.ok_or_else(|| format!("must be a whole number of threads from 1 to {most}"))
 }
 
-/// Whether a cam can turn at a speed, rpm.
+/// Checks a speed of the cam, rpm.
 pub fn speed(rpm: f64) -> Result<f64, String> {
     match rpm {
         rpm if !(rpm > 0.0 && rpm.is_finite()) => Err("must be a finite number above 0".into()),
@@ -27,12 +26,12 @@ pub fn speed(rpm: f64) -> Result<f64, String> {
     }
 }
 
-/// Whether two numbers are the ends of a range.
+/// Checks that two numbers are the ends of a range.
 pub fn range([low, high]: [f64; 2]) -> Result<[f64; 2], String> {
     if low < high && (high - low).is_finite() { Ok([low, high]) } else { Err(format!("{low} is not below {high}")) }
 }
 
-/// Whether an axis of this spacing may begin at a value.
+/// Checks that an axis of this spacing may begin at a value.
 pub fn spaced(low: f64, spacing: Spacing) -> Result<Spacing, String> {
     match spacing {
         Spacing::Logarithmic if low <= 0.0 => Err(format!("a logarithmic axis begins above 0, and {low} does not")),

@@ -34,7 +34,7 @@ pub enum OverError {
     Family(#[from] FamilyError),
 }
 
-/// Speed, rpm, of a survey over the numbers `free`. If the speed varies, `rpm` must not be given, and any speed is returned.
+/// Speed, rpm, of a survey over the numbers `free`. If the speed varies, `rpm` must not be given, and the result is a placeholder.
 pub(super) fn speed(free: &[Parameter], rpm: Option<f64>) -> Result<f64, OverError> {
     /// Placeholder: if the speed varies, each machine has its own.
     const ANY: f64 = 1.0;
@@ -63,8 +63,8 @@ impl<'a> Over<'a> {
         Self::new(model, Parameter::Speed, None)
     }
 
-    /// Returns an uncertainty among the machines that may be there at a value, where the number that varies is exact; none if they are exact.
-    /// `machines` are those in place of the model's own.
+    /// Returns an uncertainty among the plausible machines at a value, where the number that varies is exact; none if the machines are
+    /// exact. `machines` are plausible in place of the model's own.
     pub(crate) fn uncertain_at<T>(
         &self,
         machines: &PlausibleMachines<'_>,

@@ -1,4 +1,4 @@
-//! Where the runs of a survey begin.
+//! Starts of the runs of a survey.
 
 use std::f64::consts::TAU;
 
@@ -18,9 +18,9 @@ pub struct Start {
 /// State of the follower at the start.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Placed {
-    /// In this state.
+    /// A given state.
     At(State),
-    /// On the cam, leaving it at this velocity, m/s, zero or more.
+    /// A place on the cam, which the follower leaves at this velocity, m/s, zero or more.
     OnCam(f64),
 }
 
@@ -71,8 +71,8 @@ pub struct Starts {
 impl Starts {
     /// Starts of a machine, up to the highest relative velocity that impacts can sustain.
     ///
-    /// A flight from the cam back to it returns with no more than the energy that it left with and that of the way down the lift. With the
-    /// cam's largest velocity V, and w the velocity of that way,
+    /// A flight returns to the cam with no more than its energy at the start plus the energy of the way down the lift. With the cam's
+    /// largest velocity V, and w the velocity of that way down,
     ///
     /// ```text
     /// u' <= r (u + 2 V + w),   in the long run u <= r (2 V + w)/(1 - r)

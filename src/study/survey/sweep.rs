@@ -24,21 +24,21 @@ pub enum Section {
     Strobe(f64),
 }
 
-/// Start of each value.
+/// Start of the run at each value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SweepStart {
-    /// From the same start.
+    /// One start for all values.
     Nothing,
-    /// From the end of the next lower value.
+    /// End of the run at the next lower value.
     Up,
-    /// From the end of the next higher value.
+    /// End of the run at the next higher value.
     Down,
 }
 
-/// Finds the motions of a machine that are to be recorded.
+/// Function that finds the motions of a machine that are to be recorded.
 pub type Find = Arc<dyn Fn(&Machine) -> Result<Vec<Motion>, SimulateError> + Send + Sync>;
 
-/// Beginnings of the runs at a value.
+/// Starts of the runs at a value.
 #[derive(Clone)]
 pub enum Beginning {
     /// One run, from one start at every value.
@@ -57,7 +57,7 @@ impl Beginning {
     }
 }
 
-/// Growth of a small deviation per revolution, a natural logarithm, of the motion on which a motion settles.
+/// Function for the growth of a small deviation per revolution, a natural logarithm, of the motion on which a run settles.
 pub type Growth = Arc<dyn Fn(&Machine, Motion) -> Result<Estimate, SimulateError> + Send + Sync>;
 
 /// A sweep over the values of one number.
@@ -84,7 +84,7 @@ pub struct Sweep {
 pub struct RecordRow {
     /// Value of the number that varies; for the speed, rpm.
     pub value: f64,
-    /// How often the cam has passed angle 0 since the start at this value.
+    /// Number of times that the cam has passed angle 0 since the start at this value.
     pub revolution: u64,
     /// Index of the motion found for this value that the row belongs to.
     pub motion: Option<usize>,
@@ -94,8 +94,8 @@ pub struct RecordRow {
     pub growth: Option<Estimate>,
 }
 
-/// Cam angles, rad, of the impacts on which a machine settles: those of `record` revolutions after `transient` from rest on the cam at
-/// angle 0.
+/// Cam angles, rad, of the impacts on which a machine settles, over `record` revolutions after `transient` revolutions from rest on the cam
+/// at angle 0.
 pub fn settled_impacts(machine: &Machine, transient: u64, record: u64) -> Result<Vec<f64>, SimulateError> {
     let mut motion = machine.start_on_cam(0.0, 0.0)?;
     machine.revolve(&mut motion, transient)?;

@@ -54,7 +54,7 @@ pub enum StoreError {
 const MOST_POINTS: usize = 1 << 24;
 /// Largest number of blocks of a store: with the default sides, 10^10 points.
 const MOST_BLOCKS: usize = 1 << 20;
-/// Time after which the blocks of a store are not looked at any further.
+/// Time after which no further block of a store is checked.
 const PATIENCE: Duration = Duration::from_millis(500);
 
 /// Numbers of points and blocks, each across and up.
@@ -101,7 +101,7 @@ impl Layout {
         [0, 1].map(|axis| self.points[axis].div_ceil(self.sides[axis]))
     }
 
-    /// Whether every file of a block, counted row by row from 0, is there and undamaged; `None` if the time is over before that is known.
+    /// Whether every file of a block, counted row by row from 0, is there and undamaged; `None` if the time runs out before.
     pub(super) fn is_done(&self, folder: &Path, block: usize, until: Option<Instant>) -> Option<bool> {
         for variable in &VARIABLES {
             if until.is_some_and(|until| Instant::now() > until) {

@@ -103,7 +103,7 @@ impl<'a> Store<'a> {
         let document = self.output(Path::new("zarr.json"), pretty(&self.document()).as_bytes());
         let begun = document.and_then(|document| Ok(document.commit_new()?));
         if begun.is_err() && is_new {
-            // It is empty, unless another process has begun a chart in it.
+            // The folder is empty, unless another process has begun a chart in it.
             let _ = std::fs::remove_dir(self.folder);
         }
         begun
@@ -131,7 +131,7 @@ impl<'a> Store<'a> {
             && file::bytes(&path, bytes.len()).is_ok_and(|there| there == bytes)
     }
 
-    /// Returns what is said of an axis with other values in an older store, which does not describe its axes in `zarr.json`.
+    /// Returns the message about an axis with other values in an older store, which does not describe its axes in `zarr.json`.
     fn other_axis(&self) -> Option<String> {
         let is_other = |axis: &&Axis| !self.holds(&axis_file(axis), &axis_bytes(axis));
         let other = self.axes().into_iter().filter(|_| !self.layout.has_checksums).find(is_other);
@@ -297,7 +297,7 @@ pub fn attributes(chart: &Chart) -> Value {
     })
 }
 
-/// Describes the values of an axis well enough to tell them from others.
+/// Describes the values of an axis well enough to distinguish them from others.
 fn described_axis(axis: &Axis) -> Value {
     let [low, high] = axis.ends();
     json!({ "low": low, "high": high, "points": axis.values.len(), "crc32c": checksum::crc32c(&axis_bytes(axis)) })

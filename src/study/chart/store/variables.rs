@@ -125,7 +125,7 @@ impl Variable {
         self.whole.unwrap_or(8)
     }
 
-    /// Returns the name, type and attributes of the variable, with those of the CF conventions.
+    /// Returns the name, type and attributes of the variable, including the attributes of the CF conventions.
     pub fn document(&self, units: &Units) -> Value {
         json!({ "name": self.name, "dtype": self.data_type(), "attributes": self.attributes(units) })
     }
