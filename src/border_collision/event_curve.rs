@@ -83,7 +83,7 @@ impl EventPoint {
 #[derive(Clone, Debug, PartialEq)]
 #[doc(hidden)]
 pub struct EventCurve {
-    /// The event at the model's own number.
+    /// Event at the model's own number.
     pub kind: SpecialKind,
     pub points: Vec<EventPoint>,
     /// Reasons for its start and its end.

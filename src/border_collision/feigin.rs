@@ -68,9 +68,9 @@ pub fn speeds_at(mu: f64) -> String {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[doc(hidden)]
 pub struct SideCounts {
-    /// Real eigenvalues above 1.
+    /// Number of real eigenvalues above 1.
     pub above_one: usize,
-    /// Real eigenvalues below -1.
+    /// Number of real eigenvalues below -1.
     pub below_minus_one: usize,
     /// Whether both eigenvalues lie inside the unit circle.
     pub stable: bool,

@@ -4,7 +4,6 @@
 //! | module | contents |
 //! |---|---|
 //! | [`mod@conditions`], [`feigin`] | conditions of a classification, and the classification |
-//! | [`mod@normal_form`] | the map with its parameter out of the border |
 //! | [`mod@normal_form`] | normal form, with the border independent of the parameter |
 //! | [`local_map`], [`word`] | the map; the sides that its orbits visit |
 //! | [`trapping`] | regions that the map sends into themselves |
@@ -13,6 +12,7 @@
 //! | [`directions`], [`danger`] | directions of divergence at the corner impact; basins that vanish there; attractors that meet there |
 //! | [`validity`], [`passage`] | range in which the map is valid; departure of the machine from its former orbit |
 //! | [`mod@rounded`] | shift of a fold by rounding of the corner |
+//! | `event_curve` | curves of corner impacts, folds, flips, grazes in two numbers of the model; scenarios of corner impacts |
 
 #[doc(hidden)]
 pub mod conditions;
