@@ -4,7 +4,6 @@
 //! loops of the simulator and of the searches repeat by [`check`]. If the answer is yes, the work is unwound to its beginning and
 //! everything that it owns is dropped. So no search mistakes the stop for a failed run, and no result carries it. Threads that share the
 //! work get the question by [`carry`].
-//! share the work get the question by [`carry`].
 
 use std::cell::{Cell, RefCell};
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};

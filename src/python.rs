@@ -190,7 +190,7 @@ fn isolating() -> &'static [&'static str] {
 
 fn interpreter() -> PathBuf {
     let chosen = std::env::var_os("CORNER_IMPACT_PYTHON").map(PathBuf::from);
-    // A bare name is looked for in the PATH; a path is meant from the current folder, which is not the script's.
+    // A bare name is searched in the PATH; a path is relative to the current folder, which is not the script's.
     let chosen = chosen.map(|path| match path.components().count() {
         0 | 1 => path,
         _ => std::path::absolute(&path).unwrap_or(path),

@@ -77,7 +77,7 @@ pub fn value(text: &str) -> Cow<'_, str> {
     cut(written_out(text, |_| false), VALUE)
 }
 
-/// Writes the letters of a JSON document that steer by escapes of JSON, which leaves its values as they are.
+/// Escapes the steering characters of a JSON document, which leaves its values as they are.
 pub fn json(document: String) -> String {
     if !document.chars().any(|letter| letter != '\n' && steers(letter)) {
         return document;

@@ -1,7 +1,7 @@
 //! Shape of the cam, viewed along its axis at angle 0, with the follower straight above the axis.
 //!
-//! The outline is the contour that the follower touches; if only a lift is given, the lift as a radius. At cam angle `theta` the ray `(sin
-//! theta, cos theta)` is on top; the cam turns to the left.
+//! The outline is the contour that the follower touches; if only a lift is given, the lift as a radius. At cam angle `theta` the ray
+//! `(sin theta, cos theta)` is on top; the cam turns to the left.
 
 use std::f64::consts::TAU;
 

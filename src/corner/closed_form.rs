@@ -70,8 +70,8 @@ pub fn side_map(follower: &Follower, period: f64, v: f64, lift: &Lift) -> SideMa
     SideMap { a, b }
 }
 
-/// Solves eq:fixedp, repaired: `x* = -[I - phi_T - F R F]^{-1} F R y_0`, `R = [[0, 0], [0, -(1+r)]]`. The print has the sign + before `F R
-/// F`. `T*` follows from `h (F x* - y_0) = 0` by secants from a period close by.
+/// Solves eq:fixedp, repaired: `x* = -[I - phi_T - F R F]^{-1} F R y_0`, `R = [[0, 0], [0, -(1+r)]]`. The print has the sign + before
+/// `F R F`. `T*` follows from `h (F x* - y_0) = 0` by secants from a period close by.
 ///
 /// Needs an equilibrium, so a stiffness above 0.
 pub fn orbit(model: &Model, at: &CornerImpact) -> Result<(Vector2<f64>, f64), NoFixedPoint> {

@@ -1,8 +1,8 @@
 //! Map of one side to second order: the terms near a corner impact that the piecewise-linear map leaves out.
 //!
-//! The state and the time of each impact are followed over one period as polynomials of second degree in the deviation `z = (dx1, dx2,
-//! dT)`, without terms of third degree. Each flight lasts its part of T. Each impact is carried back to the moment when the cam is at the
-//! angle of the orbit's impact:
+//! The state and the time of each impact are followed over one period as polynomials of second degree in the deviation
+//! `z = (dx1, dx2, dT)`, without terms of third degree. Each flight lasts its part of T. Each impact is carried back to the moment when the
+//! cam is at the angle of the orbit's impact:
 //!
 //! ```text
 //! flight of t + h   eta -> F eta + h (f + G F eta) + h^2/2 f',   f = (v, a), f' = (a, j) at the end, G = [[0, 1], [-w0^2, -2 zeta]]

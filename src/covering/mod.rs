@@ -74,7 +74,7 @@ impl HSet {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Strip {
-    /// Impacts until it is carried across the h-set.
+    /// Number of impacts until it is carried across the h-set.
     pub impacts: u64,
     /// Number of turns of the cam until then.
     pub revolutions: u64,

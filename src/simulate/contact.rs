@@ -34,8 +34,8 @@ pub enum Outcome {
     NotFinite(f64),
 }
 
-/// Finds the first contact of the gap `gap_at(time)` within `[0, end]`, s; `third_bound(time, reach)` bounds `|g'''|` over `[time, time +
-/// reach]`. A follower that is inside the cam and moves out of it counts as one that leaves the surface.
+/// Finds the first contact of the gap `gap_at(time)` within `[0, end]`, s; `third_bound(time, reach)` bounds `|g'''|` over
+/// `[time, time + reach]`. A follower that is inside the cam and moves out of it counts as one that leaves the surface.
 pub fn first_contact(
     gap_at: impl Fn(f64) -> GapAt,
     third_bound: impl Fn(f64, f64) -> f64,

@@ -11,9 +11,9 @@ use crate::tolerance;
 
 /// Returns the duration of infinitely many impacts, s, and its relative uncertainty.
 ///
-/// After an impact with relative velocity u and restitution r, let the gap of a follower that moves with the cam accelerate at `g'' = -A +
-/// J t` (damping: `zeta`). Then the hops are geometric up to the second order. With `y = u/A` and `k = J/A - zeta`, a hop takes `2y (1 +
-/// 2ky/3)` and leaves `y' = r y (1 + 4ky/3)`, so their sum is
+/// After an impact with relative velocity u and restitution r, let the gap of a follower that moves with the cam accelerate at
+/// `g'' = -A + J t` (damping: `zeta`). Then the hops are geometric up to the second order. With `y = u/A` and `k = J/A - zeta`, a hop takes
+/// `2y (1 + 2ky/3)` and leaves `y' = r y (1 + 4ky/3)`, so their sum is
 ///
 /// ```text
 /// S = S1 (1 + k S1/3),  S1 = 2y/(1 - r)

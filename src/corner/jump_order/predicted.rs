@@ -95,8 +95,8 @@ pub struct SectionJump {
     /// Vector `(1+r) J/(j-1)! F e2`, m and m/s per power of a second, with the flight F from the corner to the end. For j = 1, J is limited
     /// to the range from `-u-` to `r u-`: beyond it flights miss the cam, or hit it twice.
     pub step: Vector2<f64>,
-    /// Gradient n: the time of the impact from the corner per unit of position, velocity and period: s/m, s^2/m, 1. The border is `n z =
-    /// 0`.
+    /// Gradient n: the time of the impact from the corner per unit of position, velocity and period: s/m, s^2/m, 1. The border is
+    /// `n z = 0`.
     pub gradient: RowVector3<f64>,
 }
 
