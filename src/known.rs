@@ -1,8 +1,8 @@
-//! How a result is known: the word that every result carries, in documents and on pages.
+//! Evidence for results: the word that every result carries, in documents and on pages.
 
 use serde::{Deserialize, Serialize};
 
-/// How a result is known; the strongest first.
+/// Kind of evidence for a result; the strongest first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Deserialize, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Evidence {

@@ -14,6 +14,7 @@
 //! ```text
 //! beta dT = det(I - A-) g + (det(I - A+) - det(I - A-)) G Phi(g/G),
 //! ```
+//!
 //! Therefore, if the determinants have opposite signs, two fixed points meet smoothly where det(I - A) vanishes, at phi = det(I -
 //! A-)/(det(I - A-) - det(I - A+)). The dT of this point grows in proportion to epsilon.
 

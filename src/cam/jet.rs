@@ -18,7 +18,7 @@ impl Jet {
         Self(orders)
     }
 
-    /// From the coefficients of `sum c_n t^n`: the derivatives are `n! c_n`.
+    /// Builds the derivatives `n! c_n` from the coefficients of `sum c_n t^n`.
     pub(super) fn from_series(mut series: [f64; Self::ORDERS]) -> Self {
         let mut factorial = 1.0;
         for (order, coefficient) in series.iter_mut().enumerate().skip(1) {

@@ -3,6 +3,7 @@
 //! Consider a periodic orbit with an impact on a corner of the cam. One period maps a deviation of the state `dx` and of the cam's period
 //! `dT`, or of any number of the model, to `A dx + B dT`. The matrices depend on the side of the corner on which the impact falls. The
 //! paper's orbit has one impact in one revolution; others may have any number of both. Orbits are found by
+//!
 //! | module | finds |
 //! |---|---|
 //! | `period_equation` | the speeds at which the only impact of an orbit is on a corner: all roots of one equation |
@@ -19,8 +20,7 @@
 //! | [`variational`] | the laws of flight and impact; it multiplies their derivatives over one period and simulates nothing |
 //! | [`finite_difference`] | the simulation itself: differences of simulated periods |
 //! | [`least_squares`] | the simulation itself: a polynomial fitted to simulated periods |
-//! | `external` | nothing: Python programs that read the model file's numbers and locate the corner impact themselves. The paper's orbits
-//! only |
+//! | `external` | nothing: Python programs read the model file's numbers and locate the impact themselves. The paper's orbits only |
 //!
 //! [`mod@second_order`] computes the terms of second order, which these matrices leave out.
 //!

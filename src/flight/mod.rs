@@ -219,7 +219,7 @@ impl Flight {
 
     /// `d(q, v)/d(q0, v0)` over a flight of `t`, s: the 2x2 propagator of a deviation, by rows.
     ///
-    /// From `q = q0 + v0 s + f0 p`, `v = v0 s' + f0 s` with `df0/dq0 = -w0^2`.
+    /// Follows from `q = q0 + v0 s + f0 p`, `v = v0 s' + f0 s` with `df0/dq0 = -w0^2`.
     pub fn propagator(&self, t: f64) -> Matrix2<f64> {
         self.propagator_by(&self.response(t))
     }

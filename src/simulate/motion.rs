@@ -43,11 +43,11 @@ pub struct Motion {
 /// Time at which the sum of infinitely many impacts is used.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Chatter {
-    /// Once the end of the chatter is found, whether it comes before the end of the run or after it.
+    /// Sum that is used once it is accurate, whether the chatter ends before the run or after it.
     Anywhere,
-    /// In the next step.
+    /// Sum that is used in the next step.
     Due,
-    /// Only if the chatter ends before the run; otherwise each impact up to the goal is simulated, and none beyond.
+    /// Sum that is used only if the chatter ends before the run; otherwise each impact up to the goal is simulated, and none beyond.
     WithinRun,
 }
 

@@ -68,7 +68,7 @@ pub(super) struct Arguments {
 /// Number of values of an axis if none is given.
 const VALUES: usize = 9;
 
-/// How many along the positions and along the velocities.
+/// Numbers of cells along the positions and along the velocities.
 #[derive(Clone, Copy)]
 struct Cells([usize; 2]);
 

@@ -1,6 +1,6 @@
 //! Words for enums: one name of each value on all pages.
 //!
-//! In JSON and in tables, a value has the name that it serializes as.
+//! A value has the name of its serialization in JSON and in tables.
 
 use std::borrow::Borrow;
 

@@ -172,7 +172,7 @@ fn largest(error: &CornerMap) -> (f64, f64) {
     (a, both.iter().flat_map(|side| side.b.iter()).copied().fold(0.0, worse))
 }
 
-/// For each quantity, the pair of routes nearest to its bound, and every pair that disagrees.
+/// Pair of routes nearest to its bound for each quantity, and every pair that disagrees.
 pub(crate) fn agreement(found: &Verification) -> Vec<Block> {
     let columns = [
         Column::left("quantity", 2, 19),
