@@ -1,10 +1,10 @@
-//! A number proved to lie within a radius of a middle, as decimals.
+//! Number that is proved to lie within a radius of a middle, as decimals.
 
 use serde::{Deserialize, Serialize};
 
 use crate::interval::Interval;
 
-/// A ball, as proofs in many digits write it: the number lies within `rad` of `mid`.
+/// Ball, as proofs in many digits write it: the number lies within `rad` of `mid`.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Ball {
     /// Middle of the ball: the proved digits, each right except for one unit of the last.
@@ -21,7 +21,7 @@ impl Ball {
         Interval::new(mid.next_down(), mid.next_up()) + Interval::new(-rad.next_up(), rad.next_up())
     }
 
-    /// The double nearest to the middle; NaN if the text is not a number, and a NaN passes no comparison.
+    /// Double nearest to the middle; NaN if the text is not a number, which fails every comparison.
     pub fn value(&self) -> f64 {
         self.mid.parse().unwrap_or(f64::NAN)
     }

@@ -1,26 +1,26 @@
-//! Finds roots and borders of one number by four methods, each with its requirements and guarantees.
+//! Search for roots and changes of a function of one number, by four methods with their requirements and guarantees.
 //!
 //! | method | requires | guarantees |
 //! |---|---|---|
-//! | [`halve`] | a yes or no that differs at the ends | a bracket of the required width, with one change in it; bisection |
-//! | [`outward`] | a yes or no, and a direction | nothing: a bracket for `halve`, unless the change is too far away |
+//! | [`halve`] | a yes-or-no function that differs at the ends | a bracket of the required width, with one change in it; bisection |
+//! | [`outward`] | a yes-or-no function, and a direction | a bracket for `halve`, unless the change is too far away |
 //! | `regula_falsi` | signs that differ at the ends | a bracket as narrow as rounding allows, in fewer steps if smooth (Dowell and Jarratt 1971) |
-//! | `secants` | two guesses close by | nothing: the caller must check that the last point is a root |
+//! | `secants` | two guesses close by | none: the caller must check that the last point is a root |
 //!
-//! The event loop has methods of its own: a contact takes two or three of Halley's steps inside a certified bracket, with the
-//! cam and the follower evaluated once for value, slope and curvature, and a closure would cost as much as a step. The fall
-//! to a level has a method of its own, too: its Halley steps use the known velocity and acceleration.
+//! The event loop has separate methods. A contact takes two or three of Halley's steps inside a certified bracket, with one evaluation of
+//! value, slope and curvature each; a closure would cost as much as a step. The fall to a level has a separate method, too: its Halley
+//! steps use the velocity and acceleration at hand.
 
 use std::ops::RangeInclusive;
 
 /// Width at which a bracket is narrow enough.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Width {
-    /// Relative to the second end.
+    /// Width relative to the second end.
     Relative(f64),
-    /// In the unit of its ends.
+    /// Width in the unit of the ends.
     Absolute(f64),
-    /// After this many halvings: a guess for a method that continues from there.
+    /// Number of halvings, for a guess from which another method continues.
     Halvings(u32),
 }
 
@@ -43,7 +43,7 @@ pub fn halve<E>(
             return Ok([from, to]);
         }
         let middle = 0.5 * (from + to);
-        // Toward 0 the relative width stays the same until there is no number in between.
+        // Near 0 the relative width stays the same until no number lies in between.
         if middle == from || middle == to {
             return Ok([from, to]);
         }
@@ -56,7 +56,8 @@ pub fn halve<E>(
     }
 }
 
-/// Looks from `from` on, in up to `steps` steps of doubled length, for the step on which a yes or no changes. `is_beyond` is false at `from`.
+/// Searches from `from` on, in up to `steps` steps of doubled length, for the step on which a yes-or-no function changes. `is_beyond` is
+/// false at `from`.
 pub fn outward<E>(
     from: f64,
     step: f64,
@@ -74,7 +75,7 @@ pub fn outward<E>(
     Ok(None)
 }
 
-/// A point at which a function was evaluated: its place, its value, and further data.
+/// Point at which a function was evaluated: its argument, its value, and further data.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Seen<P> {
     pub at: f64,
@@ -85,7 +86,7 @@ pub(crate) struct Seen<P> {
 /// Finds a root by secants that keep the bracket `ends`, in rising order. If an end stays twice, its weight is halved, so that both ends
 /// move in.
 ///
-/// Ends at a root, at a bracket of `width`, or where `value` returns none. Where rounding decides the signs, the bracket is widened again
+/// Stops at a root, at a bracket of `width`, or if `value` returns `None`. Where rounding decides the signs, the bracket is widened again
 /// from the point nearest to a root. Returns the bracket's ends, and that nearest point, which is never the first end.
 pub(crate) fn regula_falsi<P: Clone, E>(
     ends: [Seen<P>; 2],
@@ -122,7 +123,7 @@ pub(crate) fn regula_falsi<P: Clone, E>(
     }
     let mut sure = |end: &Seen<P>, direction: f64| -> Result<Seen<P>, E> {
         let mut reach = 0.5 * width;
-        // The last two points. Values of one and two ulps have the ratio 2 by chance, so one ratio alone proves nothing.
+        // The last two points. Values of one and two ulps have the ratio 2 by chance, so a single ratio proves nothing.
         let mut nearer: [Option<Seen<P>>; 2] = [None, None];
         loop {
             let at = best.at + direction * reach;
@@ -142,9 +143,9 @@ pub(crate) fn regula_falsi<P: Clone, E>(
     Ok(([sure(&outer[0], -1.0)?, sure(&outer[1], 1.0)?], best))
 }
 
-/// Finds a root by at most `steps` secants from two guesses and their values: up to a root, or to a step of less than the fraction `width`
-/// of its starting point. Returns the last two points, of which the second is the nearer, and whether the search converged. A root that is
-/// met exactly is returned as both points.
+/// Finds a root by at most `steps` secants from two guesses and their values: up to a root, or to a step below the fraction `width` of its
+/// starting point. Returns the last two points, of which the second is the nearer, and whether the search converged. An exact root is
+/// returned as both points.
 pub(crate) fn secants<E>(
     [mut last, mut here]: [(f64, f64); 2],
     steps: usize,

@@ -1,15 +1,15 @@
 //! Ends long work early, at the request of the caller.
 //!
-//! A program ends by its signals and needs none of this. If another program calls the library, [`run`] runs work under a question, which
-//! the loops of the simulator and of the searches repeat by [`check`]. If the answer is yes, the work is unwound to its beginning, and
-//! everything that it holds is dropped on the way. So no search takes the stop for a failed run, and no result carries it. Threads that
-//! share the work get the question by [`carry`].
+//! A program that its signals end needs none of this. If another program calls the library, [`run`] runs work with a question, which the
+//! loops of the simulator and of the searches repeat by [`check`]. If the answer is yes, the work is unwound to its beginning and
+//! everything that it owns is dropped. So no search mistakes the stop for a failed run, and no result carries it. Threads that share the
+//! work get the question by [`carry`].
 
 use std::cell::{Cell, RefCell};
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::Arc;
 
-/// Question whether work is to end; put on every thread that does some of it.
+/// Question whether work is to end; set on every thread that does part of the work.
 pub type Question = Arc<dyn Fn() -> bool + Send + Sync>;
 
 thread_local! {
@@ -20,10 +20,10 @@ thread_local! {
 /// Payload of the unwinding.
 struct Stopped;
 
-/// Runs some work and returns its result; none if the answer to `question` was yes before its end.
+/// Runs some work and returns its result; `None` if the answer to `question` was yes before the end.
 pub fn run<T>(question: Question, work: impl FnOnce() -> T) -> Option<T> {
     let before = QUESTION.replace(Some(question));
-    // State that the work leaves half done is its own, and is dropped with it.
+    // State that the work leaves incomplete belongs to it, and is dropped with it.
     let outcome = catch_unwind(AssertUnwindSafe(work));
     QUESTION.set(before);
     match outcome {
@@ -33,7 +33,7 @@ pub fn run<T>(question: Question, work: impl FnOnce() -> T) -> Option<T> {
     }
 }
 
-/// Ends the work here if it is to end; to be called in each round of a loop.
+/// Ends the work here if it is to end; called in each round of a loop.
 #[inline]
 pub fn check() {
     /// Rounds between two questions: a question may cost as much as a round.
@@ -45,10 +45,10 @@ pub fn check() {
     }
 }
 
-/// Ends the work here if it is to end, asking at every call; for rounds that take a millisecond or more.
+/// Ends the work here if it is to end; asks at every call, for rounds that take a millisecond or more.
 #[cold]
 pub fn check_now() {
-    // The answer may come from work of its own, under another question.
+    // The answer may come from other work, under another question.
     let question = QUESTION.with_borrow(Clone::clone);
     if question.is_some_and(|question| question()) {
         resume_unwind(Box::new(Stopped));

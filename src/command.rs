@@ -1,14 +1,14 @@
-//! Command lines of the program that reproduce what is seen elsewhere: in a report, or on the live page.
+//! Command lines of the program that reproduce results shown in a report or on the live page.
 
 use crate::model::Model;
 
-/// `corner-impact NAME MODEL REST`, without a model file for the built-in model, with options for the changed numbers.
+/// Command line `corner-impact NAME MODEL REST`, without a model file for the built-in model, with options for the changed numbers.
 pub fn command(name: &str, model: &Model, rest: &str) -> String {
     let words = format!("corner-impact {name}{}", named(model));
     if rest.is_empty() { words } else { format!("{words} {rest}") }
 }
 
-/// The words that name a model on a command line, each after a blank: its file, and options for the changed numbers.
+/// Words that name a model on a command line, each after a blank: its file, and options for the changed numbers.
 pub fn named(model: &Model) -> String {
     let file = model.path().map(|path| format!(" {}", shell_word(&path.to_string_lossy())));
     file.unwrap_or_default() + &changed(model)
@@ -20,7 +20,7 @@ pub fn changed(model: &Model) -> String {
     model.changes().iter().map(set).collect()
 }
 
-/// A word quoted for a shell if it has anything but plain letters.
+/// Returns a word, quoted for a shell if it has anything but plain letters.
 pub fn shell_word(word: &str) -> String {
     let plain = |letter: char| letter.is_ascii_alphanumeric() || "/._-+:@%,=".contains(letter);
     if !word.is_empty() && word.chars().all(plain) { word.into() } else { format!("'{}'", word.replace('\'', "'\\''")) }

@@ -1,9 +1,9 @@
-//! Sine, exponential and their kind, with the same bits on every processor.
+//! Elementary functions with the same bits on every processor.
 //!
-//! The standard library calls the C library, and glibc's sine rounds differently with and without fused multiply-add. In a chaotic
-//! motion one different bit soon makes another motion. The crate `libm` is plain Rust: it takes sums, products and quotients of
-//! doubles, which IEEE 754 rounds in one way. A lint (`clippy.toml`) keeps the standard library's functions out of `src`. Square
-//! roots and remainders are left to it, since IEEE 754 rounds them in one way, and so are whole powers, which are products.
+//! The standard library calls the C library, and glibc's sine rounds differently with and without fused multiply-add. In a chaotic motion
+//! one different bit soon makes another motion. The crate `libm` is plain Rust: it uses sums, products and quotients of doubles, which IEEE
+//! 754 rounds in one way. A lint (`clippy.toml`) keeps the standard library's functions out of `src`. Exceptions are square roots and
+//! remainders, which IEEE 754 also rounds in one way, and whole powers, which are products.
 //!
 //! Each result is within an ulp of the true one, or within two where the function says so.
 
@@ -31,37 +31,37 @@ pub fn atan2(y: f64, x: f64) -> f64 {
     libm::atan2(y, x)
 }
 
-/// The angle whose sine it is, rad, from -pi/2 to pi/2.
+/// Angle with this sine, rad, from -pi/2 to pi/2.
 #[inline]
 pub fn asin(sine: f64) -> f64 {
     libm::asin(sine)
 }
 
-/// `e^x`.
+/// Exponential `e^x`.
 #[inline]
 pub fn exp(x: f64) -> f64 {
     libm::exp(x)
 }
 
-/// `2^x`, exact where x is whole.
+/// Power `2^x`, exact if x is whole.
 #[inline]
 pub fn exp2(x: f64) -> f64 {
     libm::exp2(x)
 }
 
-/// `e^x - 1`, accurate near 0.
+/// Difference `e^x - 1`, accurate near 0.
 #[inline]
 pub fn exp_m1(x: f64) -> f64 {
     libm::expm1(x)
 }
 
-/// `(e^x - e^-x)/2`, within two ulps.
+/// Hyperbolic sine `(e^x - e^-x)/2`, within two ulps.
 #[inline]
 pub fn sinh(x: f64) -> f64 {
     libm::sinh(x)
 }
 
-/// `(e^x + e^-x)/2`, within two ulps.
+/// Hyperbolic cosine `(e^x + e^-x)/2`, within two ulps.
 #[inline]
 pub fn cosh(x: f64) -> f64 {
     libm::cosh(x)
@@ -91,7 +91,7 @@ pub fn log10(x: f64) -> f64 {
     libm::log10(x)
 }
 
-/// `base^exponent`.
+/// Power `base^exponent`.
 #[inline]
 pub fn powf(base: f64, exponent: f64) -> f64 {
     libm::pow(base, exponent)
@@ -103,7 +103,7 @@ pub fn cbrt(x: f64) -> f64 {
     libm::cbrt(x)
 }
 
-/// `sqrt(x^2 + y^2)`, which neither overflows nor underflows on the way.
+/// Length `sqrt(x^2 + y^2)`, without overflow or underflow in between.
 #[inline]
 pub fn hypot(x: f64, y: f64) -> f64 {
     libm::hypot(x, y)

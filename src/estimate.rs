@@ -14,9 +14,9 @@ pub struct Estimate {
 /// Kind of the error of an [`Estimate`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ErrorIs {
-    /// The standard error of a mean or of a fit's coefficient.
+    /// Standard error of a mean or of a fit's coefficient.
     Standard,
-    /// The last correction of an extrapolation, and rounding.
+    /// Last correction of an extrapolation, plus rounding.
     Correction,
 }
 
@@ -30,7 +30,7 @@ impl Estimate {
         Self { value, error: (variance / count).sqrt(), error_is: ErrorIs::Standard }
     }
 
-    /// Mean of independent estimates of one number, with the error that follows from theirs.
+    /// Mean of independent estimates of one number, with the standard error that follows from their errors.
     pub fn mean(of: &[Self]) -> Self {
         let count = of.len() as f64;
         let value = of.iter().map(|one| one.value).sum::<f64>() / count;
@@ -38,15 +38,15 @@ impl Estimate {
         Self { value, error, error_is: ErrorIs::Standard }
     }
 
-    /// Share of `number` out of `of`, with its standard error if the cases were drawn at random. The error is computed with one more case
-    /// of each kind, since none out of a few does not prove none at all.
+    /// Share of `number` out of `of`, with its standard error if the cases were drawn at random. The error counts one more case of each
+    /// kind, because 0 of a few cases does not prove a share of 0.
     pub(crate) fn share(number: usize, of: usize) -> Self {
         let (number, of) = (number as f64, of as f64);
         let likely = (number + 1.0) / (of + 2.0);
         Self { value: number / of, error: (likely * (1.0 - likely) / of).sqrt(), error_is: ErrorIs::Standard }
     }
 
-    /// Share of `number` out of `of` that were all there is, so that nothing is uncertain.
+    /// Share of `number` out of `of` if no other cases exist, so that the error is 0.
     pub(crate) fn counted(number: usize, of: usize) -> Self {
         Self { value: number as f64 / of as f64, error: 0.0, error_is: ErrorIs::Standard }
     }

@@ -1,4 +1,4 @@
-//! Newton's restitution at the cam, and its derivative with respect to the state before.
+//! Newton's law of restitution at the cam, and its derivative with respect to the state before the impact.
 
 use nalgebra::Matrix2;
 
@@ -9,7 +9,8 @@ use crate::interval::Number;
 /// `incoming` is the follower's velocity before, `surface` the cam's velocity `c'`, both m/s; `restitution` is r.
 #[inline]
 pub fn rebound<N: Number>(restitution: f64, incoming: N, surface: N) -> N {
-    // eq:i1   v+ = (1 + r) c' - r v-, as c' + r (c' - v-): the relative velocity is reversed and scaled, with no cancellation as it dies out.
+    // eq:i1   v+ = (1 + r) c' - r v-, as c' + r (c' - v-): the relative velocity is reversed and scaled, without cancellation as it
+    // shrinks.
     surface + relative_rebound(restitution, incoming, surface)
 }
 
@@ -19,27 +20,27 @@ pub fn relative_rebound<N: Number>(restitution: f64, incoming: N, surface: N) ->
     (surface - incoming) * restitution
 }
 
-/// An impact as its derivative needs it: velocities in m/s, accelerations in m/s^2.
+/// Quantities of an impact that its derivative needs: velocities in m/s, accelerations in m/s^2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ImpactRates<N = f64> {
-    /// r, 0 to 1.
+    /// Coefficient of restitution r, 0 to 1.
     pub restitution: f64,
-    /// v-.
+    /// Velocity v- of the follower before the impact.
     pub velocity_before: N,
-    /// `q''` in flight just before.
+    /// Acceleration `q''` in flight just before the impact.
     pub acceleration_before: N,
-    /// `q''` in flight just after.
+    /// Acceleration `q''` in flight just after the impact.
     pub acceleration_after: N,
-    /// c'.
+    /// Velocity c' of the cam.
     pub cam_velocity: N,
-    /// c''.
+    /// Acceleration c'' of the cam.
     pub cam_acceleration: N,
 }
 
 impl<N: Number> ImpactRates<N> {
-    /// The saltation matrix by rows: 2x2, deviation of (q, v) before to deviation after, at the same instant.
+    /// Saltation matrix by rows: 2x2, from the deviation of (q, v) before to the deviation after, at the same instant.
     ///
-    /// A deviation dq delays the impact by `dq/(c' - v-)`, in which both motions and the law itself move on:
+    /// A deviation dq delays the impact by `dq/(c' - v-)`, during which both motions and the cam continue:
     ///
     /// ```text
     /// S = [[-r, 0], [(a+ + r a- - (1 + r) c'')/(v- - c'), -r]]
@@ -47,7 +48,7 @@ impl<N: Number> ImpactRates<N> {
     ///
     /// Not finite at a graze, `v- = c'`.
     pub fn saltation_rows(&self) -> [[N; 2]; 2] {
-        // eq:ftaylormapcornerX, what stands between the two flights, with the sign of its bracket repaired:
+        // eq:ftaylormapcornerX, the factor between the two flights, with the sign of its bracket repaired:
         // I + R - (R phi_0' x - phi_0' R x + phi_0' R y - R y') h/(h (phi_0' x - y')), x = (q, v-) and y = (c, c')
         let r = self.restitution;
         let turn = self.acceleration_after + self.acceleration_before * r - self.cam_acceleration * (1.0 + r);
@@ -56,7 +57,7 @@ impl<N: Number> ImpactRates<N> {
 }
 
 impl ImpactRates {
-    /// The saltation matrix.
+    /// Saltation matrix.
     pub fn saltation(&self) -> Matrix2<f64> {
         let [[a, b], [c, d]] = self.saltation_rows();
         Matrix2::new(a, b, c, d)

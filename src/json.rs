@@ -20,7 +20,7 @@ pub fn render(document: &impl Serialize, units: &Units) -> Result<String, serde_
 
 /// Writes one document in one line, without a line end.
 pub fn compact(document: &impl Serialize, units: &Units) -> Result<String, serde_json::Error> {
-    // The units of SI change nothing: one writer is enough, which halves what a page carries.
+    // SI units change nothing: one writer is enough, which halves the size of the live page.
     Ok(untrusted::json(in_units(document, InUnits::new(units, CompactFormatter))?))
 }
 
@@ -31,15 +31,15 @@ fn in_units(document: &impl Serialize, layout: impl Formatter) -> Result<String,
     Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 
-/// Writes a document with names and numbers in the units of a model.
+/// Formatter of a document with names and numbers in the units of a model.
 struct InUnits<'a, F> {
     layout: F,
     units: &'a Units,
-    /// The name whose value comes next, as it is escaped.
+    /// Name of the next value, in escaped form.
     name: Option<Vec<u8>>,
     /// Whether that name is still being written.
     is_named: bool,
-    /// Conversion of the numbers in each open list; none for an object, whose names decide.
+    /// Conversion of the numbers in each open list; `None` for an object, whose names decide.
     open: Vec<Option<Converted>>,
 }
 
@@ -54,7 +54,7 @@ impl<'a, F: Formatter> InUnits<'a, F> {
         let name = String::from_utf8_lossy(&name);
         let is_plain = name.bytes().all(|letter| letter.is_ascii_alphanumeric() || letter == b'_');
         let convert = if is_plain { self.units.converted(&name) } else { None };
-        // A ball stays in the unit in which it is proved.
+        // A ball stays in the unit of its proof.
         let is_kept = !is_plain || (convert.is_some() && is_object);
         let told = if is_kept { name.into_owned() } else { self.units.field(&name) };
         write!(writer, "\"{told}\": ")?;
@@ -62,7 +62,7 @@ impl<'a, F: Formatter> InUnits<'a, F> {
     }
 }
 
-/// Writes words, which are never converted, and whole numbers, which become others where their name is converted.
+/// Writes words, which are never converted, and whole numbers, which become decimal where their name is converted.
 macro_rules! values {
     ($whole:ident: $($write:ident($kind:ty)),+) => {$(
         fn $write<W: ?Sized + Write>(&mut self, writer: &mut W, value: $kind) -> io::Result<()> {

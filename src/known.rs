@@ -1,31 +1,31 @@
-//! How a result is known: the word that every result carries, in documents and on pages.
+//! Evidence for results: the word that every result carries, in documents and on pages.
 
 use serde::{Deserialize, Serialize};
 
-/// How a result is known; the strongest first.
+/// Kind of evidence for a result; the strongest first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Deserialize, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Evidence {
-    /// By algebra, or by enclosures that leave no case out.
+    /// Result of algebra, or of enclosures that leave no case out.
     Proved,
-    /// By a computation in rounded numbers, held against a tolerance.
+    /// Result of a computation in rounded numbers, compared with a tolerance.
     Computed,
-    /// By computations for some cases out of many; what lies between the cases is not looked at.
+    /// Result of computations for some cases out of many; the cases between them are not examined.
     Sampled,
-    /// By somebody who read it; nothing was computed.
+    /// Finding of a person who read a text or a figure; no computation supports it.
     Read,
 }
 
 named!(Evidence);
 
 impl Evidence {
-    /// Proved where something is; else no more than what a search says.
+    /// Returns `Proved` if a proof exists, else `Sampled`.
     pub fn proved_if(is_proved: bool) -> Self {
         if is_proved { Self::Proved } else { Self::Sampled }
     }
 }
 
-/// A list of orbits has all of so many revolutions and impacts, and how that is known.
+/// Claim that a list contains all orbits of a number of revolutions and impacts, with its evidence.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[doc(hidden)]
 pub struct Complete {
@@ -33,6 +33,6 @@ pub struct Complete {
     pub revolutions: u64,
     /// Impacts in one period.
     pub impacts: usize,
-    /// Proved where no place is left undecided.
+    /// `Proved` if no region is left undecided.
     pub known: Evidence,
 }

@@ -1,47 +1,52 @@
-//! corner-impact checks, on every run, what a paper derives by hand: the local map of a cam-follower system whose follower
-//! hits the cam at a corner, where the cam's acceleration jumps. The proofs by computer algebra are redone on every commit.
+//! Computes the local map of a cam-follower system at a corner impact, where the follower hits the cam at a jump of the cam's acceleration.
+//! Each run checks what a paper derives by hand; the proofs by computer algebra are redone on every commit.
 //!
 //! ```text
 //!  model file (TOML)
-//!    │  model            what the user wrote, checked
+//!    │  model            the user's input, checked
 //!    ▼
-//!  cam · flight · impact the physical laws; reading, a model whole
+//!  cam · flight · impact the physical laws; reading, a whole model
 //!    ▼
-//!  measured              how well a cam of measured lifts is known, and the cams that it may as well be
-//!  uncertainty           the machines that the cam's rows and the errors of numbers allow, and the spread of results
+//!  measured              uncertainty of a measured cam, and other cams that agree with its rows
+//!  uncertainty           machines that the cam's rows and the errors of numbers allow, and the spread of results
 //!    ▼
 //!  simulate              the only event loop: fly, contact, impact or stick, release; the variational flow
 //!    ▼
 //!  section               the stroboscopic map and traces
 //!    ▼
-//!  orbit                 periodic orbits, their multipliers, branches of them and the points where these change
+//!  orbit                 periodic orbits, their multipliers, branches of them and the special points of branches
 //!    ▼
-//!  covering              chaos proved: boxes of impacts that the impact map stretches across each other
+//!  covering              proofs of chaos: boxes of impacts that the impact map stretches across each other
 //!    ▼
 //!  python                runs one script of `derivations/`
 //!    ▼
-//!  corner                where the corner impact is (x*, T*), and its map {A∓, B∓, C, D} by several routes
+//!  corner                position of the corner impact (x*, T*), and its map {A∓, B∓, C, D} by several routes
 //!    ▼
-//!  agreement             do two routes give one number? Pairwise, against the table of tolerances
+//!  agreement             comparison of routes in pairs, against the table of tolerances
 //!    ▼
-//!  border_collision      normal form, Feigin's classification, the local map's own motions and how far it holds
+//!  border_collision      normal form, Feigin's classification, motions of the local map and its range of validity
 //!    ▼
-//!  published             the digits that the paper prints, each right or wrong as it was found to be
+//!  published             the digits that the paper prints, each with a verdict
 //!    ▼
-//!  study                 one module per question that a user can ask: verify, locate, speeds, ...; its result is the document
+//!  study                 one module per question of a user: verify, locate, speeds, ...; its result is the document
 //!    ▼
-//!  paper                 the paper's statements, one by one, each with a verdict and how that is known
+//!  paper                 the paper's statements, one by one, each with a verdict and its evidence
 //! ```
 //!
-//! Data moves down; no stage uses one below it, and a test holds the code to that. `tolerance` stands above all: every
-//! threshold is a row of its one table; so do `elementary`, sine and exponential with the same bits on every processor, `known`, the
-//! words for how a result is known, `progress`, by which long work
-//! tells how far it has come, `cancel`, by which it is ended, `bracket`, which finds roots, `interval`, which proves that it has found all, `estimate`, a number with its error, `ball`, a number with the radius that is proved, `untrusted`, which shows text of somebody else, and `file`, which writes files whole or not at all and reads them up to
-//! a limit.
+//! Data moves down: no stage uses a later one, which a test checks. All stages may use these modules:
 //!
-//! Three packages beside this one show its results. `crates/program` is the command with its pages, reports and figures; `crates/plot` turns a
-//! figure into SVG, PNG or PDF; `crates/explore` is the live page. Modules and items that this documentation does not show serve them, the Python package
-//! and the tests. They may change in any release.
+//! - `tolerance`: the table of all thresholds;
+//! - `elementary`: sine and exponential with the same bits on every processor;
+//! - `known`: the words for how a result is known;
+//! - `progress` and `cancel`: reports of long work, and its end at the user's wish;
+//! - `bracket`: root finding; `interval`: proofs that all roots are found;
+//! - `estimate`: a number with its error; `ball`: a number with its proved radius;
+//! - `untrusted`: display of text from other people;
+//! - `file`: files that are written completely or not at all, and read up to a limit.
+//!
+//! Three other packages show the results. `crates/program` is the command with its pages, reports and figures; `crates/plot` draws figures
+//! as SVG, PNG or PDF; `crates/explore` is the live page. Hidden modules and items serve these packages, the Python package and the tests;
+//! they may change in any release.
 //!
 //! ```
 //! use corner_impact::{model::{Model, OSORIO_2008}, study::verify::{External, verify}};

@@ -1,6 +1,6 @@
 //! Accuracy of a cam given by the rows of a table, estimated from the rows themselves, and the cams that are equally likely.
 //!
-//! The best guess at the cam is the smoothing spline. Tables of its lifts with the noise of the rows, smoothed in the same way, are as
+//! The best estimate of the cam is the smoothing spline. Tables of its lifts with the noise of the rows, smoothed in the same way, are as
 //! likely as the measured table. Their spread gives the uncertainty of everything that depends on the cam; their common offset is the
 //! effect of the smoothing itself.
 
@@ -16,11 +16,11 @@ use crate::tolerance;
 pub struct Measured {
     /// Interpretation of the rows.
     pub reading: Reading,
-    /// Step of the decimal grid on which all lifts lie, m; none if there is none above the rounding of a double.
+    /// Step of the decimal grid of all lifts, m; `None` if no such step is above the rounding of a double.
     pub step_m: Option<f64>,
     /// Standard deviation of the rows about a smooth motion, m, by generalised cross-validation; NaN if it is unknown.
     pub noise_m: f64,
-    /// Why the noise is unknown, for a spline through the rows: no smooth motion could be fitted to them.
+    /// Reason why the noise of a spline through the rows is unknown: no smooth motion could be fitted to them.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub noise_unknown: Option<String>,
     /// Rows far from the value that their neighbours suggest.
@@ -35,7 +35,7 @@ pub struct Measured {
     pub corners_deg: Vec<f64>,
     /// Whether the corners were found in the rows, not given.
     pub corners_are_found: bool,
-    /// Places that may be corners and are left out of the cam; none where there is no doubt.
+    /// Angles that may be corners and are left out of the cam; `None` if there is no doubt.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub doubtful_corners: Option<DoubtfulCorners>,
     /// Dwells of a smoothing spline, from and to, degrees.
@@ -62,7 +62,7 @@ impl Measured {
     }
 }
 
-/// Places where a jump of the acceleration fits the rows better than a smooth motion, but not by enough to be certain.
+/// Angles where a jump of the acceleration fits the rows better than a smooth motion, but not by enough to be certain.
 #[derive(Clone, Debug, Serialize)]
 pub struct DoubtfulCorners {
     /// Places, degrees.
@@ -89,23 +89,23 @@ impl DoubtfulCorners {
     }
 }
 
-/// A model with its cam.
+/// Model with its cam.
 pub type LikelyCam = (Model, Cam);
 
-/// The best guess at a measured cam, and other cams that are equally likely, as models.
+/// Best estimate of a measured cam, and other cams that are equally likely, as models.
 #[derive(Clone, Debug)]
 pub struct PlausibleCams {
     /// Accuracy of the model's cam.
     pub measured: Measured,
-    /// Model with the smoothing spline; none if the rows have no noise that a spline through them would follow.
+    /// Model with the smoothing spline; `None` if the rows have no noise that a spline through them would follow.
     pub best: Option<LikelyCam>,
-    /// Model with ten times the best guess's weight on the rows, for a cam with corners.
+    /// Model with ten times the weight of the best estimate on the rows, for a cam with corners.
     pub closer: Option<LikelyCam>,
     /// Models of tables that might have been measured.
     pub others: Vec<LikelyCam>,
 }
 
-/// Number of tables that might have been measured: the largest of so many deviations is near two standard deviations.
+/// Number of tables that might have been measured: the largest of this many deviations is near two standard deviations.
 const TABLES: u64 = 16;
 /// One in this many tables may lack a number, or have no cam.
 const WITHOUT: usize = 8;
@@ -114,10 +114,10 @@ impl PlausibleCams {
     /// One in this many machines may lack the numbers.
     pub(crate) const WITHOUT: usize = 8;
 
-    /// Estimates the accuracy of a model's cam. None if the cam is not given by a table, or if the table has too few rows.
+    /// Estimates the accuracy of a model's cam; `None` if the cam is not given by a table, or if the table has too few rows.
     ///
-    /// A spline through the rows needs no smoothing: if no smooth motion can be fitted to them, only their noise is unknown. So it is where the
-    /// follower does not fit on likely contours.
+    /// A spline through the rows needs no smoothing: if no smooth motion can be fitted to them, only their noise is unknown. The same
+    /// applies if the follower does not fit on likely contours.
     pub fn of(model: &Model) -> Result<Option<Self>, ModelError> {
         let Some(profile) = model.table().filter(|table| table.may_be_smoothed()) else { return Ok(None) };
         let own = profile.spline.smoothing();
@@ -127,7 +127,7 @@ impl PlausibleCams {
         }
     }
 
-    /// The accuracy of a spline through rows whose noise is unknown.
+    /// Accuracy of a spline through rows whose noise is unknown.
     fn unknown(model: &Model, profile: &TableProfile, why: &ModelError) -> Result<Self, ModelError> {
         let largest = curvatures(&Cam::new(model)?).into_iter().fold(0.0, |most: f64, one| most.max(one.abs()));
         let reading = Reading::clone(&profile.reading);
@@ -158,7 +158,7 @@ impl PlausibleCams {
         let noise = if fitted.noise.is_finite() { fitted.noise } else { 0.0 };
         let lifts = fitted.lifts(profile);
         let size = lifts.iter().fold(0.0_f64, |size, lift| size.max((lift - lifts[0]).abs()));
-        // Uniformly distributed, as rounding is.
+        // Uniformly distributed, like rounding.
         let spread = half_step.max(3.0_f64.sqrt() * noise);
         let is_noisy = spread > tolerance::NOISE_SEEN.value * size;
         let (corners, are_found) = (fitted.corners_deg(), own.is_none_or(|own| own.corners_deg.is_none()));
@@ -196,7 +196,7 @@ impl PlausibleCams {
         Ok(Self { measured, best, closer, others })
     }
 
-    /// The cams under the follower of another model.
+    /// Returns the cams under the follower of another model.
     pub(crate) fn under(&self, model: &Model) -> Self {
         let under = |(likely, cam): &LikelyCam| (model.on_cam_of(likely, cam), cam.clone());
         Self {
@@ -207,15 +207,15 @@ impl PlausibleCams {
         }
     }
 
-    /// Returns the uncertainties of numbers that depend on the cam, with three terms: their distance from the numbers of the best guess,
-    /// twice the largest deviation among the equally likely cams, and the effect of corners. `of` returns the numbers of a model, or none;
-    /// if more than a few models have none, the result is none.
+    /// Returns the uncertainties of numbers that depend on the cam, with three terms: their distance from the numbers of the best estimate,
+    /// twice the largest deviation among the equally likely cams, and the effect of corners. `of` returns the numbers of a model, or
+    /// `None`. The result is `None` if this happens for more than a few models.
     pub fn errors(&self, numbers: &[f64], of: impl Fn(&Model, &Cam) -> Option<Vec<f64>> + Sync) -> Option<Vec<f64>> {
         self.spread(numbers, (self.others.len(), 0, 2.0), of)
     }
 
     /// Returns the uncertainty of a number found by slow runs, from a few of the tables, one of which may give a wrong number. The second
-    /// largest of so few deviations is less than half as large as the largest of all.
+    /// largest of these few deviations is less than half of the largest of all.
     pub fn error_by_runs(&self, number: f64, of: impl Fn(&Model, &Cam) -> Option<f64> + Sync) -> Option<f64> {
         const FEW: usize = 4;
         self.spread(&[number], (FEW, 1, 4.5), |model, cam| of(model, cam).map(|number| vec![number]))?.pop()
@@ -231,8 +231,8 @@ impl PlausibleCams {
         let others = &self.others[..tables.min(self.others.len())];
         let Some((best, cam)) = &self.best else { return Some(vec![0.0; numbers.len()]) };
         let centre = of(best, cam)?;
-        // The third derivative is bent to 0 over a stretch at each corner that shrinks with the sixth root of the weight: ten times the
-        // weight takes a third of what that does, and of what it does to where the corner is found.
+        // At each corner the third derivative bends to 0 over a range that shrinks with the sixth root of the weight. Ten times the weight
+        // removes a third of this effect, and of its effect on the corner's angle.
         let closer = match &self.closer {
             Some((model, cam)) => of(model, cam)?,
             None => centre.clone(),
@@ -258,9 +258,9 @@ pub(crate) fn even(table: u64, row: u64) -> f64 {
     (bits >> 11) as f64 / 2.0_f64.powi(52) - 1.0
 }
 
-/// Second derivatives of a cam, m/rad^2, at angles all round.
+/// Second derivatives of a cam, m/rad^2, at angles over one turn.
 fn curvatures(cam: &Cam) -> Vec<f64> {
-    /// Four per degree, and none at a row of whole degrees.
+    /// Number of angles: four per degree, none at a row of whole degrees.
     const ANGLES: u32 = 1439;
     let angle = |part: u32| std::f64::consts::TAU * (f64::from(part) + 0.5) / f64::from(ANGLES);
     (0..ANGLES).map(|part| cam.lift(angle(part)).curvature).collect()
@@ -314,23 +314,23 @@ pub struct Remarks {
     pub loose: Option<[f64; 2]>,
     /// Largest distance of the smoothed cam from a row and a tolerance that the rows allow, m, if the distance is far larger.
     pub smoothed_away: Option<[f64; 2]>,
-    /// Where the rows contradict the given corners or dwells.
+    /// Row that contradicts the given corners or dwells.
     pub contradicted: Option<Contradicted>,
 }
 
-/// A row far from the cam because of the given corners or dwells.
+/// Row far from the cam because of the given corners or dwells.
 #[derive(Clone, Copy, Debug)]
 pub struct Contradicted {
-    /// The field that was given.
+    /// Field that was given.
     pub field: &'static str,
-    /// The row's angle, degrees.
+    /// Angle of the row, degrees.
     pub cam_angle_deg: f64,
     /// Distance of the cam from the row, m.
     pub off_m: f64,
 }
 
 impl Remarks {
-    /// Checks the cam of a model; no remarks on a cam that is not a table.
+    /// Checks the cam of a model; there are no remarks on a cam that is not a table.
     pub fn on(model: &Model) -> Result<Self, ModelError> {
         let Some(profile) = model.table() else { return Ok(Self::default()) };
         let Some(own) = profile.spline.smoothing() else {
@@ -343,10 +343,10 @@ impl Remarks {
                 let fitted = fit(model, profile, own)?;
                 let distance = fitted.distance();
                 let allowed = (2.0 * profile.reading.half_step()).max(tolerance::ULP.value * profile.rise());
-                // Rows that are one number on a dwell have no noise beyond their decimals.
+                // Rows that are constant on a dwell have no noise beyond their decimals.
                 let is_still = fitted.dwells_deg().iter().any(|dwell| range(profile, dwell) <= allowed);
                 let is_noise = !is_still && distance <= spread / tolerance::FAR_SMOOTHED.value;
-                // A slip in a row keeps the cam away from it as well.
+                // A mistake in a row also keeps the cam away from it.
                 let is_far =
                     strays(profile).is_empty() && !is_noise && allowed < tolerance::SMOOTHED_AWAY.value * distance;
                 is_far.then_some([distance, allowed])
@@ -370,27 +370,27 @@ fn range(profile: &TableProfile, [from, to]: &[f64; 2]) -> f64 {
     lifts.clone().fold(f64::NEG_INFINITY, f64::max) - lifts.fold(f64::INFINITY, f64::min)
 }
 
-/// Finds where a smoothing spline is far from the rows; it is meant to be within `within` m of them.
+/// Finds the row farthest from a smoothing spline, which is meant to be within `within` m of the rows.
 fn contradicted(
     model: &Model,
     profile: &TableProfile,
     own: &Smoothing,
     within: f64,
 ) -> Result<Option<Contradicted>, ModelError> {
-    /// Distance that counts as far, over the tolerance or the spread of the rows: noise stays within two of these.
+    /// Distance that counts as far, relative to the tolerance or the spread of the rows: noise stays within twice these.
     const FAR: f64 = 10.0;
     let field = match (&own.corners_deg, &own.dwells_deg) {
         (_, Some(dwells)) if !dwells.is_empty() => "cam.dwells_deg",
         (Some(_), _) => "cam.corners_deg",
         _ => return Ok(None),
     };
-    // Of the rows, whatever follows on them.
+    // Spline through the rows, independent of the settings.
     let cam = spline_of_rows(model, profile)?;
     let off = |row: &TableRow| (cam.lift(row.angle_deg.to_radians()).value - row.lift).abs();
     let worst = profile.rows.iter().map(|row| (row, off(row))).max_by(|one, two| one.1.total_cmp(&two.1));
     let least = tolerance::NOISE_SEEN.value * profile.rise();
     let Some((row, off_m)) = worst.filter(|(_, off)| *off > FAR * within.max(least)) else { return Ok(None) };
-    // A row that is as far from the spline without them is not far because of them.
+    // A row that is as far from the spline without the given features is not far because of them.
     let found = Smoothing { corners_deg: None, dwells_deg: None, ..own.clone() };
     let without = fit(model, profile, &found).map(|fit| {
         let index = profile.rows.iter().position(|other| other == row).unwrap_or_default();
@@ -403,16 +403,16 @@ fn contradicted(
 /// Uncertainty of a cam from the noise of its table.
 #[derive(Clone, Debug)]
 pub enum CamUncertainty {
-    /// Estimated from equally likely cams.
+    /// Estimate from equally likely cams.
     Told(Box<Measured>),
     /// Spread of the rows, m, of a table with too many rows for a quick estimate.
     Noise(f64),
-    /// No smooth motion could be fitted to the rows, for this reason.
+    /// Failure to fit a smooth motion to the rows, for this reason.
     Unknown(String),
 }
 
 impl CamUncertainty {
-    /// Estimates the uncertainty of a model's cam; none if the rows have no noise.
+    /// Estimates the uncertainty of a model's cam; `None` if the rows have no noise.
     pub fn of(model: &Model) -> Result<Option<Self>, ModelError> {
         /// Number of rows above which the estimate takes longer than many commands.
         const MOST_ROWS: usize = 4000;

@@ -1,8 +1,8 @@
-//! How values stand in documents, and that a value is named elsewhere as it is there.
+//! Macros that define how values are named and written in documents.
 
 #[doc(hidden)]
 #[macro_export]
-/// Writes values of each type by their names in documents.
+/// Writes the values of each type by their names in documents.
 macro_rules! named {
     ($($kind:ty),+) => {$(
         impl std::fmt::Display for $kind {
@@ -15,8 +15,8 @@ macro_rules! named {
 
 #[doc(hidden)]
 #[macro_export]
-/// Writes values of a type into documents where an entry is computed: each entry's name, and its value as a formula of the value. An entry
-/// that has `if_any` behind its name is left out where there is none. A type whose entries are its fields derives `Serialize`.
+/// Writes values of a type into documents with computed entries: each entry's name, and its formula. An entry with `if_any` after its name
+/// is left out if it is `None`. A type whose entries are its fields derives `Serialize` instead.
 macro_rules! document {
     (@entry $map:ident $name:ident [] $value:expr) => { $map.serialize_entry(stringify!($name), &$value)? };
     (@entry $map:ident $name:ident [if_any] $value:expr) => {

@@ -1,7 +1,6 @@
 //! Reports the progress of long work to an observer.
 //!
-//! A computation that may take longer than a second takes a [`Watch`] and reports its progress to it. The use of these reports is not its
-//! business. No result depends on the observer.
+//! A computation that may take longer than a second takes a [`Watch`] and reports its progress to it. No result depends on the observer.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
@@ -42,7 +41,7 @@ impl<'a> Pieces<'a> {
     }
 }
 
-/// An observer that ignores all reports.
+/// Observer that ignores all reports.
 #[derive(Clone, Copy, Debug)]
 pub struct Unwatched;
 
@@ -50,7 +49,7 @@ impl Watch for Unwatched {
     fn at(&self, _: &str, _: u64, _: u64) {}
 }
 
-/// A clock that a computation starts for the seconds that it tells of itself. A browser's page has none for it: its seconds are all 0.
+/// Clock for the run time that a computation reports. In a browser it always shows 0 seconds.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Clock(Option<Instant>);
 

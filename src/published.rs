@@ -1,7 +1,7 @@
-//! The numbers that the paper prints, each with the finding about it.
+//! Numbers that the paper prints, each with the finding about it.
 //!
 //! The digits are in `golden/published`, as printed; the findings are here. A printed number that was found wrong must stay wrong: if a
-//! computed number ever agrees with it, the verification fails, as it does if a right one disagrees.
+//! computed number ever agrees with it, the verification fails. The verification also fails if a correct number disagrees.
 
 use serde::{Deserialize, Serialize};
 
@@ -13,31 +13,31 @@ use crate::corner::{CornerImpact, Route};
 use crate::model::{Model, ModelError};
 use crate::tolerance::Comparison;
 
-/// The printed digits.
+/// Printed digits.
 const PRINTED: &str = include_str!("../golden/published/osorio-2008.json");
 
 /// Finding about a printed number or a statement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Deserialize, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
-    /// Right.
+    /// Correct.
     Holds,
-    /// A definition: there is nothing to check.
+    /// Definition, which needs no check.
     Definition,
-    /// Right in part, or roughly; the note says which part is not.
+    /// Partly or roughly correct; the note names the part that is not.
     InPart,
-    /// A misprint: digits, a sign, brackets; results built on the right form stand.
+    /// Misprint in digits, a sign or brackets; results that use the correct form are unaffected.
     Misprint,
-    /// The statement is wrong.
+    /// Wrong statement.
     Refuted,
-    /// Not decided by this program.
+    /// Statement that this program does not decide.
     Open,
 }
 
 named!(Verdict);
 
 impl Verdict {
-    /// All verdicts, those to read first in front.
+    /// All verdicts, the most serious first.
     pub(crate) const WORST_FIRST: [Self; 6] =
         [Self::Refuted, Self::Misprint, Self::InPart, Self::Open, Self::Definition, Self::Holds];
 
@@ -46,24 +46,24 @@ impl Verdict {
         matches!(self, Self::Refuted | Self::Misprint | Self::InPart)
     }
 
-    /// Whether the statement is wrong: by a slip of its own, or by an earlier one.
+    /// Whether the statement is wrong, by its own error or by an earlier one.
     pub fn is_wrong(self) -> bool {
         matches!(self, Self::Refuted | Self::Misprint)
     }
 }
 
-/// A printed number beside the computed one.
+/// Printed number with the computed one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PrintedNumber {
     /// Place in the paper.
     pub place: String,
-    /// The digits as printed.
+    /// Digits as printed.
     pub printed: Vec<String>,
-    /// The entries as computed.
+    /// Entries as computed.
     pub computed: Vec<f64>,
-    /// The comparison.
+    /// Comparison.
     pub agreement: Agreement,
-    /// The earlier finding.
+    /// Earlier finding.
     pub verdict: Verdict,
     /// Description of the error; empty if there is none.
     pub note: &'static str,
@@ -85,11 +85,12 @@ document!(PrintedNumber as number {
     as_found: number.as_found,
 });
 
-/// The paper says of its estimates that they share five decimals with the matrices.
+/// The paper states that its estimates share five decimals with the matrices.
 const ESTIMATE: &str = "it holds as an estimate, to 4.3e-7 of each entry or better. The paper also says that it shares five decimals; \
                         this is a separate statement, and is refuted";
 
-/// Printed numbers with a remark: the quantity, the finding, and the error, or how it holds if that is not obvious. All other numbers hold.
+/// Printed numbers with a remark: the quantity, the finding, and the error, or the sense in which it is correct if that is not obvious. All
+/// other numbers are correct.
 static REMARKS: [(Quantity, Verdict, &str); 6] = [
     (Quantity::BHat(Minus), Verdict::Holds, ESTIMATE),
     (Quantity::BHat(Plus), Verdict::Holds, ESTIMATE),
@@ -120,19 +121,19 @@ struct Number {
     printed: Vec<String>,
 }
 
-/// Why the printed numbers were not compared.
+/// Reason why the printed numbers were not compared.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PublishedError {
-    /// The model is not the paper's.
+    /// Model that is not the paper's.
     #[error("the paper prints numbers for another follower or cam")]
     OtherModel,
-    /// The built-in model does not read.
+    /// Built-in model that cannot be read.
     #[error("{0}")]
     Model(#[from] ModelError),
-    /// The built-in digits do not read.
+    /// Built-in digits that cannot be read.
     #[error("golden/published: {0}")]
     Digits(String),
-    /// A printed quantity is not computed, or a quantity with a remark is not printed.
+    /// Printed quantity that is not computed, or quantity with a remark that is not printed.
     #[error("golden/published: not printed, or not computed: {0}")]
     Unmatched(String),
 }
@@ -166,7 +167,7 @@ fn hold_against(number: Number, computed: &[(Quantity, Vec<f64>)]) -> Result<Pri
     let comparison = match quantity {
         Quantity::AHat(_) | Quantity::BHat(_) => Comparison::PrintedEstimate,
         _ => {
-            // Entries without a decimal point are next to entries with one, or are meant as exact.
+            // Entries without a decimal point stand beside entries with one, or are meant as exact.
             let decimals = digits.iter().map(|(_, decimals)| *decimals).max().filter(|most| *most > 0);
             Comparison::Printed { decimals: decimals.unwrap_or(u32::MAX) }
         }
@@ -192,7 +193,7 @@ fn read_digits(text: &str) -> Result<(f64, u32), PublishedError> {
     Ok((value, decimals))
 }
 
-/// Every quantity that the paper prints, as computed here.
+/// All quantities that the paper prints, as computed here.
 fn computed(at: &CornerImpact, route: &Route, normal_form: Option<&NormalForm>) -> Vec<(Quantity, Vec<f64>)> {
     let mut all: Vec<_> = quantities(route).into_iter().map(|found| (found.quantity, found.entries)).collect();
     // An estimate is printed for a quantity of the map, under a hat.

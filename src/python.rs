@@ -1,19 +1,19 @@
-//! Runs one script of `derivations/`: JSON in, JSON out; errors contain the command and the script's message.
+//! Runs a script of `derivations/` with JSON as input and output; errors contain the command and the script's message.
 //!
-//! The scripts get a model's numbers and nothing that this program computed. They are part of the program: for each run they are written to
-//! a private temporary folder, run there, and removed, whatever signal ends the program. The current folder may contain files of others.
-//! Nothing of it is run or imported: the private folder is the script's own current folder, so that a relative entry of PATH or
-//! PYTHONPATH leads there, too.
+//! The scripts get only a model's numbers, no results of this program. They are part of the program: for each run they are written to a
+//! private temporary folder, run there, and removed, whatever signal ends the program. The current folder may contain files of others, so
+//! nothing in it is run or imported. The private folder is the script's current folder, so that a relative entry of PATH or PYTHONPATH
+//! leads there, too.
 //!
 //! The interpreter is, in this order:
 //!
 //! 1. `$CORNER_IMPACT_PYTHON`;
-//! 2. the interpreter that has loaded this library, if one has;
-//! 3. that of the clone's `.venv`, if the program stands in the clone in which it was built;
+//! 2. the interpreter that has loaded this library, if any;
+//! 3. the interpreter of the clone's `.venv`, if the program is in the clone in which it was built;
 //! 4. `python3` of the PATH (`python` on Windows).
 //!
-//! A program that was installed or unpacked never runs an interpreter at a path of the machine that built it. An interpreter that nobody
-//! chose (3, 4) starts with `-E -s`, without PYTHONPATH and without the user's own packages.
+//! An installed or unpacked program never runs an interpreter at a path of the machine that built it. An interpreter that nobody chose (3,
+//! 4) starts with `-E -s`, without PYTHONPATH and without the user's packages.
 
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
@@ -24,7 +24,7 @@ use std::time::{Duration, Instant};
 use crate::cancel;
 use crate::file::{Scratch, Started};
 
-/// The scripts, the modules that they import and the file that they read, by their paths in the project.
+/// Scripts, the modules that they import and the file that they read, by their paths in the project.
 const FILES: [(&str, &str); 24] = [
     ("derivations/arithmetic.py", include_str!("../derivations/arithmetic.py")),
     ("derivations/balls/__init__.py", include_str!("../derivations/balls/__init__.py")),
@@ -55,13 +55,13 @@ const FILES: [(&str, &str); 24] = [
 /// Interpreters that `make` sets up in a clone, with all packages that the scripts need.
 const OF_A_CLONE: [&str; 2] = [".venv/bin/python", ".venv/Scripts/python.exe"];
 
-/// Interpreter that is looked for in the PATH.
+/// Interpreter that is searched in the PATH.
 const OF_THE_PATH: &str = if cfg!(windows) { "python" } else { "python3" };
 
-/// Time after which a running script is stopped: the slowest takes seconds.
+/// Time after which a running script is stopped; the slowest takes seconds.
 const TIME_LIMIT: Duration = Duration::from_secs(120);
 
-/// Why a script has no result.
+/// Reason why a script has no result.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum PythonError {
     #[error("the scripts could not be written to a temporary folder: {0}")]
@@ -76,7 +76,7 @@ pub(crate) enum PythonError {
     Output { command: String, error: String },
 }
 
-/// Remedy if Python, or a package of it, is missing: for a clone, for a program that was installed, and for a script in Python.
+/// Remedy if Python or one of its packages is missing: for a clone, for an installed program, and for a script in Python.
 fn remedy() -> &'static str {
     match (HOST.get(), is_in_its_clone()) {
         (Some(_), _) => {
@@ -91,7 +91,7 @@ fn remedy() -> &'static str {
 
 /// Runs `derivations/<script>` with `input` on standard input and reads its standard output as a `T`.
 pub(crate) fn run<T: serde::de::DeserializeOwned>(script: &str, input: &serde_json::Value) -> Result<T, PythonError> {
-    // Laid out as the project is.
+    // The files are laid out as in the project.
     let folder = Scratch::of(&FILES).map_err(PythonError::NotWritten)?;
     let interpreter = interpreter();
     let script = format!("derivations/{script}");
@@ -128,7 +128,7 @@ pub(crate) fn run<T: serde::de::DeserializeOwned>(script: &str, input: &serde_js
 /// Outcome of a child process.
 #[derive(Debug)]
 pub struct Talk {
-    /// Exit status; none if the child had to be stopped.
+    /// Exit status; `None` if the child had to be stopped.
     pub status: Option<ExitStatus>,
     pub stdout: String,
     pub stderr: String,
@@ -138,7 +138,7 @@ pub struct Talk {
 #[doc(hidden)]
 pub fn talk(mut child: Child, input: Vec<u8>, limit: Duration) -> std::io::Result<Talk> {
     let pipes = (child.stdin.take(), child.stdout.take(), child.stderr.take());
-    // Ends with whoever waits for it; its pipes are closed then, and those who read them end, too.
+    // The child ends with this value; its pipes are then closed, and their readers end, too.
     let mut child = Started::new(child);
     std::thread::scope(move |scope| {
         // A script that ends without reading closes the pipe: its own message says why.
@@ -168,7 +168,7 @@ pub fn talk(mut child: Child, input: Vec<u8>, limit: Duration) -> std::io::Resul
 
 fn collect(mut pipe: impl Read) -> String {
     let mut bytes = Vec::new();
-    // What was read before an error is still worth showing.
+    // Output read before an error is still shown.
     let _ = pipe.read_to_end(&mut bytes);
     String::from_utf8_lossy(&bytes).into_owned()
 }
@@ -181,8 +181,8 @@ pub fn loaded_by(interpreter: PathBuf) {
     let _ = HOST.set(interpreter);
 }
 
-/// Options that keep packages of the user, and variables such as PYTHONPATH, from a script: `-I` would keep its own modules from it, too.
-/// Whoever chooses the interpreter, or has loaded this library, chooses the packages as well.
+/// Options that hide the user's packages, and variables such as PYTHONPATH, from a script; `-I` would also hide its own modules. If
+/// somebody chose the interpreter, or loaded this library, the packages are their choice as well.
 fn isolating() -> &'static [&'static str] {
     let is_chosen = std::env::var_os("CORNER_IMPACT_PYTHON").is_some() || HOST.get().is_some();
     if is_chosen { &[] } else { &["-E", "-s"] }
@@ -190,7 +190,7 @@ fn isolating() -> &'static [&'static str] {
 
 fn interpreter() -> PathBuf {
     let chosen = std::env::var_os("CORNER_IMPACT_PYTHON").map(PathBuf::from);
-    // A bare name is looked for in the PATH; a path is meant from the current folder, which is not the script's.
+    // A bare name is searched in the PATH; a path is relative to the current folder, which is not the script's.
     let chosen = chosen.map(|path| match path.components().count() {
         0 | 1 => path,
         _ => std::path::absolute(&path).unwrap_or(path),
@@ -198,7 +198,7 @@ fn interpreter() -> PathBuf {
     chosen.or_else(|| HOST.get().cloned()).or_else(of_the_clone).unwrap_or_else(|| OF_THE_PATH.into())
 }
 
-/// Whether the program stands in the clone in which it was built.
+/// Whether the program is in the clone in which it was built.
 fn is_in_its_clone() -> bool {
     let of = |path: std::io::Result<PathBuf>| path.and_then(|path| path.canonicalize()).ok();
     match (of(std::env::current_exe()), of(Ok(PathBuf::from(env!("CARGO_MANIFEST_DIR"))))) {
@@ -207,7 +207,7 @@ fn is_in_its_clone() -> bool {
     }
 }
 
-/// The interpreter of that clone, for a program that still stands there.
+/// Interpreter of that clone, if the program is still there.
 fn of_the_clone() -> Option<PathBuf> {
     let clone = Path::new(env!("CARGO_MANIFEST_DIR"));
     let interpreter = OF_A_CLONE.iter().map(|path| clone.join(path)).find(|path| path.is_file());

@@ -26,7 +26,8 @@ impl Model {
         Self::written(file, text)?.sprung()
     }
 
-    /// Checks the text of a model file that needs no other file; `file` is its name in error messages. It is refused if it names a table.
+    /// Checks the text of a model file that needs no other file; `file` is its name in error messages. A text that names a table is
+    /// rejected.
     pub fn parse_alone(file: &str, text: &str) -> Result<Self, ModelError> {
         Self::written_alone(file, text)?.sprung()
     }
@@ -36,21 +37,21 @@ impl Model {
         Self::written_as(name, document)?.sprung()
     }
 
-    /// Returns the model with another number in `field`, a dotted path, checked like a file. Numbers that are moved by their errors stay
-    /// so, but for this one.
+    /// Returns the model with another number in `field`, a dotted path, checked like a file. Numbers moved by their errors stay moved,
+    /// except this one.
     pub fn with_number(&self, field: &str, number: f64) -> Result<Self, ModelError> {
         self.rewritten(field, number)?.shifted(&self.moves).sprung()
     }
 
     /// Returns the model with other numbers, also of `[study]`, each named as for [`Self::path_of`]. They are checked together like a file,
-    /// and become a part of the model's name.
+    /// and become part of the model's name.
     pub fn changed<N: Clone + Into<Numeral>>(&self, numbers: &[(String, N)]) -> Result<Self, ModelError> {
         let numbers: Vec<_> = numbers.iter().map(|(name, number)| (name.clone(), number.clone().into())).collect();
         self.renamed(&numbers)?.sprung()
     }
 
     /// Returns the model with a smoothing spline near other lifts, m, at the angles of its table. The spline has a weight given by its
-    /// logarithm, corners at or near these places, and these dwells, degrees.
+    /// logarithm, corners at or near these angles, and these dwells, degrees.
     pub(crate) fn with_lifts(
         &self,
         lifts: &[f64],
@@ -68,9 +69,9 @@ impl Model {
     }
 
     /// Returns a doubt about numbers, in the units that are stated or assumed, at the given speeds, rpm, or those of `[study]`. The doubt
-    /// is a question for the user and no reason to refuse. Only sizes that no working machine has are questioned.
+    /// is a question for the user, not an error. Only sizes that no working machine has are questioned.
     pub fn doubt(&self, rpm: Option<[f64; 2]>) -> Result<Option<String>, ModelError> {
-        /// Largest rise of a cam that somebody turns, m.
+        /// Largest plausible rise of a cam, m.
         const LARGEST_RISE: f64 = 5.0;
         /// Largest spring force, in weights of the follower.
         const MOST_WEIGHTS: f64 = 2000.0;
@@ -80,7 +81,7 @@ impl Model {
         /// Gravity, m/s^2, for weights, also if the model has none; and the largest gravity of a machine.
         const GRAVITY: f64 = 9.81;
         const MOST_GRAVITY: f64 = 1000.0;
-        /// From N/m to N/mm.
+        /// Factor between N/m and N/mm.
         const THOUSAND: f64 = 1000.0;
         let units = &self.units;
         let [says_length, says_mass, says_stiffness] = units.says;
@@ -121,7 +122,7 @@ impl Model {
         Ok(Some(format!("{meant} [units] sets the units of the numbers")))
     }
 
-    /// Moves the follower's numbers by multiples of their standard deviations. The cam is the same, and `lowest` is its lowest lift.
+    /// Moves the follower's numbers by multiples of their standard deviations. The cam is unchanged, and `lowest` is its lowest lift.
     pub(crate) fn moved(&self, lowest: f64, by: &Moves) -> Self {
         let mut model = self.clone().shifted(by);
         model.rest(lowest);
@@ -177,7 +178,7 @@ impl Model {
         Ok(self)
     }
 
-    /// Refuses numbers from which the computed quantities would leave the range of a double.
+    /// Rejects numbers from which the computed quantities would leave the range of a double.
     fn sized(&self) -> Result<(), ModelError> {
         let (most, least) = (tolerance::LEAST_SIZE.value.recip(), tolerance::LEAST_SIZE.value);
         let Follower { mass, damping, stiffness, gravity, rest_position, restitution: _ } = self.follower;

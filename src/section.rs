@@ -1,4 +1,4 @@
-//! The stroboscopic map, from the follower's state at a cam angle to its state one revolution later; and traces of a motion.
+//! Stroboscopic map, from the follower's state at a cam angle to its state one revolution later; and traces of a motion.
 
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
@@ -10,21 +10,21 @@ use crate::flight::State;
 use crate::simulate::{Event, EventKind, Goal, Machine, Motion, SimulateError, Variation};
 use crate::tolerance;
 
-/// The map of one revolution, from the section at a cam angle back to it.
+/// Map of one revolution, from the section at a cam angle back to it.
 #[derive(Clone, Debug)]
 pub struct StroboscopicMap {
-    /// The machine.
+    /// Machine.
     pub machine: Machine,
-    /// The section, rad, in `[0, 2 pi)`.
+    /// Angle of the section, rad, in `[0, 2 pi)`.
     pub cam_angle: f64,
 }
 
 /// Result of one revolution.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Return {
-    /// The state on the section, one revolution later.
+    /// State on the section, one revolution later.
     pub state: State,
-    /// The events on the way, in order.
+    /// Events on the way, in order.
     pub events: Vec<Event>,
 }
 
@@ -46,7 +46,7 @@ impl StroboscopicMap {
         Ok(Return { state, events })
     }
 
-    /// State after `revolutions` from `state`, and the propagator of a small deviation, `d(q, v)/d(q0, v0)`, 2x2.
+    /// Returns the state after `revolutions` from `state`, and the propagator of a small deviation, `d(q, v)/d(q0, v0)`, 2x2.
     pub fn carry(&self, state: State, revolutions: u64) -> Result<(State, Matrix2<f64>), SimulateError> {
         let mut motion = self.machine.start(self.cam_angle, state)?;
         let mut variation = Variation::new(&self.machine, &motion);
@@ -57,7 +57,7 @@ impl StroboscopicMap {
 
     /// Finds the motion near `guess` that repeats after `revolutions`, stable or not, by Newton's method; `None` if the method finds none.
     pub fn periodic(&self, guess: State, revolutions: u64) -> Result<Option<Periodic>, SimulateError> {
-        /// Newton's method doubles the digits: a useful guess needs about six steps.
+        /// Step limit: Newton's method doubles the digits, and a useful guess needs about six steps.
         const STEPS: usize = 20;
         let omega = self.machine.angular_velocity();
         let size = |dx: Vector2<f64>| Vector2::new(dx[0], dx[1] / omega).norm();
@@ -65,12 +65,12 @@ impl StroboscopicMap {
         for _ in 0..STEPS {
             let (end, matrix) = match self.carry(state, revolutions) {
                 Ok(carried) => carried,
-                // A step below the cam leads nowhere.
+                // A step below the cam ends the search.
                 Err(SimulateError::BelowCam { revolution: 0, .. }) => return Ok(None),
                 Err(error) => return Err(error),
             };
             let miss = Vector2::new(end.position - state.position, end.velocity - state.velocity);
-            // Velocities over omega, so that the largest of a column is the same in any units.
+            // Velocities are divided by omega, so that the largest entry of a column is independent of units.
             let unit = Matrix2::from_diagonal(&Vector2::new(1.0, omega));
             let per_unit = Matrix2::from_diagonal(&Vector2::new(1.0, 1.0 / omega));
             let equations = per_unit * (Matrix2::identity() - matrix) * unit;
@@ -84,8 +84,8 @@ impl StroboscopicMap {
     }
 }
 
-/// The impact map: the first impact after the follower leaves the cam at `cam_angle`, rad, in `[0, 2 pi)`, with a relative velocity, m/s,
-/// zero or more. `None` if there is no further impact, or none for very long.
+/// Impact map: the first impact after the follower leaves the cam at `cam_angle`, rad, in `[0, 2 pi)`, with a relative velocity, m/s, zero
+/// or more. `None` if there is no further impact, or none for very long.
 pub fn next_impact(machine: &Machine, cam_angle: f64, relative_velocity: f64) -> Result<Option<Event>, SimulateError> {
     /// Revolutions without an impact after which the search ends.
     const PATIENCE: u64 = 100_000;
@@ -119,7 +119,7 @@ pub struct Periodic {
 }
 
 impl Periodic {
-    /// det(I + A): 0 if a multiplier is -1, where the motion flips to one of twice the period.
+    /// Determinant det(I + A): 0 if a multiplier is -1, where the motion flips to one of twice the period.
     pub fn flip(&self) -> f64 {
         1.0 + self.matrix.trace() + self.matrix.determinant()
     }
@@ -128,17 +128,17 @@ impl Periodic {
 /// Follower and cam at one moment of a trace.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TraceSample {
-    /// The angle turned since the cam passed 0 in revolution 0, rad.
+    /// Angle turned since the cam passed 0 in revolution 0, rad.
     pub turned: f64,
-    /// The cam's angle, rad, in `[0, 2 pi)`.
+    /// Cam angle, rad, in `[0, 2 pi)`.
     pub cam_angle: f64,
     /// State of the follower.
     pub state: State,
-    /// The cam's lift, m.
+    /// Lift of the cam, m.
     pub lift: f64,
-    /// The cam's velocity, m/s.
+    /// Velocity of the cam, m/s.
     pub cam_velocity: f64,
-    /// The gap, m.
+    /// Gap, m.
     pub gap: f64,
     /// Whether the follower sticks to the cam.
     pub contact: bool,
@@ -146,8 +146,8 @@ pub struct TraceSample {
     pub pressing: f64,
 }
 
-/// Samples a motion at `samples` moments per revolution, evenly spaced in angle, over `revolutions` from `motion` on. Returns also the
-/// events in between, each with a sample of its own right before and right after.
+/// Samples a motion at `samples` moments per revolution, evenly spaced in angle, over `revolutions` from `motion` on. Also returns the
+/// events in between, each with one sample right before and one right after it.
 pub fn trace(
     machine: &Machine,
     mut motion: Motion,
@@ -155,7 +155,7 @@ pub fn trace(
     samples: u32,
 ) -> Result<(Vec<TraceSample>, Vec<Event>), SimulateError> {
     let omega = machine.angular_velocity();
-    // N/m = c'' - (b q' + k (q - rest) + m g)/m, of which the last is the acceleration in flight
+    // N/m = c'' - (b q' + k (q - rest) + m g)/m, whose last term is the acceleration in flight
     let pressing = |lift: Lift, state: State| omega * omega * lift.curvature - machine.flight().acceleration(state);
     let sample = |motion: &Motion| {
         let lift = machine.cam().lift(motion.cam_angle);

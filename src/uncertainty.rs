@@ -1,8 +1,9 @@
 //! Uncertainty of results, by its sources: the noise of a measured cam, and the errors of the follower's numbers.
 //!
-//! The cam's part is estimated from equally likely cams, see [`crate::measured`]. The part of a number is two standard deviations: twice half
-//! the difference of the results with the number one error larger and one error smaller. Parts are independent, and the whole is the root of
-//! the sum of their squares. A result that is not linear in the numbers has one part of all numbers together, from an ensemble of machines.
+//! The cam's part is estimated from equally likely cams, see [`crate::measured`]. The part of a number is two standard deviations: twice
+//! half the difference of the results with the number one error larger and one error smaller. Parts are independent, and the whole is the
+//! root of the sum of their squares. A result that is not linear in the numbers has one common part for all numbers, from an ensemble of
+//! machines.
 
 use rayon::prelude::*;
 use serde::ser::{Serialize, SerializeMap, Serializer};
@@ -13,25 +14,25 @@ use crate::measured::{Measured, PlausibleCams, even};
 use crate::model::{FollowerErrors, Model, ModelError, Moves};
 use crate::tolerance;
 
-/// Standard deviations that ± is of a number of the follower.
+/// Number of standard deviations in the ± of a number of the follower.
 const DEVIATIONS: f64 = 2.0;
 
 /// Uncertainty of a result, by its sources.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SourcedUncertainty {
-    /// Part of a measured cam.
+    /// Part of the measured cam.
     pub cam: f64,
-    /// Part of the follower's numbers together.
+    /// Common part of the follower's numbers.
     pub numbers: f64,
-    /// Part of each of these numbers, in the order of [`FollowerErrors::names`]. None if the result is not linear in them.
+    /// Part of each of these numbers, in the order of [`FollowerErrors::names`]; `None` if the result is not linear in them.
     pub each: Option<[f64; FollowerErrors::COUNT]>,
 }
 
 impl SourcedUncertainty {
-    /// An uncertainty that is unknown.
+    /// Unknown uncertainty.
     pub const UNKNOWN: Self = Self { cam: f64::NAN, numbers: f64::NAN, each: None };
 
-    /// An uncertainty of which the part of the numbers is unknown.
+    /// Uncertainty whose part of the numbers is unknown.
     pub(crate) const UNKNOWN_OF_NUMBERS: Self = Self { cam: 0.0, numbers: f64::NAN, each: None };
 
     /// Adds an uncertainty that is independent of this one. A result that is linear in both has a part of each number.
@@ -46,35 +47,35 @@ impl SourcedUncertainty {
         }
     }
 
-    /// Joins the parts of a cam to those of the follower's numbers.
+    /// Combines the parts of a cam with the parts of the follower's numbers.
     pub(crate) fn joined(of_cam: Vec<f64>, of_numbers: Vec<Self>) -> Vec<Self> {
         of_cam.into_iter().zip(of_numbers).map(|(cam, part)| Self { cam, ..part }).collect()
     }
 
-    /// Whole uncertainty.
+    /// Total uncertainty.
     pub fn total(&self) -> f64 {
         elementary::hypot(self.cam, self.numbers)
     }
 
-    /// The uncertainty of `factor` times the result.
+    /// Uncertainty of `factor` times the result.
     pub fn times(&self, factor: f64) -> Self {
         let factor = factor.abs();
         let each = self.each.map(|each| each.map(|part| factor * part));
         Self { cam: factor * self.cam, numbers: factor * self.numbers, each }
     }
 
-    /// The ends of the range that the uncertainty leaves around a value.
+    /// Ends of the uncertainty range around a value.
     pub fn around(&self, value: f64) -> [f64; 2] {
         [value - self.total(), value + self.total()]
     }
 
-    /// The uncertainty with its parts reduced alike, if the whole is above `most`.
+    /// Returns the uncertainty with all its parts scaled down if the total is above `most`.
     pub(crate) fn at_most(&self, most: f64) -> Self {
         let total = self.total();
         if total > most { self.times(most / total) } else { *self }
     }
 
-    /// The numbers that have a part of their own, each with it, the largest first.
+    /// Numbers with a separate part, each with that part, the largest first.
     pub fn of_each(&self) -> Vec<(&'static str, f64)> {
         let each = FollowerErrors::names().zip(self.each.unwrap_or_default());
         let mut each: Vec<_> = each.filter(|(_, part)| *part > 0.0).collect();
@@ -82,7 +83,7 @@ impl SourcedUncertainty {
         each
     }
 
-    /// The uncertainty between this one and another, at a part of the way.
+    /// Interpolates linearly between this uncertainty and another; `part` is 0 here and 1 there.
     pub(crate) fn towards(&self, other: &Self, part: f64) -> Self {
         let between = |one: f64, other: f64| one + (other - one) * part;
         let each = self.each.zip(other.each);
@@ -94,7 +95,7 @@ impl SourcedUncertainty {
     }
 }
 
-/// Parts of an uncertainty in a document: the names of the sources, each with the unit that its number is in, such as `_rpm`.
+/// Parts of an uncertainty in a document: the names of the sources, each with the unit of its number, such as `_rpm`.
 pub struct UncertaintyParts(pub SourcedUncertainty, pub &'static str);
 
 impl Serialize for UncertaintyParts {
@@ -110,27 +111,27 @@ impl Serialize for UncertaintyParts {
     }
 }
 
-/// The machine of a model, and other machines that its cam's rows and its numbers' errors allow.
+/// Machine of a model, and other machines that its cam's rows and its numbers' errors allow.
 #[derive(Clone, Debug)]
 pub struct PlausibleMachines<'a> {
     /// Accuracy of the cam and equally likely cams, if it is measured.
     pub cams: Option<PlausibleCams>,
-    /// The model.
+    /// Model.
     pub model: &'a Model,
-    /// Its cam.
+    /// Cam of the model.
     pub cam: &'a Cam,
     errors: FollowerErrors,
     lowest: f64,
 }
 
 impl<'a> PlausibleMachines<'a> {
-    /// Collects what is uncertain about a model, which has this cam.
+    /// Collects the uncertain quantities of a model with this cam.
     pub fn of(model: &'a Model, cam: &'a Cam) -> Result<Self, ModelError> {
         Ok(Self { cams: PlausibleCams::of(model)?, ..Self::of_numbers(model, cam, model.errors) })
     }
 
-    /// Collects what is uncertain about a model of the same file with another number at `path`, and its cam. That number is exact there. The
-    /// likely cams are the same ones if it is a number of the follower.
+    /// Collects the uncertain quantities of a model from the same file with another number at `path`, and its cam. That number is exact.
+    /// The likely cams are unchanged if it is a number of the follower.
     pub fn elsewhere<'b>(
         &self,
         path: &str,
@@ -145,12 +146,12 @@ impl<'a> PlausibleMachines<'a> {
         Ok(PlausibleMachines { cams, ..PlausibleMachines::of_numbers(model, cam, model.errors) })
     }
 
-    /// Machines that differ in the follower's numbers alone, but for the one at `path`.
+    /// Returns machines that differ only in the follower's numbers, except the one at `path`.
     pub(crate) fn without(&self, path: &str) -> Self {
         Self { cams: None, errors: self.errors.without(path), ..*self }
     }
 
-    /// Collects machines that differ in the follower's numbers alone, by these errors of the model's.
+    /// Collects machines that differ only in the follower's numbers, by these errors.
     pub fn of_numbers(model: &'a Model, cam: &'a Cam, errors: FollowerErrors) -> Self {
         let lowest = if errors.are_none() { f64::NAN } else { cam.lowest().value };
         Self { cams: None, model, cam, errors, lowest }
@@ -172,8 +173,8 @@ impl<'a> PlausibleMachines<'a> {
         self.cams.map(|cams| cams.measured)
     }
 
-    /// Returns the uncertainties of numbers that depend on the machine. `of` returns the numbers of another machine, or none. The result is
-    /// none if more than a few machines have none.
+    /// Returns the uncertainties of numbers that depend on the machine. `of` returns the numbers of another machine, or `None`. The result
+    /// is `None` if this happens for more than a few machines.
     pub fn error<const N: usize>(
         &self,
         numbers: [f64; N],
@@ -182,7 +183,7 @@ impl<'a> PlausibleMachines<'a> {
         self.errors(&numbers, |model, cam| of(model, cam).map(Vec::from))?.try_into().ok()
     }
 
-    /// Returns the uncertainties of any count of numbers, as [`Self::error`] does.
+    /// Returns the uncertainties of any number of quantities, as [`Self::error`] does.
     pub fn errors(
         &self,
         numbers: &[f64],
@@ -231,8 +232,8 @@ impl<'a> PlausibleMachines<'a> {
         is_enough.then(|| parts.into_iter().enumerate().map(spread).collect())
     }
 
-    /// Returns the uncertainty of a number found by slow runs, from a few machines. Those that the follower's errors allow have each number one
-    /// error larger or smaller, in all combinations that keep the parts apart.
+    /// Returns the uncertainty of a number found by slow runs, from a few machines. Each of the follower's numbers is one error larger or
+    /// smaller, in combinations that keep the parts apart.
     pub fn error_by_runs(
         &self,
         number: f64,
@@ -246,7 +247,7 @@ impl<'a> PlausibleMachines<'a> {
         if uncertain.is_empty() {
             return Some(SourcedUncertainty { cam, ..SourcedUncertainty::default() });
         }
-        // A column of signs for each number, orthogonal to each other: Sylvester's Hadamard matrix without its first column.
+        // One column of signs per number, orthogonal to each other: Sylvester's Hadamard matrix without its first column.
         let runs = (uncertain.len() + 1).next_power_of_two();
         let sign =
             |run: usize, column: usize| if (run & (column + 1)).count_ones().is_multiple_of(2) { 1.0 } else { -1.0 };
@@ -266,8 +267,8 @@ impl<'a> PlausibleMachines<'a> {
         Some(SourcedUncertainty { cam, numbers, each: Some(each) })
     }
 
-    /// Returns what `of` finds on each equally likely cam, and for each machine drawn from the errors of the follower's numbers. Machines
-    /// without a finding are left out.
+    /// Returns the results of `of` on each equally likely cam, and for each machine drawn from the errors of the follower's numbers.
+    /// Machines without a result are left out.
     pub fn each<T: Send>(&self, of: impl Fn(&Model, &Cam) -> Option<T> + Sync) -> Vec<T> {
         let cams = self.cams.iter().flat_map(|cams| &cams.others).collect::<Vec<_>>();
         let mut found: Vec<T> = cams.par_iter().filter_map(|(model, cam)| of(model, cam)).collect();
@@ -275,7 +276,7 @@ impl<'a> PlausibleMachines<'a> {
         found
     }
 
-    /// Returns what `of` finds for each machine drawn from the errors of the follower's numbers, on the model's own cam.
+    /// Returns the results of `of` for each machine drawn from the errors of the follower's numbers, on the model's own cam.
     pub fn drawn<T: Send>(&self, of: impl Fn(&Model, &Cam) -> Option<T> + Sync) -> Vec<T> {
         let draws = if self.errors.are_none() { Vec::new() } else { draws() };
         draws.par_iter().filter_map(|moves| of(&self.machine(moves), self.cam)).collect()
@@ -285,12 +286,12 @@ impl<'a> PlausibleMachines<'a> {
         self.errors.all().into_iter().enumerate().filter(|(_, error)| *error > 0.0).map(|(index, _)| index)
     }
 
-    /// The model with its numbers moved.
+    /// Model with its numbers moved.
     fn machine(&self, moves: &Moves) -> Model {
         self.model.moved(self.lowest, moves)
     }
 
-    /// One error down and up of a number; none for an exact one. A number at the end of its range moves to one side only.
+    /// Steps of a number by one error down and up; `None` for an exact number. A number at the end of its range moves to one side only.
     fn step(&self, index: usize) -> Option<Step> {
         let error = Some(self.errors.all()[index]).filter(|error| *error > 0.0)?;
         let name = FollowerErrors::names().nth(index)?;
@@ -300,10 +301,10 @@ impl<'a> PlausibleMachines<'a> {
     }
 }
 
-/// A move of one number down and up.
+/// Step of one number down and up.
 struct Step {
     index: usize,
-    /// Multiples of the standard deviation, of which the first is not positive and the second not negative.
+    /// Multiples of the standard deviation: the first is 0 or negative, the second 0 or positive.
     to: [f64; 2],
 }
 
@@ -315,8 +316,8 @@ impl Step {
     }
 }
 
-/// Returns the uncertainty of the number at `index` of each machine's numbers, by differences. None where the result is curved: the slopes on
-/// the two sides differ by more than a part of all slopes together.
+/// Returns the uncertainty of the number at `index` of each machine's numbers, by differences. `None` if the result is curved: the slopes
+/// on the two sides differ by more than a certain part of all slopes together.
 fn linear(number: f64, index: usize, steps: &[Step], sides: &[[Vec<f64>; 2]]) -> Option<SourcedUncertainty> {
     let rounding = tolerance::JET_ROUNDING.value * number.abs();
     let slope = |(step, [low, high]): (&Step, &[Vec<f64>; 2])| {
@@ -345,8 +346,8 @@ fn root_mean_square(values: impl Iterator<Item = f64>) -> f64 {
     (sum / f64::from(count)).sqrt()
 }
 
-/// Moves of an ensemble of machines: pairs of opposite normal draws. They are made uncorrelated, with a mean square of 1 for each number, so
-/// that a linear result gets the spread that it has in the limit of many draws.
+/// Moves of an ensemble of machines: pairs of opposite normal draws. They are made uncorrelated, with a mean square of 1 for each number. A
+/// linear result then gets the spread of the limit of many draws.
 fn draws() -> Vec<Moves> {
     /// Number of pairs, one more than numbers.
     const PAIRS: usize = FollowerErrors::COUNT + 1;

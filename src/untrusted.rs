@@ -1,12 +1,12 @@
 //! Prepares text by others for display: a name in a file, a path, a word of the command line.
 //!
-//! Characters that would steer a terminal or a browser, and those that nobody sees, are written out. Long text is cut in the middle. JSON
+//! Characters that would steer a terminal or a browser, and invisible ones, are written as escapes. Long text is cut in the middle. JSON
 //! writes these characters by its own escapes, so that programs read the text unchanged; CSV keeps them.
 
 use std::borrow::Cow;
 
-/// Largest displayed length of a message, of a value, and of a sentence with values in it, characters. A message is a sentence with a word
-/// before it.
+/// Largest displayed length of a message, of a value, and of a sentence with values in it, characters. A message is a sentence after one
+/// word.
 pub const MESSAGE: usize = 2000;
 /// Room for that word, in a message.
 pub const PREFIX: usize = 20;
@@ -38,7 +38,7 @@ const UNSEEN: [(char, char); 18] = [
     ('\u{e0000}', '\u{e0fff}'),
 ];
 
-/// Whether a letter is not merely displayed: control characters, and those that are not displayed at all.
+/// Whether a character steers a display or is invisible.
 fn steers(letter: char) -> bool {
     letter.is_control() || UNSEEN.iter().any(|(first, last)| (*first..=*last).contains(&letter))
 }
@@ -77,7 +77,7 @@ pub fn value(text: &str) -> Cow<'_, str> {
     cut(written_out(text, |_| false), VALUE)
 }
 
-/// Writes the letters of a JSON document that steer by escapes of JSON, which leaves its values as they are.
+/// Escapes the steering characters of a JSON document, which leaves its values as they are.
 pub fn json(document: String) -> String {
     if !document.chars().any(|letter| letter != '\n' && steers(letter)) {
         return document;
@@ -90,7 +90,7 @@ pub fn json(document: String) -> String {
     document.chars().map(part).collect()
 }
 
-/// Makes the text of a file safe to display with every letter at its place, in bytes, for a drawing that points into it.
+/// Makes the text of a file safe to display with every letter at its position, in bytes, for a drawing that points into it.
 pub fn in_place(text: &str) -> String {
     let mut letters = text.chars().peekable();
     let mut seen = String::with_capacity(text.len());

@@ -1,4 +1,4 @@
-//! Records of runs, in columns.
+//! Records of runs, as columns.
 
 use std::mem::take;
 
@@ -24,7 +24,7 @@ fn code(kind: EventKind) -> i8 {
     EVENTS.iter().position(|known| *known == kind).map_or(FAILED, |code| code as i8)
 }
 
-/// A dict of columns that are handed over, not copied; their names are made once.
+/// Dict of columns that are handed over without copying; their names are made once.
 macro_rules! columns {
     ($py:expr, $($name:literal: $column:expr),+ $(,)?) => {{
         let columns = PyDict::new($py);
@@ -49,12 +49,12 @@ pub(crate) struct Events {
 }
 
 impl Events {
-    /// None yet, of a run from a cam angle, rad.
+    /// Builds an empty record of a run from a cam angle, rad.
     pub(crate) fn new(start_angle: f64, angular_velocity: f64) -> Self {
         Self { start_angle, angular_velocity, ..Self::default() }
     }
 
-    /// Column by column: each then grows once for many.
+    /// Adds events column by column: each column then grows once for many events.
     pub(crate) fn extend(&mut self, events: &[Event]) {
         let (start_angle, angular_velocity) = (self.start_angle, self.angular_velocity);
         self.revolution.extend(events.iter().map(|event| event.revolution as i64));
@@ -89,7 +89,7 @@ pub(crate) struct Rows {
     cam_angle_rad: Vec<f64>,
     event: Vec<i8>,
     position_m: Vec<f64>,
-    /// At a section, the velocity.
+    /// Velocity before an impact; at a section, the velocity.
     velocity_before_m_s: Vec<f64>,
     velocity_after_m_s: Vec<f64>,
     growth: Vec<f64>,
@@ -123,7 +123,7 @@ impl RecordBlock for Rows {
         self.value.len() >= 1024
     }
 
-    /// A row without numbers; the columns that a diagram has not are left out in the end.
+    /// Adds a row without numbers; columns that the diagram does not have are removed in the end.
     fn fail(&mut self, value: f64) -> bool {
         self.value.push(value);
         self.revolution.push(-1);

@@ -1,4 +1,4 @@
-//! What goes wrong in Rust, as Python's exceptions.
+//! Conversion of Rust errors to Python exceptions.
 
 use std::error::Error;
 
@@ -9,14 +9,14 @@ use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::PyType;
 
-/// A `ModelError` where a complaint about a model is the cause, with its place; else a `ValueError`.
+/// Builds a `ModelError`, with its place, if an error in a model is the cause; else a `ValueError`.
 pub(crate) fn raised(error: &(dyn Error + 'static)) -> PyErr {
-    // What the command would be given as an option is an argument here.
+    // Options of the command are arguments here.
     let words = sentence(&error.to_string()).replace("--rpm R", "rpm").replace("--rpm", "rpm");
     let causes = std::iter::successors(Some(error), |error| (*error).source());
     match causes.filter_map(|error| error.downcast_ref::<ModelError>()).next() {
         Some(at) => Python::attach(|py| about_model(py, &words, at)).unwrap_or_else(|error| error),
-        // What a script in Python says of its packages.
+        // Message of a Python script about its packages.
         None if ["ModuleNotFoundError", "python-flint is missing"].iter().any(|sign| words.contains(sign)) => {
             PyImportError::new_err(words)
         }
@@ -24,16 +24,16 @@ pub(crate) fn raised(error: &(dyn Error + 'static)) -> PyErr {
     }
 }
 
-/// A `ModelError` with these words, about a place.
+/// Builds a `ModelError` with this message, about a place.
 pub(crate) fn about_model(py: Python<'_>, words: &str, at: &ModelError) -> PyResult<PyErr> {
-    // Python's own class: one that extends another of Python's cannot be made here for all versions of it at once.
+    // Python's own class: a class that extends another Python class cannot be made here for all Python versions at once.
     static CLASS: PyOnceLock<Py<PyType>> = PyOnceLock::new();
     let class = CLASS.import(py, "corner_impact._errors", "ModelError")?;
     let error = class.call1((words, &*at.file, at.line, &at.field))?;
     Ok(PyErr::from_value(error))
 }
 
-/// The result, or the exception.
+/// Conversion of a result to a Python result.
 pub(crate) trait OrRaise<T> {
     fn or_raise(self) -> PyResult<T>;
 }

@@ -1,4 +1,4 @@
-//! Grids over two numbers of a model: blocks as arrays, and the store that processes fill together.
+//! Grids over two numbers of a model: blocks as arrays, and the store that several processes fill.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -43,7 +43,7 @@ pub(crate) struct Grid {
     place: (f64, Option<f64>, Option<f64>, Option<f64>),
 }
 
-/// What a grid is made of: its model and its axes.
+/// Definition of a grid: its model and its axes.
 type Named<'py> = (Py<Model>, Bound<'py, PyDict>);
 
 #[pymethods]

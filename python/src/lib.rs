@@ -1,4 +1,4 @@
-//! The Python package's native half: conversions, and nothing that computes.
+//! Native half of the Python package, which only converts values and computes nothing.
 
 mod arrays;
 mod error;

@@ -1,4 +1,4 @@
-//! The piecewise-linear map at a corner impact.
+//! Piecewise-linear map at a corner impact.
 
 use corner_impact::border_collision::LocalMap;
 use corner_impact::border_collision::local_map::MapOrbit;
@@ -57,10 +57,10 @@ struct LocalOrbits {
     orbits: Vec<MapOrbit>,
 }
 
-/// Deviations with changes of the period, and the shape in which they came.
+/// Deviations with changes of the period, and the shape of the input.
 type Points = (Vec<([f64; 2], f64)>, Vec<usize>);
 
-/// Arguments with which a map was made.
+/// Arguments from which a map was built.
 type Arguments = (Py<Model>, Option<(f64, f64)>, u64);
 
 impl Local {
@@ -68,7 +68,7 @@ impl Local {
         PyArray1::from_slice(py, &side.entries()[..4]).reshape([2, 2])
     }
 
-    /// Evaluates something at every point of (..., 2) and at every change of the period.
+    /// Combines every point of (..., 2) with every change of the period.
     fn at<'py>(dx: &Bound<'py, PyAny>, change: &Bound<'py, PyAny>) -> PyResult<Points> {
         let points = dx.py().import("numpy")?.call_method1("asarray", (dx,))?;
         let (all, shape) = broadcast(["dx"], [&points])?;

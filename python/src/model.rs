@@ -1,4 +1,4 @@
-//! A model, and every question about one.
+//! Model, with all its computations.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -72,7 +72,7 @@ impl Model {
         Ok(Self { model, machine })
     }
 
-    /// Builds a model with a warning for each oddity.
+    /// Builds a model, and warns of each oddity.
     fn read(py: Python<'_>, model: model::Model) -> PyResult<Self> {
         for note in alone(py, || notes::notes(&model, None))?.or_raise()? {
             warn(py, note)?;
@@ -85,7 +85,7 @@ impl Model {
     }
 }
 
-/// Warns with a sentence.
+/// Issues a warning.
 pub(crate) fn warn(py: Python<'_>, words: String) -> PyResult<()> {
     let words = std::ffi::CString::new(words).unwrap_or_default();
     PyErr::warn(py, &py.get_type::<PyUserWarning>(), &words, 1)
@@ -1019,24 +1019,24 @@ impl Model {
     }
 }
 
-/// Cam angle at the start, rad, by one of its three names.
+/// Returns the cam angle at the start, rad, given by one of its three names.
 pub(crate) fn start_angle(given: [Option<f64>; 3]) -> PyResult<f64> {
     Ok(angle("start_angle", "cam_angle", given)?.unwrap_or(0.0))
 }
 
-/// A title: whether the figure's own is shown, or other words.
+/// Title of a picture: whether the figure's own is shown, or other words.
 #[derive(FromPyObject)]
 enum Title {
     Shown(bool),
     Words(String),
 }
 
-/// An option of a picture, read as the command reads it.
+/// Reads an option of a picture as the command does.
 fn told<V, T>(name: &str, value: V, read: impl FnOnce(V) -> Result<T, String>) -> PyResult<T> {
     read(value).or_else(|why| refused(format!("{name} {why}")))
 }
 
-/// The images of some starts, side by side on `threads` threads.
+/// Computes the images of some starts in parallel on `threads` threads.
 fn map_over<T: Send>(
     py: Python<'_>,
     starts: &[[f64; 2]],

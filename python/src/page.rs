@@ -1,4 +1,4 @@
-//! The live page of a model in a notebook.
+//! Live page of a model in a notebook.
 
 use std::path::PathBuf;
 

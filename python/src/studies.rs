@@ -1,4 +1,4 @@
-//! Studies that take more than one call of the library: basins, figures, explanations.
+//! Studies that need more than one call of the library: basins, figures, explanations.
 
 use std::time::Instant;
 
@@ -21,7 +21,7 @@ use crate::model::warn;
 use crate::values::{answer, refused};
 use crate::work::{shared, spread};
 
-/// The starts on a section: cells of a grid, or states.
+/// Starts on a section: cells of a grid, or states.
 pub(crate) fn begun(
     cells: Option<[usize; 2]>,
     ranges: [Option<[f64; 2]>; 2],
@@ -40,7 +40,7 @@ pub(crate) fn begun(
     }
 }
 
-/// The basins at one speed, and for each cell of a grid the motion on which its start settles.
+/// Basins at one speed, and for each cell of a grid the motion on which its start settles.
 pub(crate) fn basins<'py>(
     py: Python<'py>,
     model: &Model,
@@ -73,7 +73,7 @@ pub(crate) fn basins<'py>(
     Ok(result)
 }
 
-/// The shares of the basins at each value of an axis.
+/// Shares of the basins at each value of an axis.
 pub(crate) fn basin_shares<'py>(
     py: Python<'py>,
     model: &Model,
@@ -87,7 +87,7 @@ pub(crate) fn basin_shares<'py>(
     answer(py, "BasinShares", &found, &model.units)
 }
 
-/// Bifurcations by their names; all without any.
+/// Bifurcations by their names; all of them if no name is given.
 pub(crate) fn bifurcations(names: &[String]) -> PyResult<Vec<Bifurcation>> {
     if names.is_empty() {
         return Ok(Bifurcation::ALL.to_vec());
@@ -100,7 +100,7 @@ pub(crate) fn bifurcations(names: &[String]) -> PyResult<Vec<Bifurcation>> {
     names.iter().map(named).collect()
 }
 
-/// A figure of the report with its picture, or the list of all.
+/// Figure of the report with its picture, or the list of all figures.
 pub(crate) fn figure<'py>(
     py: Python<'py>,
     model: &Model,
@@ -121,7 +121,7 @@ pub(crate) fn figure<'py>(
     Ok(result)
 }
 
-/// The meaning of a name, with its values for a model.
+/// Meaning of a name, with its values for a model.
 pub(crate) fn explain<'py>(
     py: Python<'py>,
     model: &Model,

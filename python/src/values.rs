@@ -1,4 +1,4 @@
-//! Python's values, checked as those of the command line are.
+//! Conversion of Python values, with the checks of the command line.
 
 use corner_impact::cam::within_a_turn;
 use corner_impact::flight::State;
@@ -21,13 +21,13 @@ pub(crate) fn refused<T>(words: String) -> PyResult<T> {
     Err(PyValueError::new_err(words))
 }
 
-/// How many of something.
+/// Reads a count.
 fn count(name: &str, value: &Bound<'_, PyAny>) -> PyResult<u64> {
     let found = if value.is_instance_of::<PyBool>() { None } else { value.extract().ok() };
     found.map_or_else(|| refused(format!("{name} = {value} must be a whole number from 0 to {}", u64::MAX)), Ok)
 }
 
-/// Reads arguments that say how many: a function for each, so that complaints name it.
+/// Readers of counts: one function for each argument, so that errors name it.
 pub(crate) mod counts {
     use pyo3::prelude::*;
 
@@ -42,7 +42,7 @@ pub(crate) mod counts {
     counts!(bits, doublings, longest, patience, points, record, revolutions, speeds, starts, steps, transient);
 }
 
-/// How many threads; none for as many as there are cores.
+/// Reads a number of threads; `None` for one per core.
 pub(crate) fn thread_count(value: &Bound<'_, PyAny>) -> PyResult<Option<usize>> {
     if value.is_none() {
         return Ok(None);
@@ -51,7 +51,7 @@ pub(crate) fn thread_count(value: &Bound<'_, PyAny>) -> PyResult<Option<usize>> 
     found.map_or_else(|words| refused(format!("threads = {value} {words}, or None")), |count| Ok(Some(count)))
 }
 
-/// A number of something within limits.
+/// Checks that a number is within limits.
 pub(crate) fn within(name: &str, value: u64, [low, high]: [u64; 2]) -> PyResult<u64> {
     if (low..=high).contains(&value) {
         Ok(value)
@@ -60,12 +60,12 @@ pub(crate) fn within(name: &str, value: u64, [low, high]: [u64; 2]) -> PyResult<
     }
 }
 
-/// A speed that a simulation can turn at.
+/// Checks that a simulation can run at a speed.
 pub(crate) fn speed(rpm: f64) -> PyResult<f64> {
     limits::speed(rpm).or_else(|words| refused(format!("rpm = {rpm} {words}")))
 }
 
-/// A range of speeds.
+/// Checks a range of speeds.
 pub(crate) fn speed_range((low, high): (f64, f64)) -> PyResult<[f64; 2]> {
     let range = [speed(low)?, speed(high)?];
     limits::range(range).or_else(|words| refused(format!("rpm: {words}")))
@@ -117,7 +117,7 @@ pub(crate) fn words(value: &Bound<'_, PyAny>) -> PyResult<Vec<String>> {
     if value.is_instance_of::<PyString>() { Ok(vec![value.extract()?]) } else { value.extract() }
 }
 
-/// The items of a sequence as a tuple.
+/// Items of a sequence as a tuple.
 fn tuple<'py>(value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
     value.py().get_type::<PyTuple>().call1((value,))
 }
@@ -133,16 +133,16 @@ pub(crate) fn named_range_if_any(value: &Bound<'_, PyAny>) -> PyResult<Option<(S
     if value.is_none() { Ok(None) } else { named_range(value).map(Some) }
 }
 
-/// The values of an axis as a caller gives them.
+/// Values of an axis as given by a caller.
 pub(crate) enum AxisValues {
-    /// Lowest, highest, and how many.
+    /// Lowest and highest value, and their number.
     Spaced(f64, f64, usize),
-    /// Each of them.
+    /// Given values.
     Each(Vec<f64>),
 }
 
 impl AxisValues {
-    /// The axis of a number, with checked values.
+    /// Builds the axis of a number, with checked values.
     fn axis(self, parameter: Parameter, log: bool) -> PyResult<Axis> {
         let (name, is_speed) = (parameter.name().to_owned(), parameter == Parameter::Speed);
         let checked = |value: f64| match value {
@@ -176,7 +176,7 @@ pub(crate) enum Speeds {
     Axis(AxisValues),
 }
 
-/// Reads a number, a tuple (lowest, highest, how many), or any other sequence as each of the speeds.
+/// Reads a number, a tuple (lowest, highest, how many), or any other sequence of speeds.
 pub(crate) fn speeds(value: &Bound<'_, PyAny>) -> PyResult<Speeds> {
     // An array of one value converts to a number, too.
     if value.len().is_err() {
@@ -186,7 +186,7 @@ pub(crate) fn speeds(value: &Bound<'_, PyAny>) -> PyResult<Speeds> {
     Ok(Speeds::Axis(spaced.or_else(|_| numbers("rpm", value).map(AxisValues::Each))?))
 }
 
-/// The name of a number, and the values that it takes.
+/// Name of a number, and its values.
 pub(crate) type NamedValues = (String, AxisValues);
 
 /// Reads (name, lowest, highest, how many) or (name, values), if any.
@@ -205,7 +205,7 @@ pub(crate) fn over(value: &Bound<'_, PyAny>) -> PyResult<Option<NamedValues>> {
     Ok(Some((name, AxisValues::Each(values))))
 }
 
-/// The range over which orbits or events are followed.
+/// Range over which orbits or events are followed.
 pub(crate) fn followed(
     model: &Model,
     (name, low, high): (String, f64, f64),
@@ -224,7 +224,7 @@ pub(crate) fn followed(
     Ok(Following { parameter, range, longest_step, most_points })
 }
 
-/// An angle in rad by one of its three names: plain, in rad, or in degrees.
+/// Angle in rad, given by one of its three names: plain, in rad, or in degrees.
 pub(crate) fn angle(name: &str, plain: &str, given: [Option<f64>; 3]) -> PyResult<Option<f64>> {
     if given.iter().flatten().count() > 1 {
         let names = [plain, &format!("{name}_rad"), &format!("{name}_deg")];
@@ -235,7 +235,7 @@ pub(crate) fn angle(name: &str, plain: &str, given: [Option<f64>; 3]) -> PyResul
     Ok(plain.or(rad).or(deg.map(f64::to_radians)))
 }
 
-/// Angles in any shape by one of their three names, and whether they are in degrees.
+/// Angles in any shape, given by one of their three names, and whether they are in degrees.
 pub(crate) fn angles<'a, 'py>(
     name: &str,
     given: [Option<&'a Bound<'py, PyAny>>; 3],
@@ -247,12 +247,12 @@ pub(crate) fn angles<'a, 'py>(
     }
 }
 
-/// How the values of an axis lie.
+/// Spacing of an axis's values.
 pub(crate) fn spacing(log: bool, low: f64) -> PyResult<Spacing> {
     limits::spaced(low, if log { Spacing::Logarithmic } else { Spacing::Linear }).or_else(refused)
 }
 
-/// The one speed, if there is one, and the axis of a survey.
+/// Fixed speed, if any, and the axis of a survey.
 pub(crate) fn axis(model: &Model, rpm: Speeds, over: Option<NamedValues>, log: bool) -> PyResult<(Option<f64>, Axis)> {
     match (rpm, over) {
         (Speeds::Axis(values), None) => Ok((None, values.axis(Parameter::Speed, log)?)),
@@ -267,12 +267,12 @@ pub(crate) fn axis(model: &Model, rpm: Speeds, over: Option<NamedValues>, log: b
     }
 }
 
-/// For how long runs are followed.
+/// Builds the budget of runs.
 pub(crate) fn budget(transient: u64, record: u64, longest: u64, patience: u64) -> PyResult<Budget> {
     Budget { transient, record, longest, patience }.judging().or_else(refused)
 }
 
-/// Where a run starts: on the cam, leaving it at a relative velocity, or somewhere with a position and a velocity.
+/// Builds the start of a run: on the cam, leaving it at a relative velocity, or with a position and a velocity.
 pub(crate) fn start(
     cam_angle: f64,
     relative_velocity: Option<f64>,
@@ -301,14 +301,14 @@ pub(crate) fn numbers(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Vec<f64>
     }
 }
 
-/// Arrays of numbers broadcast against each other by the rules of numpy: their values side by side, and the common shape.
+/// Broadcasts arrays of numbers by the rules of numpy: returns their values side by side, and the common shape.
 pub(crate) fn broadcast<const N: usize>(
     names: [&str; N],
     values: [&Bound<'_, PyAny>; N],
 ) -> PyResult<(Vec<[f64; N]>, Vec<usize>)> {
     let mut arrays = Vec::with_capacity(N);
     for (name, value) in names.iter().zip(values) {
-        // For numpy, None is NaN.
+        // None counts as NaN, as in numpy.
         if value.is_none() {
             return refused(format!("{name} = None must be numbers"));
         }
@@ -343,7 +343,7 @@ pub(crate) fn broadcast<const N: usize>(
     Ok((rows, shape))
 }
 
-/// Columns of so many rows as arrays of a shape, by name.
+/// Converts columns of equal length to arrays of a shape, by name.
 pub(crate) fn shaped<'py, const N: usize>(
     py: Python<'py>,
     names: [&str; N],
@@ -358,7 +358,7 @@ pub(crate) fn shaped<'py, const N: usize>(
     Ok(columns)
 }
 
-/// Columns under their names in the units of a model, with the values that those make others.
+/// Returns columns under their names in the units of a model, with converted values.
 pub(crate) fn in_units<'py>(columns: Bound<'py, PyDict>, units: &Units) -> PyResult<Bound<'py, PyDict>> {
     if !units.are_given {
         return Ok(columns);
@@ -375,12 +375,12 @@ pub(crate) fn in_units<'py>(columns: Bound<'py, PyDict>, units: &Units) -> PyRes
     Ok(told)
 }
 
-/// An object of a class of `corner_impact.results` with these entries.
+/// Builds an object of a class of `corner_impact.results` with these entries.
 pub(crate) fn result<'py>(class: &str, entries: Bound<'py, PyDict>) -> PyResult<Bound<'py, PyAny>> {
     entries.py().import("corner_impact.results")?.getattr(class)?.call1((entries,))
 }
 
-/// A document as the command prints it about a model in these units, as an object of a class of `corner_impact.results`.
+/// Converts a document, as the command prints it about a model in these units, to an object of a class of `corner_impact.results`.
 pub(crate) fn answer<'py>(
     py: Python<'py>,
     class: &str,
@@ -390,13 +390,13 @@ pub(crate) fn answer<'py>(
     result(class, document(py, found, units)?)
 }
 
-/// A document as the command prints it about a model in these units, as a dict.
+/// Converts a document, as the command prints it about a model in these units, to a dict.
 pub(crate) fn document<'py>(py: Python<'py>, found: &impl Serialize, units: &Units) -> PyResult<Bound<'py, PyDict>> {
     let text = json::render(found, units).map_err(|error| raised(&error))?;
     Ok(py.import("json")?.call_method1("loads", (text,))?.cast_into()?)
 }
 
-/// What a dict of dicts, lists, arrays, text and numbers holds; nothing where it holds something else.
+/// Converts a dict of dicts, lists, arrays, text and numbers to JSON; other contents become null.
 pub(crate) fn item(value: &Bound<'_, PyAny>) -> PyResult<Value> {
     if let Ok(table) = value.cast::<PyDict>() {
         let entry = |(key, value): (Bound<'_, PyAny>, Bound<'_, PyAny>)| Ok((key.extract()?, item(&value)?));
@@ -411,7 +411,7 @@ pub(crate) fn item(value: &Bound<'_, PyAny>) -> PyResult<Value> {
     if let Ok(number) = value.extract::<f64>() {
         return Ok(number.into());
     }
-    // Arrays have their numbers as lists.
+    // Arrays are converted to lists of numbers.
     let listed = if value.hasattr("tolist")? { value.call_method0("tolist")? } else { value.clone() };
     match listed.try_iter() {
         Ok(items) => items.map(|value| item(&value?)).collect::<PyResult<_>>().map(Value::Array),

@@ -1,4 +1,4 @@
-//! Work without the interpreter, which ends within a fraction of a second of a signal that Python makes an exception of.
+//! Work that releases the interpreter, and ends within a fraction of a second after a signal that Python turns into an exception.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
@@ -10,10 +10,10 @@ use corner_impact::study::survey::{SweepError, threads};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-/// Between two looks for a signal.
+/// Time between two checks for a signal.
 const LOOK: Duration = Duration::from_millis(50);
 
-/// Work of this thread alone, which looks for signals itself: nothing is spent on what takes microseconds.
+/// Runs work on this thread, which checks for signals itself; short work has no overhead.
 pub(crate) fn alone<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyResult<T> {
     struct Looks {
         last: Instant,
@@ -28,7 +28,7 @@ pub(crate) fn alone<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) ->
         }
         looks.last = Instant::now();
         drop(looks);
-        // A handler may call this very module.
+        // A handler may call this module.
         let raised = Python::attach(|py| py.check_signals()).err();
         let is_raised = raised.is_some();
         asked.lock().unwrap_or_else(PoisonError::into_inner).raised = raised;
@@ -41,7 +41,7 @@ pub(crate) fn alone<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) ->
     })
 }
 
-/// Work that threads share, on one of its own: this one looks for signals.
+/// Runs work that several threads share, on a separate thread, while this thread checks for signals.
 pub(crate) fn shared<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyResult<T> {
     py.detach(|| {
         std::thread::scope(|scope| {
@@ -50,7 +50,7 @@ pub(crate) fn shared<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -
             let question = Arc::new(move || asked.load(Ordering::Relaxed));
             let worker = scope.spawn(move || {
                 let done = cancel::run(question, work);
-                // The other end is there until this thread has ended.
+                // The receiver exists until this thread has ended.
                 let _ = sender.send(());
                 done
             });
@@ -71,7 +71,7 @@ pub(crate) fn shared<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -
     })
 }
 
-/// The same on as many threads as there are cores, for what finds its threads itself.
+/// Runs work as [`shared`] does, on as many threads as there are cores, if the work uses the current thread pool.
 pub(crate) fn spread<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyResult<T> {
     shared(py, || Ok(threads(None)?.install(work)))?
         .map_err(|error: SweepError| PyValueError::new_err(error.to_string()))

@@ -1,8 +1,8 @@
-//! The conditions under which a border collision is one of the generic kinds, each with how far it is from failing.
+//! Conditions under which a border collision is of a generic kind, each with its distance from failing.
 //!
-//! A distance has no unit: it is a quantity divided by the sum of the sizes of its terms, or how far the modulus of an
-//! eigenvalue is from 1. The distance is 0 where the condition fails. Continuity is the one condition that an equation has
-//! to meet: its distance is the share of the allowance for rounding that is not used up, at most 1.
+//! A distance has no unit: it is a quantity relative to the sum of the sizes of its terms, or the difference of an eigenvalue's modulus
+//! from 1. The distance is 0 where the condition fails. Continuity is the only condition that is an equation: its distance is the unused
+//! share of the allowance for rounding, at most 1.
 
 use nalgebra::{Matrix2, RowVector2};
 use serde::Serialize;
@@ -17,25 +17,25 @@ use crate::tolerance::{self, Tolerance};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Decides {
-    /// The classification, which does not exist without it.
+    /// Classification, which does not exist without the condition.
     Classification,
-    /// The stability of fixed points; their places do not depend on it.
+    /// Stability of the fixed points; their positions do not depend on it.
     Stability,
-    /// The normal form alone.
+    /// Normal form alone.
     NormalForm,
-    /// Whether chaos is a theorem.
+    /// Theorem of robust chaos.
     RobustChaos,
 }
 
-/// One condition.
+/// Condition of a classification.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[doc(hidden)]
 pub struct Condition {
-    /// Formula of the quantity that must not vanish; for continuity, of the one that must vanish.
+    /// Formula of the quantity that must not vanish; for continuity, of the quantity that must vanish.
     pub name: &'static str,
     /// Consequence of a failure.
     pub meaning: &'static str,
-    /// The quantity, in the map's own units.
+    /// Value of the quantity, in the map's units.
     pub value: f64,
     /// Distance from failing, without units.
     pub distance: f64,
@@ -57,13 +57,13 @@ document!(Condition as condition {
 });
 
 impl Condition {
-    /// Whether it holds; false where the distance is not a number.
+    /// Whether the condition is met; false if the distance is NaN.
     pub fn holds(&self) -> bool {
         self.distance > self.least.value
     }
 }
 
-/// Every condition on the map of the plane `map`, those of the classification first.
+/// All conditions on the map of the plane `map`, those of the classification first.
 #[doc(hidden)]
 pub fn conditions(map: &LocalMap) -> Vec<Condition> {
     let (minus, plus) = (&map.minus, &map.plus);
@@ -117,7 +117,7 @@ pub fn conditions(map: &LocalMap) -> Vec<Condition> {
     all
 }
 
-/// The largest entry of `A+ - A-` over the sizes that it is the difference of.
+/// Largest entry of `A+ - A-`, and its size relative to the terms of its difference.
 fn jump(map: &LocalMap) -> (f64, f64) {
     let (minus, plus) = (map.minus.a, map.plus.a);
     let relative = |index: usize| {
@@ -128,8 +128,8 @@ fn jump(map: &LocalMap) -> (f64, f64) {
     (0..4).map(relative).fold((0.0, 0.0), |most, next| if next.1 <= most.1 { most } else { next })
 }
 
-/// The largest minor of `[A+ - A-, B+ - B-]` and `[e, f]` over its terms, 0 where each row is a multiple of `[e, f]`; and the
-/// share of the allowance that is not used up.
+/// Largest minor of `[A+ - A-, B+ - B-]` and `[e, f]` relative to its terms, 0 if each row is a multiple of `[e, f]`; and the unused share
+/// of the allowance.
 fn continuity(map: &LocalMap) -> (f64, f64) {
     let (e, f) = map.border;
     let border = [e[0], e[1], f];
@@ -149,15 +149,15 @@ fn continuity(map: &LocalMap) -> (f64, f64) {
     (off, 1.0 - off / tolerance::CONTINUOUS.value)
 }
 
-/// The eigenvalue nearest to the unit circle.
+/// Difference from 1 of the modulus nearest to it.
 fn modulus(side: &SideMap) -> (f64, f64) {
     let off = side.eigenvalues().map(|value| elementary::hypot(value.re, value.im) - 1.0);
     let nearest = if off[0].abs() <= off[1].abs() { off[0] } else { off[1] };
     (nearest, nearest.abs())
 }
 
-/// `e adj(I - A) B + f det(I - A)`, one number for both sides: over `det(I - A)` it is how far the fixed point of a side is
-/// from the border at mu = 1.
+/// Returns `e adj(I - A) B + f det(I - A)`, which is equal for both sides. Divided by `det(I - A)` it is the distance of a side's fixed
+/// point from the border at mu = 1.
 fn crossing(map: &LocalMap) -> (f64, f64) {
     let side = &map.minus;
     let whole = Matrix2::identity() - side.a;
@@ -174,7 +174,7 @@ fn crossing(map: &LocalMap) -> (f64, f64) {
     (value, value.abs() / terms.iter().map(|term| term.abs()).sum::<f64>())
 }
 
-/// The determinant of two rows, over its terms.
+/// Determinant of two rows, and its size relative to its terms.
 fn seen(first: RowVector2<f64>, second: RowVector2<f64>) -> (f64, f64) {
     let terms = [first[0] * second[1], -first[1] * second[0]];
     (terms[0] + terms[1], (terms[0] + terms[1]).abs() / (terms[0].abs() + terms[1].abs()))

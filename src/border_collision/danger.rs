@@ -1,9 +1,8 @@
-//! Danger at a corner impact that Feigin's counts do not show: a basin that shrinks to nothing, or several attractors.
+//! Danger at a corner impact that Feigin's counts do not show: basins that shrink to nothing, or several attractors.
 //!
-//! *Dangerous* (Hassouneh, Abed and Nusse 2004; Ganguli and Banerjee 2005): the local map has an attractor on either side of the
-//! corner impact, such as a stable fixed point, and yet motions diverge at mu = 0. The map looks the same at every scale. So its
-//! basins at mu are those at mu = 1 or -1, |mu| times as large: whatever diverges at mu = 0 bounds them, and they shrink to nothing
-//! as mu goes to 0.
+//! *Dangerous* (Hassouneh, Abed and Nusse 2004; Ganguli and Banerjee 2005): the local map has an attractor on either side of the corner
+//! impact, such as a stable fixed point, and yet motions diverge at mu = 0. The map looks the same at every scale. So its basins at mu are
+//! those at mu = 1 or -1, scaled by |mu|. The motions that diverge at mu = 0 bound the basins, which shrink to nothing as mu goes to 0.
 //!
 //! *Multiple attractors* (Dutta, Nusse, Ott, Yorke and Yuan 1999): the local map has several attractors at one sign of mu. They and
 //! the borders between their basins shrink to one point as mu goes to 0. So the smallest disturbance there decides between them.
@@ -24,29 +23,29 @@ use crate::elementary;
 use crate::known::Evidence;
 use crate::tolerance;
 
-/// A kind of danger.
+/// Kind of danger.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum DangerKind {
-    /// There are attractors on either side, and their basins shrink to nothing at omega*.
+    /// Attractors on either side, whose basins shrink to nothing at omega*.
     Dangerous,
-    /// There are several attractors on one side, which meet at omega*.
+    /// Several attractors on one side, which meet at omega*.
     MultipleAttractors,
 }
 
 named!(DangerKind);
 
-/// A danger at a corner impact, as the local map has it.
+/// Danger at a corner impact, by the local map.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Danger {
-    /// Its kind; dangerous where both apply.
+    /// Kind of danger; dangerous if both kinds apply.
     pub kind: DangerKind,
-    /// Evidence for the kind: that of its weakest premise.
+    /// Evidence for the kind: the evidence of its weakest premise.
     pub known: Evidence,
-    /// The motions that diverge at omega*; none where there are several attractors alone.
+    /// Motions that diverge at omega*; `None` if the danger is several attractors alone.
     #[serde(rename = "diverges")]
     pub divergence: Option<Divergence>,
-    /// The attractors on either side.
+    /// Attractors on either side.
     pub attractors: Vec<LocalAttractor>,
 }
 
@@ -54,12 +53,12 @@ pub struct Danger {
 #[derive(Clone, Debug, PartialEq)]
 #[doc(hidden)]
 pub struct Divergence {
-    /// The share of directions, in the map's natural units, in which motions diverge. Where computed or proved it is a lower bound, and 1
-    /// then means that the motions of every start but the corner impact itself diverge.
+    /// Share of directions, in the map's natural units, in which motions diverge. If computed or proved, it is a lower bound; 1 then means
+    /// that the motion of every start except the corner impact itself diverges.
     pub share: f64,
-    /// Computed by intervals on the doubles of the map; proved where these hold the matrices of a certificate.
+    /// `Computed` by intervals from the doubles of the map; `Proved` if the intervals contain the matrices of a certificate.
     pub known: Evidence,
-    /// The word that one of them repeats, and the factor by which it grows with each repetition.
+    /// Word that one of the motions repeats, and its growth factor per repetition.
     pub follows: Option<(Word, f64)>,
 }
 
@@ -70,7 +69,7 @@ document!(Divergence as it {
     multiplier: it.follows.as_ref().map(|(_, multiplier)| *multiplier),
 });
 
-/// An attractor of the local map.
+/// Attractor of the local map.
 #[derive(Clone, Debug, PartialEq)]
 #[doc(hidden)]
 pub struct LocalAttractor {
@@ -78,9 +77,9 @@ pub struct LocalAttractor {
     pub speeds: Speeds,
     /// Evidence that it is an attractor.
     pub known: Evidence,
-    /// The motion.
+    /// Long-run motion on the attractor.
     pub end: LocalLongRun,
-    /// Its disturbances that return; none for chaos, and none where the basin is not examined.
+    /// Disturbances that return to it; `None` for chaos, and if the basin is not examined.
     pub returns: Option<Returns>,
 }
 
@@ -92,8 +91,8 @@ document!(LocalAttractor as it {
     returns: it.returns,
 });
 
-/// Disturbances of a periodic orbit that return to it: every smaller one does, as far as was sampled. All are per unit of the distance of
-/// the speed from omega*, with which they grow; none where every disturbance that was tried returns.
+/// Disturbances of a periodic orbit that return to it; all smaller sampled ones return as well. All are per unit of the distance of the
+/// speed from omega*, with which they grow. `None` if every tried disturbance returns.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[doc(hidden)]
 pub struct Returns {
@@ -112,7 +111,7 @@ document!(Returns as it {
     any_m_per_rpm: it.any,
 });
 
-/// A classification with the danger that it does not show: the document of both.
+/// Classification with the danger that it does not show, written as one document.
 #[derive(Serialize)]
 pub(crate) struct WithDanger<'a> {
     #[serde(flatten)]
@@ -121,7 +120,7 @@ pub(crate) struct WithDanger<'a> {
 }
 
 impl LocalAttractor {
-    /// The word of a periodic orbit.
+    /// Word of a periodic orbit.
     pub fn word(&self) -> Option<&Word> {
         match &self.end {
             LocalLongRun::Periodic(orbit) => Some(&orbit.word),
@@ -131,13 +130,13 @@ impl LocalAttractor {
 }
 
 impl Danger {
-    /// The attractors at these speeds.
+    /// Attractors at these speeds.
     pub fn at(&self, speeds: Speeds) -> impl Iterator<Item = &LocalAttractor> {
         self.attractors.iter().filter(move |attractor| attractor.speeds == speeds)
     }
 
-    /// Records a proof: the share of directions in which motions diverge. With `is_attracting` the attractors count as proved, too, if all
-    /// are fixed points.
+    /// Records a proof of the share of directions in which motions diverge. With `is_attracting` the attractors count as proved, too, if
+    /// all are fixed points.
     pub fn prove(&mut self, share: f64, is_attracting: bool) {
         if let Some(divergence) = self.divergence.as_mut().filter(|_| share > 0.0) {
             (divergence.share, divergence.known) = (share, Evidence::Proved);
@@ -150,7 +149,7 @@ impl Danger {
 }
 
 impl LocalMap {
-    /// The danger at a corner impact whose period is `period`, s, from the motions of the local map on either side of it and at it.
+    /// Danger at a corner impact with period `period`, s, from the motions of the local map on either side of it and at it.
     pub fn danger(&self, outcomes: &[LocalOutcome], period: f64) -> Option<Danger> {
         let mut attractors: Vec<LocalAttractor> = outcomes.iter().flat_map(attractors).collect();
         let count = |speeds| attractors.iter().filter(|attractor| attractor.speeds == speeds).count();
@@ -171,13 +170,13 @@ impl LocalMap {
         Some(Danger { kind, known, divergence, attractors })
     }
 
-    /// The motions that diverge at mu = 0, if any do.
+    /// Motions that diverge at mu = 0, if any.
     pub fn divergence(&self) -> Option<Divergence> {
-        /// Directions in which motions start.
+        /// Number of directions in which motions start.
         const SAMPLED: u32 = 64;
         let scales = self.scales();
         let end = |index: u32| {
-            // Off the axes, which can be invariant.
+            // The angles avoid the axes, which can be invariant.
             let angle = TAU * (f64::from(index) + 0.3) / f64::from(SAMPLED);
             self.end(Vector2::new(elementary::cos(angle) * scales[0], elementary::sin(angle) * scales[1]), 0.0)
         };
@@ -197,9 +196,9 @@ impl LocalMap {
         (share > 0.0).then_some(Divergence { share, known, follows })
     }
 
-    /// The disturbances of a stable orbit that return to it.
+    /// Disturbances of a stable orbit that return to it.
     fn returns(&self, orbit: &MapOrbit, speeds: Speeds, period: f64) -> Returns {
-        /// Directions of a disturbance.
+        /// Number of directions of a disturbance.
         const DIRECTIONS: u32 = 16;
         let mu = if speeds == Speeds::Faster { -1.0 } else { 1.0 };
         // |dT| = T^2/60 |d rpm|, and the local map scales with |dT|.
@@ -209,7 +208,7 @@ impl LocalMap {
             each.filter_map(|(point, along)| self.first_lost(orbit, *point, *along, mu)).reduce(f64::min)
         };
         let axis = |along: Vector2<f64>| smallest(&[along, -along]).map(|size| size * per_rpm);
-        // An angular velocity makes a velocity of a length.
+        // Multiplication by an angular velocity makes a velocity of a length.
         let omega = TAU / period;
         let around = |index: u32| {
             let angle = TAU * f64::from(index) / f64::from(DIRECTIONS);
@@ -223,13 +222,13 @@ impl LocalMap {
         }
     }
 
-    /// The smallest disturbance of a point of a stable orbit, in one direction, that does not return to the orbit.
+    /// Smallest disturbance of a point of a stable orbit, in one direction, that does not return to the orbit.
     fn first_lost(&self, orbit: &MapOrbit, point: Vector2<f64>, along: Vector2<f64>, mu: f64) -> Option<f64> {
-        /// Ratio of each disturbance to the one before.
+        /// Ratio of successive disturbances.
         const GROWTH: f64 = 1.25;
-        /// The largest that is tried, in the map's natural units.
+        /// Largest disturbance that is tried, in the map's natural units.
         const MOST: f64 = 1e3;
-        // Along it one of the map's natural units is this long.
+        // Length of one natural unit of the map in this direction.
         let unit = 1.0 / along.component_div(&self.units()).norm();
         let along = along * unit;
         let word = orbit.word.least_rotation().0;
@@ -252,7 +251,7 @@ impl LocalMap {
     }
 }
 
-/// The attractors of the local map at one sign of mu: the stable orbits listed, and further ends of motions.
+/// Attractors of the local map at one sign of mu: the stable orbits listed, and further ends of motions.
 fn attractors(outcome: &LocalOutcome) -> Vec<LocalAttractor> {
     let Some(speeds) = Speeds::of(outcome.mu) else { return Vec::new() };
     let attractor = |end, known| LocalAttractor { speeds, known, end, returns: None };

@@ -1,18 +1,17 @@
 //! Directions in which motions of the local map diverge at the corner impact, by interval arithmetic.
 //!
-//! At mu = 0 the map is `F(x) = A x` with the matrix of the side that x is on. It sends rays to rays, so that it is a map of the
-//! circle of directions and a growth along each. The directions are cut into sectors by points on the edge of a square. For each
-//! sector, intervals hold
+//! At mu = 0 the map is `F(x) = A x` with the matrix of the side of x. It sends rays to rays, so that it is a map of the circle of
+//! directions with a growth factor along each. Points on the edge of a square divide the directions into sectors. For each sector,
+//! intervals give
 //!
 //! ```text
 //! the sectors that its image may meet,     r = a lower bound of |F(x)|/|x|,   |x| = max(|x_1|, |x_2|)
 //! h(sector) = r min over those sectors of max(1, h)
 //! ```
 //!
-//! From h = 0 the iteration rises. A motion that starts in a sector with h > 1 has grown after some of its first steps: by h or
-//! more. A set of such sectors that no image leaves is therefore a set of directions in which every motion diverges. The largest
-//! such set is found; the set of all sectors means that the motion of every start but 0 diverges. Often isolated rays are left out,
-//! along which motions may shrink.
+//! The iteration rises from h = 0. A motion that starts in a sector with h > 1 has grown by h or more after some of its first steps. If no
+//! image leaves a set of such sectors, every motion in its directions diverges. The largest such set is found. If it contains all sectors,
+//! the motion of every start but 0 diverges. Often isolated rays along which motions may shrink are left out.
 
 use nalgebra::Vector2;
 
@@ -21,34 +20,35 @@ use crate::cam::Side;
 use crate::elementary;
 use crate::interval::Interval;
 
-/// Sectors on half an edge of the square; the proof is tried with few first. Powers of two: the points between sectors are exact.
+/// Numbers of sectors on half an edge of the square; the proof is first tried with few. Powers of two make the points between sectors
+/// exact.
 const HALF_EDGES: [usize; 2] = [64, 1024];
-/// Rounds of the iteration. Most maps need a few dozen.
+/// Largest number of rounds of the iteration. Most maps need a few dozen.
 const ROUNDS: usize = 512;
-/// A bound of growth above which more growth proves nothing more.
+/// Bound on growth above which more growth proves nothing more.
 const ENOUGH: f64 = 1e6;
-/// Points that a guess of where an image begins or ends is moved by until it is certain.
+/// Number of points by which a guessed end of an image may be moved until it is certain.
 const MOVED: usize = 3;
 
-/// The local map at mu = 0, for all matrices and borders in intervals.
+/// Local map at mu = 0, for all matrices and borders in intervals.
 #[derive(Clone, Copy, Debug)]
 pub struct Homogeneous {
-    /// A by rows, minus first.
+    /// Matrices A by rows, minus first.
     matrices: [[[Interval; 2]; 2]; 2],
-    /// e.
+    /// Border e.
     border: [Interval; 2],
 }
 
-/// The image of a sector under one side's matrix.
+/// Image of a sector under one side's matrix.
 struct Image {
-    /// A lower bound of the growth.
+    /// Lower bound of the growth.
     growth: f64,
-    /// The sectors that it meets: the first, and how many.
+    /// Sectors that it meets: the first, and their number.
     sectors: (usize, usize),
 }
 
 impl Homogeneous {
-    /// From the matrices by rows, minus first, and e, in coordinates with about these units.
+    /// Builds the map from the matrices by rows, minus first, and e, in coordinates with about these units.
     pub fn new(matrices: [[[Interval; 2]; 2]; 2], border: [Interval; 2], units: Vector2<f64>) -> Self {
         // Powers of two, so that the change of units is exact.
         let [one, two] = [units[0], units[1]].map(|unit| 2.0_f64.powi(elementary::log2(unit).round() as i32));
@@ -56,8 +56,8 @@ impl Homogeneous {
         Self { matrices, border: [border[0] * one, border[1] * two] }
     }
 
-    /// The share of directions in which every motion provably diverges, as a share of the sectors: at least so much, 1 for all. The
-    /// search is thorough where `is_likely` says that some do.
+    /// Lower bound of the share of sectors in which every motion provably diverges; 1 if all diverge. The search is thorough if `is_likely`
+    /// is set.
     pub fn diverging(&self, is_likely: bool) -> f64 {
         let mut share = 0.0;
         for half_edge in HALF_EDGES {
@@ -95,7 +95,7 @@ impl Homogeneous {
                 break;
             }
         }
-        // What leaves the set is taken out of it, until nothing leaves.
+        // Removes sectors whose image leaves the set, until no image leaves it.
         let mut stays: Vec<bool> = grown.iter().map(|grown| *grown > 1.0).collect();
         loop {
             let leaves = |sector: &usize| stays[*sector] && images[*sector].iter().flat_map(met).any(|to| !stays[to]);
@@ -108,7 +108,7 @@ impl Homogeneous {
         stays.iter().filter(|stays| **stays).count() as f64 / count as f64
     }
 
-    /// The images of a sector, one for each side that a part of it may be on.
+    /// Images of a sector, one for each side on which a part of it may be.
     fn images(&self, sector: usize, half_edge: usize) -> Vec<Image> {
         let ends = [sector, sector + 1].map(|index| point(index, half_edge).map(Interval::from));
         let heights = ends.map(|end| self.border[0] * end[0] + self.border[1] * end[1]);
@@ -123,7 +123,7 @@ impl Homogeneous {
         [0, 1].into_iter().filter(is_on).map(image).collect()
     }
 
-    /// The image between the images of a sector's ends; none where it is not certain.
+    /// Image between the images of a sector's ends; `None` if it is not certain.
     fn image(&self, ends: [[Interval; 2]; 2], half_edge: usize) -> Option<Image> {
         let turn = cross(ends[0], ends[1]);
         let [start, end] = match (turn.is_positive(), turn.is_negative()) {
@@ -134,7 +134,7 @@ impl Homogeneous {
         let count = 8 * half_edge;
         let at = |[x, y]: [Interval; 2]| place([x.middle(), y.middle()], half_edge);
         let corner = |index: usize| point(index, half_edge).map(Interval::from);
-        // Indices go on around the square. The whole image is on the left of the point that it begins after, and on the right of the one that it ends before.
+        // Indices continue around the square. The whole image lies to the left of its first point, and to the right of its last point.
         let is_right_of = |index: usize| [start, end].iter().all(|of| cross(corner(index), *of).is_positive());
         let is_left_of = |index: usize| [start, end].iter().all(|of| cross(*of, corner(index)).is_positive());
         let (from, to) = (at(start)?.floor() as usize + count, at(end)?.ceil() as usize + count);
@@ -144,7 +144,7 @@ impl Homogeneous {
             return None;
         }
         let sectors = (first, (last + count - first) % count);
-        // |x| is 1 on the edge of the square.
+        // The norm |x| is 1 on the edge of the square.
         let away = |row: usize| {
             let hull = start[row].hull(end[row]);
             hull.low().max(-hull.high()).max(0.0)
@@ -157,7 +157,7 @@ fn cross([a, b]: [Interval; 2], [c, d]: [Interval; 2]) -> Interval {
     a * d - b * c
 }
 
-/// A point on the edge of the square, counted counter-clockwise from its lower right corner.
+/// Point on the edge of the square, counted counter-clockwise from its lower right corner.
 fn point(index: usize, half_edge: usize) -> [f64; 2] {
     let along = (index % (2 * half_edge)) as f64 / half_edge as f64 - 1.0;
     match (index / (2 * half_edge)) % 4 {
@@ -168,7 +168,7 @@ fn point(index: usize, half_edge: usize) -> [f64; 2] {
     }
 }
 
-/// The index at which the edge of the square is cut by the ray through `(x, y)`, not rounded to a whole one; none of 0.
+/// Unrounded index of the intersection of the ray through `(x, y)` with the edge of the square; `None` for the zero vector.
 fn place([x, y]: [f64; 2], half_edge: usize) -> Option<f64> {
     let size = x.abs().max(y.abs());
     let (x, y) = (x / size, y / size);
@@ -183,7 +183,7 @@ fn place([x, y]: [f64; 2], half_edge: usize) -> Option<f64> {
 }
 
 impl LocalMap {
-    /// The map at mu = 0 with its doubles as they are.
+    /// Map at mu = 0, with its doubles taken as exact.
     pub fn homogeneous(&self) -> Homogeneous {
         let rows = |side| {
             let a = self.of(side).a;

@@ -1,4 +1,4 @@
-//! A curve of one kind of event in the plane of the speed and a number of the model, with the scenario at each corner impact.
+//! Curves of one kind of event in the plane of the speed and a number of the model, with the scenario at each corner impact.
 
 use serde::Serialize;
 
@@ -11,14 +11,14 @@ use crate::tolerance;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Happening {
-    /// A derivative jumps that gives no such map.
+    /// Jump of a derivative that gives no piecewise-linear map.
     NotPiecewiseLinear,
-    /// An eigenvalue on a boundary of the counts.
+    /// Eigenvalue on a boundary of the counts.
     Degenerate,
-    /// Two matrices meet: Feigin's scenario.
+    /// Border collision: Feigin's scenario.
     #[serde(untagged)]
     BorderCollision(Scenario),
-    /// An orbit without impacts grazes.
+    /// Graze of an orbit without impacts.
     #[serde(untagged)]
     Graze(GrazeClass),
 }
@@ -28,11 +28,11 @@ named!(Happening);
 /// One point of a curve.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EventPoint {
-    /// Its speed, rpm.
+    /// Speed, rpm.
     pub rpm: f64,
     /// Value of the other number.
     pub value: f64,
-    /// Cam angle of the impact at the corner, of the touch, or of the first impact, rad.
+    /// Cam angle of the impact at the corner, of the graze, or of the first impact, rad.
     pub cam_angle: f64,
     /// Turns of the cam in one period.
     pub revolutions: u64,
@@ -41,7 +41,7 @@ pub struct EventPoint {
     pub happening: Option<Happening>,
     /// Multipliers: two of the orbit; at a corner impact two with the law before the corner, then two with the law after it.
     pub multipliers: Vec<Eigenvalue>,
-    /// Change along the curve at this point, if any.
+    /// Special point at this point of the curve, if any.
     pub special: Option<Special>,
 }
 
@@ -79,11 +79,11 @@ impl EventPoint {
     }
 }
 
-/// A curve of one kind of event.
+/// Curve of one kind of event.
 #[derive(Clone, Debug, PartialEq)]
 #[doc(hidden)]
 pub struct EventCurve {
-    /// The event at the model's own number.
+    /// Event at the model's own number.
     pub kind: SpecialKind,
     pub points: Vec<EventPoint>,
     /// Reasons for its start and its end.
@@ -98,13 +98,13 @@ document!(EventCurve as it {
 });
 
 impl EventCurve {
-    /// The events along a curve whose event is `kind` at the model's own number.
+    /// Builds the events along a curve whose event is `kind` at the model's own number.
     pub fn new(curve: &Branch, kind: SpecialKind) -> Self {
         let points = curve.points.iter().map(|point| EventPoint::new(point, kind)).collect();
         Self { kind, points, ends: curve.ends.clone() }
     }
 
-    /// Whether both curves go through the same events, in either direction: their ends agree, and so do the reasons for them.
+    /// Whether both curves have the same events, in either direction: their ends and the reasons for them agree.
     pub fn is_same(&self, other: &Self) -> bool {
         let ends = |curve: &Self| -> Option<[(f64, f64, End); 2]> {
             let [first, last] = [curve.points.first()?, curve.points.last()?].map(|point| (point.value, point.rpm));
@@ -120,7 +120,7 @@ impl EventCurve {
         })
     }
 
-    /// Pairs of neighbouring points, with the happening between them: that of an end at which nothing changes along the curve.
+    /// Pairs of neighbouring points, with the happening between them, taken from an end that is not a special point.
     pub fn pieces(&self) -> impl Iterator<Item = ([&EventPoint; 2], Option<Happening>)> {
         self.points.windows(2).filter_map(|pair| {
             let [from, to] = pair else { return None };

@@ -1,8 +1,8 @@
 //! Feigin's classification of a border collision in a continuous piecewise-linear map.
 //!
-//! With the numbers of real eigenvalues above 1 and below -1 on each side: the fixed point persists where the total above 1
-//! is even, and two fixed points meet and vanish (nonsmooth fold) where it is odd; an orbit of period two is born where the
-//! total below -1 is odd (nonsmooth flip). Where each side's fixed point exists is computed on its own, from the border.
+//! The counts are the numbers of real eigenvalues above 1 and below -1 on both sides. If the total above 1 is even, the fixed point
+//! persists; if it is odd, two fixed points meet and vanish (nonsmooth fold). If the total below -1 is odd, an orbit of period two is born
+//! (nonsmooth flip). The speeds at which each side's fixed point exists are computed separately, from the border.
 
 use nalgebra::{Matrix2, RowVector2, Vector2};
 use serde::{Deserialize, Serialize};
@@ -20,16 +20,16 @@ use crate::tolerance;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Scenario {
-    /// The fixed point crosses to the other side.
+    /// Crossing of the fixed point to the other side.
     Persistence,
-    /// The fixed point meets the other side's fixed point, and both vanish.
+    /// Meeting of the fixed points of both sides, which vanish.
     NonsmoothFold,
-    /// The fixed point crosses, and an orbit of period two is born.
+    /// Crossing of the fixed point, with the birth of an orbit of period two.
     NonsmoothFlip,
 }
 
 impl Scenario {
-    /// Scenario by the numbers of real eigenvalues above 1 and below -1, of both sides together.
+    /// Returns the scenario for the numbers of real eigenvalues above 1 and below -1, of both sides together.
     pub fn of_counts(above_one: usize, below_minus_one: usize) -> Self {
         match (above_one % 2, below_minus_one % 2) {
             (1, _) => Self::NonsmoothFold,
@@ -41,61 +41,61 @@ impl Scenario {
 
 named!(Scenario, Speeds);
 
-/// On which side of the corner-impact speed a fixed point exists.
+/// Side of the corner-impact speed on which a fixed point exists.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Speeds {
-    /// Above omega*: dT < 0.
+    /// Speeds above omega*: dT < 0.
     Faster,
-    /// Below omega*: dT > 0.
+    /// Speeds below omega*: dT > 0.
     Slower,
 }
 
 impl Speeds {
-    /// Speeds at which the period changes by `mu`; none where it does not change.
+    /// Returns the speeds at which the period changes by `mu`; `None` for 0.
     pub fn of(mu: f64) -> Option<Self> {
         if mu == 0.0 { None } else { Some(if mu < 0.0 { Self::Faster } else { Self::Slower }) }
     }
 }
 
-/// The name of the speeds at which the period changes by `mu`.
+/// Name of the speeds at which the period changes by `mu`.
 #[doc(hidden)]
 pub fn speeds_at(mu: f64) -> String {
     Speeds::of(mu).map_or("at".into(), |speeds| speeds.to_string())
 }
 
-/// Contribution of one side.
+/// Counts, fixed point and stability of one side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[doc(hidden)]
 pub struct SideCounts {
-    /// Real eigenvalues above 1.
+    /// Number of real eigenvalues above 1.
     pub above_one: usize,
-    /// Real eigenvalues below -1.
+    /// Number of real eigenvalues below -1.
     pub below_minus_one: usize,
     /// Whether both eigenvalues lie inside the unit circle.
     pub stable: bool,
     /// Stability of the side's fixed point.
     pub stability: Stability,
-    /// `(I - A)^{-1} B`, the fixed point for dT = 1 s: m, m/s.
+    /// Fixed point `(I - A)^{-1} B` for dT = 1 s: m, m/s.
     pub fixed_point: Vector2<f64>,
-    /// `det(I - A)`.
+    /// Determinant `det(I - A)`.
     pub determinant: f64,
     /// Speeds at which the fixed point lies on its own side of the border.
     pub exists_for: Speeds,
 }
 
-/// Feigin's verdict, with the counts and the border that it follows from.
+/// Feigin's verdict, with the counts and the border from which it follows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Classification {
-    /// The verdict.
+    /// Scenario.
     pub scenario: Scenario,
-    /// Whether an orbit of period two exists on one side of the corner-impact speed; beside a fold it is a second verdict.
+    /// Whether an orbit of period two exists on one side of the corner-impact speed; with a fold it is a second verdict.
     pub period_two_orbit: bool,
     /// Impacts before the corner.
     pub minus: SideCounts,
     /// Impacts after the corner.
     pub plus: SideCounts,
-    /// `(e, f)`: the impact comes before the corner where `e dx + f dT < 0`.
+    /// Border `(e, f)`: the impact comes before the corner if `e dx + f dT < 0`.
     pub border: (RowVector2<f64>, f64),
 }
 
@@ -121,8 +121,8 @@ document!(Classification as kind {
 
 /// Classifies the border collision of `map`.
 ///
-/// `border` is `(e, f)` with the minus side where `e dx + f dT < 0`. The paper takes `(C, D)` for it, which is right only
-/// where both have the same sign.
+/// `border` is `(e, f)`, with the minus side where `e dx + f dT < 0`. The paper uses `(C, D)` instead, which is correct only if both have
+/// the same sign.
 pub fn classify(map: &CornerMap, border: (RowVector2<f64>, f64)) -> Result<Classification, Degenerate> {
     let minus = side_counts(Side::Minus, &map.minus, border, -1.0)?;
     let plus = side_counts(Side::Plus, &map.plus, border, 1.0)?;
@@ -136,13 +136,13 @@ pub fn classify(map: &CornerMap, border: (RowVector2<f64>, f64)) -> Result<Class
     Ok(Classification { scenario, period_two_orbit: below % 2 == 1, minus, plus, border })
 }
 
-/// The scenario of A- and A+, 2x2, by their eigenvalues alone.
+/// Returns the scenario of A- and A+, 2x2, by their eigenvalues alone.
 pub fn scenario([minus, plus]: &[Matrix2<f64>; 2]) -> Result<Scenario, Degenerate> {
     let (minus, plus) = (counts(Side::Minus, &eigenvalues(minus))?, counts(Side::Plus, &eigenvalues(plus))?);
     Ok(Scenario::of_counts(minus[0] + plus[0], minus[1] + plus[1]))
 }
 
-/// The numbers of real eigenvalues above 1 and below -1, of one side.
+/// Numbers of real eigenvalues above 1 and below -1 on one side.
 fn counts(side: Side, eigenvalues: &[Eigenvalue; 2]) -> Result<[usize; 2], Degenerate> {
     for Eigenvalue { re, im } in *eigenvalues {
         for boundary in [1.0, -1.0] {
@@ -155,7 +155,7 @@ fn counts(side: Side, eigenvalues: &[Eigenvalue; 2]) -> Result<[usize; 2], Degen
     Ok([real(|value| value > 1.0), real(|value| value < -1.0)])
 }
 
-/// `sign` is that of `e x + f dT` on this side.
+/// Counts of one side; `sign` is the sign of `e x + f dT` on it.
 fn side_counts(
     name: Side,
     side: &SideMap,

@@ -1,7 +1,7 @@
-//! The local map itself: `x' = A x + B mu` with the matrices of the side that x is on, and its periodic orbits.
+//! Local map `x' = A x + B mu`, with the matrices of the side of x, and its periodic orbits.
 //!
-//! The map looks the same at every scale: for k > 0, x moves at mu as k x moves at k mu. So the cases mu = 1, -1 and 0 suffice.
-//! A map of the line is the case where the second coordinate stays 0.
+//! The map looks the same at every scale: for k > 0, x moves at mu as k x moves at k mu. So the cases mu = 1, -1 and 0 suffice. A map of
+//! the line is the special case in which the second coordinate stays 0.
 
 use nalgebra::{Matrix2, RowVector2, Vector2};
 
@@ -12,29 +12,29 @@ use crate::elementary;
 use crate::orbit::Stability;
 use crate::tolerance;
 
-/// A piecewise-linear map of the plane with one border.
+/// Piecewise-linear map of the plane with one border.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LocalMap {
-    /// Where `e x + f mu < 0`; L in words.
+    /// Map where `e x + f mu < 0`; L in words.
     pub minus: SideMap,
-    /// Where `e x + f mu >= 0`; R in words.
+    /// Map where `e x + f mu >= 0`; R in words.
     pub plus: SideMap,
-    /// `(e, f)`.
+    /// Border `(e, f)`.
     pub border: (RowVector2<f64>, f64),
 }
 
-/// An orbit that repeats a word, wherever its points lie.
+/// Orbit that repeats a word, wherever its points lie.
 #[derive(Clone, Debug, PartialEq)]
 #[doc(hidden)]
 pub struct MapOrbit {
     /// Sides of the word.
     pub word: Word,
-    /// Its points, one for each letter.
+    /// Points, one for each letter.
     pub points: Vec<Vector2<f64>>,
-    /// The eigenvalues of the product of the word's matrices.
+    /// Eigenvalues of the product of the word's matrices.
     pub multipliers: [Eigenvalue; 2],
-    /// The least of its points' distances from the border over the largest term of any: positive where all lie on the side
-    /// of their letter, negative where one does not.
+    /// Least distance of its points from the border relative to the largest term of any: positive if all points lie on the side of their
+    /// letter, negative if one does not.
     pub margin: f64,
 }
 
@@ -49,7 +49,7 @@ document!(MapOrbit as orbit {
 });
 
 impl MapOrbit {
-    /// Whether every point lies on the side of its letter, and not on the border to rounding.
+    /// Whether every point lies on the side of its letter, and off the border by more than rounding.
     pub fn admissible(&self) -> bool {
         self.margin > tolerance::DEGENERATE.value
     }
@@ -66,12 +66,12 @@ impl MapOrbit {
 }
 
 impl LocalMap {
-    /// The local map of a corner impact, with dT for mu; `border` is `(e, f)` of [`crate::corner::variational::border`].
+    /// Builds the local map of a corner impact, with dT for mu; `border` is `(e, f)` of [`crate::corner::variational::border`].
     pub fn new(map: &CornerMap, border: (RowVector2<f64>, f64)) -> Self {
         Self { minus: map.minus, plus: map.plus, border }
     }
 
-    /// The map of one side.
+    /// Map of one side.
     pub fn of(&self, side: Side) -> &SideMap {
         match side {
             Side::Minus => &self.minus,
@@ -79,32 +79,32 @@ impl LocalMap {
         }
     }
 
-    /// `e x + f mu`, and the sum of its terms' sizes.
+    /// Height `e x + f mu` over the border, and the sum of its terms' sizes.
     pub fn height(&self, x: Vector2<f64>, mu: f64) -> (f64, f64) {
         let (e, f) = self.border;
         let terms = [e[0] * x[0], e[1] * x[1], f * mu];
         (terms.iter().sum(), terms.iter().map(|term| term.abs()).sum())
     }
 
-    /// The side that x is on.
+    /// Side of x.
     pub fn side(&self, x: Vector2<f64>, mu: f64) -> Side {
         if self.height(x, mu).0 < 0.0 { Side::Minus } else { Side::Plus }
     }
 
-    /// One step.
+    /// Applies the map once.
     pub fn apply(&self, x: Vector2<f64>, mu: f64) -> Vector2<f64> {
         let side = self.of(self.side(x, mu));
         side.a * x + side.b * mu
     }
 
-    /// `x -> A_W x + B_W mu`: the maps of a word's letters one after the other, wherever x is.
+    /// Composition `x -> A_W x + B_W mu` of the maps of a word's letters, wherever x is.
     pub fn along(&self, word: &Word) -> SideMap {
         word.sides().iter().fold(SideMap::IDENTITY, |first, side| self.of(*side).after(&first))
     }
 
-    /// The orbit that repeats `word`; `None` where `det(I - A_W)` is zero to rounding, so that there is none or too many.
+    /// Orbit that repeats `word`; `None` if `det(I - A_W)` is zero up to rounding, so that there is no orbit or a family of them.
     pub fn orbit(&self, word: &Word, mu: f64) -> Option<MapOrbit> {
-        // Each point from its own rotation: carried from one to the next it would lose what the word expands.
+        // Each point is computed from its own rotation: carried from one to the next, it would lose digits that the word expands.
         let point = |by: usize| {
             let round = self.along(&word.turned(by));
             let (value, terms) = characteristic(&round.a, 1.0);
@@ -125,7 +125,7 @@ impl LocalMap {
         Some(MapOrbit { word: word.clone(), points, multipliers: self.along(word).eigenvalues(), margin })
     }
 
-    /// Every admissible periodic orbit with a word of `longest` letters or fewer, the short ones first.
+    /// All admissible periodic orbits with a word of at most `longest` letters, the short ones first.
     pub fn admissible_orbits(&self, mu: f64, longest: usize) -> Vec<MapOrbit> {
         let words = Word::primitive(longest);
         words.iter().filter_map(|word| self.orbit(word, mu)).filter(MapOrbit::admissible).collect()
@@ -139,7 +139,7 @@ pub(super) fn stability(eigenvalues: &[Eigenvalue; 2]) -> Stability {
     Stability::of_modulus(modulus, tolerance::UNIT_EIGENVALUE.value)
 }
 
-/// `det(z I - A) = z^2 - z tr A + det A` for z = 1 or -1, and the sum of its terms' sizes.
+/// Returns `det(z I - A) = z^2 - z tr A + det A` for z = 1 or -1, and the sum of its terms' sizes.
 #[doc(hidden)]
 pub fn characteristic(a: &Matrix2<f64>, z: f64) -> (f64, f64) {
     let (trace, determinant) = (a.trace(), a.determinant());

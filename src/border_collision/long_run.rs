@@ -1,9 +1,9 @@
-//! Where motions of the local map end: on a periodic orbit, in chaos, or nowhere.
+//! Ends of the local map's motions: a periodic orbit, chaos, or escape.
 //!
-//! Whether a motion ends on an orbit or escapes is not guessed from its size. Once the sides that it visits repeat a word,
-//! the rest follows: it converges to the orbit of that word where this orbit is stable and visits those sides, and it escapes
-//! where a sufficient condition holds. For a motion that repeats no word the largest Lyapunov exponent is measured, or proved to
-//! be above 0; it is called chaotic where a region that the map sends into itself shows that it stays.
+//! Convergence to an orbit and escape are not judged by the size of a motion. Once the visited sides repeat a word, the rest follows. The
+//! motion converges to the orbit of that word if this orbit is stable and visits those sides; it escapes if a sufficient condition is met.
+//! For a motion that repeats no word, the largest Lyapunov exponent is measured, or proved to be above 0. The motion is called chaotic if a
+//! region that the map sends into itself shows that it stays.
 
 use nalgebra::{Matrix2, Vector2};
 
@@ -16,66 +16,65 @@ use crate::elementary;
 use crate::estimate::Estimate;
 use crate::tolerance;
 
-/// Where a motion ends.
+/// End of a motion.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LocalLongRun {
-    /// On a stable periodic orbit; a fixed point for a word of one letter.
+    /// Stable periodic orbit; a fixed point for a word of one letter.
     Periodic(MapOrbit),
-    /// In chaos.
+    /// Chaos.
     Chaotic(LocalChaos),
-    /// Undecided, with its exponent: the motion is on a closed curve, is not settled, or may be a long transient because no region
-    /// was found that traps it.
+    /// Undecided end, with the exponent: the motion is on a closed curve, is not settled, or may be a long transient, since no trapping
+    /// region was found.
     Undecided(Estimate),
-    /// At the corner impact itself: at mu = 0 the motion shrinks to nothing.
+    /// Corner impact itself: at mu = 0 the motion shrinks to nothing.
     Corner,
-    /// Nowhere: it grows without bound.
+    /// Escape: the motion grows without bound.
     Escapes(EscapeReason),
 }
 
-/// A motion that stays bounded and separates neighbours.
+/// Motion that stays bounded and on which small deviations grow.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LocalChaos {
-    /// Its largest Lyapunov exponent a step, a natural logarithm.
+    /// Largest Lyapunov exponent per step, a natural logarithm.
     pub exponent: Estimate,
-    /// Lower bound of the exponent of every motion, by [`super::robust_chaos`]; none where its saddles do not exist. Then
-    /// only the measured exponent shows that it is above 0.
+    /// Lower bound of the exponent of every motion, by [`super::robust_chaos`]; `None` if its saddles do not exist. Then only the measured
+    /// exponent shows that it is above 0.
     pub least_exponent: Option<f64>,
-    /// Region in which it stays.
+    /// Region in which the motion stays.
     pub region: TrappingRegion,
 }
 
-/// Why a motion is taken to escape.
+/// Reason why a motion is taken to escape.
 #[derive(Clone, Debug, PartialEq)]
 pub enum EscapeReason {
-    /// The motion follows a word for ever and grows by a factor with each repetition.
+    /// Motion that repeats a word for ever and grows by a factor with each repetition.
     Follows {
-        /// The word.
+        /// Repeated word.
         word: Word,
-        /// The multiplier above 1.
+        /// Growth factor per repetition, above 1.
         multiplier: f64,
     },
-    /// The motion has grown past `1/tolerance::ESCAPED` times its scale.
+    /// Growth past `1/tolerance::ESCAPED` times the motion's scale.
     Grown,
 }
 
-/// Steps between two checks of a motion. An exponent is a mean of means over this many steps.
+/// Number of steps between two checks of a motion. An exponent is a mean of means over this many steps.
 const PART: usize = 1024;
-/// Parts before the first mean: the transient.
+/// Number of parts before the first mean: the transient.
 const TRANSIENT: usize = 8;
-/// Parts of a run that repeats no word.
+/// Number of parts of a run that repeats no word.
 const PARTS: usize = 40;
-/// Steps of a run that repeats no word.
+/// Number of steps of a run that repeats no word.
 pub(super) const STEPS: usize = PARTS * PART;
-/// Steps over which an exponent is averaged.
+/// Number of steps over which an exponent is averaged.
 pub(super) const MEASURED: usize = (PARTS - TRANSIENT) * PART;
-/// Parts around which a trapping region is built.
+/// Number of last parts around which a trapping region is built.
 const AROUND: usize = 8;
-/// Repetitions that a word needs to count.
+/// Number of repetitions that a word needs to count.
 const REPEATED: usize = 8;
 
 impl LocalMap {
-    /// Largest size of each coordinate in the first steps from 0: its natural unit at mu = 1, positive or 0 where x is never moved
-    /// along it.
+    /// Largest size of each coordinate in the first steps from 0, its natural unit at mu = 1; 0 if x never moves along it.
     pub fn scales(&self) -> Vector2<f64> {
         let mut scales = Vector2::<f64>::zeros();
         for mu in [1.0, -1.0] {
@@ -88,12 +87,12 @@ impl LocalMap {
         scales
     }
 
-    /// The natural unit of each coordinate, 1 where x is never moved along it.
+    /// Natural unit of each coordinate; 1 if x never moves along it.
     pub(crate) fn units(&self) -> Vector2<f64> {
         self.scales().map(|scale| if scale > 0.0 { scale } else { 1.0 })
     }
 
-    /// Where the motion from `start` ends.
+    /// End of the motion from `start`.
     pub fn end(&self, start: Vector2<f64>, mu: f64) -> LocalLongRun {
         let scales = self.scales();
         let size = |x: Vector2<f64>| {
@@ -108,7 +107,7 @@ impl LocalMap {
         let mut visited = Vec::with_capacity(PART);
         for part in 0..PARTS {
             sides.clear();
-            // The region around what was visited is made of the last parts alone.
+            // The region is built around the points of the last parts alone.
             if part + AROUND < PARTS {
                 visited.clear();
             }
@@ -129,14 +128,14 @@ impl LocalMap {
             if let Some(escape) = self.escape(&sides, x, mu) {
                 return LocalLongRun::Escapes(escape);
             }
-            // At mu = 0 the only orbit is the corner impact itself, which is on no side.
+            // At mu = 0 the only orbit is the corner impact itself, which is on neither side.
             let word = if mu == 0.0 { None } else { Word::repeated(&sides, REPEATED) };
             if let Some(orbit) = word.and_then(|word| self.orbit(&word, mu)) {
                 if orbit.admissible() && orbit.stable() {
                     let (word, _) = orbit.word.least_rotation();
                     return self.orbit(&word, mu).map_or(LocalLongRun::Periodic(orbit), LocalLongRun::Periodic);
                 }
-                // Rounding can put a motion on an unstable orbit and keep it there.
+                // Rounding can put a motion on an unstable orbit and keep it there; a small kick removes it.
                 x += scales * tolerance::KICK.value;
             }
             let mean = tangent.take_growth() / PART as f64;
@@ -154,11 +153,11 @@ impl LocalMap {
         }
     }
 
-    /// The factor by which a motion at `x` grows with each repetition of `word`, if it provably repeats it for ever.
+    /// Growth factor per repetition of `word` of a motion at `x`, if it provably repeats the word for ever.
     ///
-    /// After m repetitions a point is `c + l1^m d1 + l2^m d2` with the word's fixed point c and the parts of x - c along the
-    /// eigenvectors. With l1 > 1 and l1 > |l2| it stays on the side s = -1, 1 for every m where
-    /// `s e d1 > |e d2| + max(0, -s (e c + f mu))`, which is checked for each rotation of the word.
+    /// After m repetitions a point is `c + l1^m d1 + l2^m d2`, with the word's fixed point c and the parts d1, d2 of x - c along the
+    /// eigenvectors. With l1 > 1 and l1 > |l2| it stays on the side s = -1, 1 for every m if `s e d1 > |e d2| + max(0, -s (e c + f mu))`.
+    /// This is checked for each rotation of the word.
     pub fn follows_for_ever(&self, word: &Word, x: Vector2<f64>, mu: f64) -> Option<f64> {
         let (mut point, mut growth) = (x, None);
         for (by, side) in word.sides().iter().enumerate() {
@@ -183,16 +182,16 @@ impl LocalMap {
         growth
     }
 
-    /// The escape of a motion that has visited `sides` and is at `x` now, if it provably continues in the same way.
+    /// Escape of a motion that has visited `sides` and is at `x`, if it provably continues in the same way.
     fn escape(&self, sides: &[Side], x: Vector2<f64>, mu: f64) -> Option<EscapeReason> {
-        // What follows is proved, so that a word seen twice is worth trying.
+        // The continuation is proved, so that a word seen twice is worth a try.
         let word = Word::repeated(&sides[sides.len() / 2..], 2)?;
         let multiplier = self.follows_for_ever(&word, x, mu)?;
         Some(EscapeReason::Follows { word: word.least_rotation().0, multiplier })
     }
 }
 
-/// A small deviation carried along, in natural units.
+/// Small deviation carried along a motion, in natural units.
 struct Tangent {
     scales: Vector2<f64>,
     direction: Vector2<f64>,
@@ -201,7 +200,7 @@ struct Tangent {
 
 impl Tangent {
     fn new(scales: Vector2<f64>) -> Self {
-        // Any direction has a part along the one that grows most.
+        // Almost any direction has a part along the fastest growth.
         Self { scales, direction: Vector2::new(0.8, 0.6), growth: 0.0 }
     }
 

@@ -1,17 +1,17 @@
-//! Predictions of the piecewise-linear map: its normal form, Feigin's classification, its own motions on either side of the
-//! corner impact; and the distance from it up to which they are valid.
+//! Predictions of the piecewise-linear map at a corner impact: its normal form, Feigin's classification, its own motions on either side of
+//! the corner impact, and the range in which they are valid.
 //!
 //! | module | contents |
 //! |---|---|
 //! | [`mod@conditions`], [`feigin`] | conditions of a classification, and the classification |
-//! | [`mod@normal_form`] | the map with its parameter out of the border |
-//! | [`local_map`], [`word`] | the map itself; the sides that its orbits visit |
-//! | [`trapping`] | regions that it sends into themselves |
-//! | [`mod@robust_chaos`] | when chaos is a theorem |
-//! | [`long_run`], `outcome` | where its motions end, on either side of the corner impact |
+//! | [`mod@normal_form`] | normal form, with the border independent of the parameter |
+//! | [`local_map`], [`word`] | the map; the sides that its orbits visit |
+//! | [`trapping`] | regions that the map sends into themselves |
+//! | [`mod@robust_chaos`] | the theorem of robust chaos, and its hypotheses |
+//! | [`long_run`], `outcome` | ends of the map's motions, on either side of the corner impact |
 //! | [`directions`], [`danger`] | directions of divergence at the corner impact; basins that vanish there; attractors that meet there |
-//! | [`validity`], [`passage`] | range in which the map holds; departure of the machine from the place of its former orbit |
-//! | [`mod@rounded`] | how far a fold moves where the corner is rounded |
+//! | [`validity`], [`passage`] | range in which the map is valid; departure of the machine from its former orbit |
+//! | [`mod@rounded`] | shift of a fold by rounding of the corner |
 //! | `event_curve` | curves of corner impacts, folds, flips, grazes in two numbers of the model; scenarios of corner impacts |
 
 #[doc(hidden)]
@@ -54,29 +54,29 @@ pub use rounded::{RoundedCorner, rounded};
 
 use crate::cam::Side;
 
-/// A map that cannot be classified, and the reason.
+/// Reason why a map cannot be classified.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[expect(missing_docs, reason = "the message says what each number is")]
 pub enum Degenerate {
-    /// A change of coordinates divides by this.
+    /// Divisor of a change of coordinates that vanishes.
     #[error("{what} is {value:e}, zero to rounding")]
     Vanishes { what: &'static str, value: f64 },
-    /// An eigenvalue on a boundary that the counts divide at.
+    /// Eigenvalue on a boundary of the counts.
     #[error("the {side} side has an eigenvalue at {value}, too close to {boundary} to count")]
     EigenvalueOnBoundary { side: Side, value: f64, boundary: f64 },
-    /// A condition of the classification fails.
+    /// Condition of the classification that fails.
     #[error("{name} is {value:e}, {distance:.1e} from failing: {meaning}")]
     Fails { name: &'static str, value: f64, distance: f64, meaning: &'static str },
 }
 
-/// Why a corner impact is not classified.
+/// Reason why a corner impact is not classified.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[doc(hidden)]
 pub enum Refusal {
-    /// The map is none of the generic kinds.
+    /// Map of no generic kind.
     #[error("degenerate: {0}")]
     Degenerate(#[from] Degenerate),
-    /// The follower stays on the cam, so that a revolution forgets where it began and the map has no such sides.
+    /// Sticking of the follower near the corner, so that a revolution forgets its start and the map has no such sides.
     #[error(
         "sticking: next to the corner, on its {side} side, the follower stays on the cam after the impact and \
          forgets its start. A of that side is the zero matrix, which no formula for a flight after the impact gives"

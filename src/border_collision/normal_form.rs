@@ -1,7 +1,7 @@
-//! The normal form of a border collision: parameter out of the border, both sides in companion form.
+//! Normal form of a border collision, in which the border is independent of the parameter and both sides are in companion form.
 //!
-//! The paper's steps with its three slips repaired: the shift of coordinates moves the image as well as the point
-//! (so `A - I`, not `A`, in B tilde), the new coordinates are `W x~` (not `W^{-1} x~`), and B bar follows from both.
+//! The paper's steps with three slips repaired. The shift of coordinates moves the image as well as the point (so `A - I`, not `A`, in B
+//! tilde). The new coordinates are `W x~` (not `W^{-1} x~`). B bar follows from both.
 
 use nalgebra::{Matrix2, RowVector2, Vector2};
 
@@ -10,21 +10,21 @@ use crate::corner::CornerMap;
 use crate::corner::map::rows;
 use crate::tolerance;
 
-/// `x -> A_bar x + B_bar dT` with the border at `C_bar x = 0`.
+/// Normal form `x -> A_bar x + B_bar dT` with the border at `C_bar x = 0`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[doc(hidden)]
 pub struct NormalForm {
-    /// B after the shift `x~ = x + e1 D dT/c1`; the same on both sides.
+    /// Vector B after the shift `x~ = x + e1 D dT/c1`; equal on both sides.
     pub b_tilde: Vector2<f64>,
-    /// The change to companion form, `x_bar = W x~`.
+    /// Change to companion form, `x_bar = W x~`.
     pub w: Matrix2<f64>,
-    /// `W A- W^{-1}`.
+    /// Matrix `W A- W^{-1}`.
     pub a_bar_minus: Matrix2<f64>,
-    /// `W A+ W^{-1}`.
+    /// Matrix `W A+ W^{-1}`.
     pub a_bar_plus: Matrix2<f64>,
-    /// `W B~`.
+    /// Vector `W B~`.
     pub b_bar: Vector2<f64>,
-    /// `C W^{-1}`.
+    /// Row `C W^{-1}`.
     pub c_bar: RowVector2<f64>,
 }
 
@@ -37,7 +37,7 @@ document!(NormalForm as form {
     C_bar: form.c_bar.as_slice(),
 });
 
-/// The normal form of a continuous piecewise-linear map.
+/// Computes the normal form of a continuous piecewise-linear map.
 #[doc(hidden)]
 pub fn normal_form(map: &CornerMap) -> Result<NormalForm, Degenerate> {
     let (a, c, d) = (map.minus.a, map.c(), map.d());

@@ -1,4 +1,4 @@
-//! Predictions of the local map next to the corner impact, for mu = 1, -1 and 0.
+//! Predictions of the local map near the corner impact, for mu = 1, -1 and 0.
 
 use nalgebra::Vector2;
 
@@ -13,32 +13,32 @@ use crate::elementary;
 use crate::estimate::Estimate;
 use crate::tolerance;
 
-/// The longest word that periodic orbits are listed for.
+/// Largest length of the words for which periodic orbits are listed.
 pub const LONGEST_WORD: usize = 8;
 
-/// The local map's motions for one sign of mu.
+/// Motions of the local map for one sign of mu.
 #[derive(Clone, Debug, PartialEq)]
 #[doc(hidden)]
 pub struct LocalOutcome {
-    /// 1, -1 or 0; everything scales with its size.
+    /// Parameter: 1, -1 or 0; everything scales with its size.
     pub mu: f64,
-    /// The fixed points of both sides, admissible or not; none where mu is 0.
+    /// Fixed points of both sides, admissible or not; empty if mu is 0.
     pub fixed_points: Vec<MapOrbit>,
-    /// The orbit LR, admissible or not; none where mu is 0 or where it is not alone.
+    /// Orbit LR, admissible or not; `None` if mu is 0 or if the orbit is not isolated.
     pub period_two: Option<MapOrbit>,
-    /// Every admissible periodic orbit of `LONGEST_WORD` steps or fewer, fixed points included.
+    /// All admissible periodic orbits of at most `LONGEST_WORD` steps, fixed points included.
     pub orbits: Vec<MapOrbit>,
-    /// The theorem of robust chaos, where its saddles are there.
+    /// Theorem of robust chaos, if its saddles exist.
     pub robust_chaos: Option<RobustChaos>,
-    /// Ends of motions, each kind once. The first is that of x = 0, the state of the corner impact.
+    /// Ends of motions, each kind once. The first is the end of the motion from x = 0, the state of the corner impact.
     pub fates: Vec<Fate>,
 }
 
-/// Where some of the starts end.
+/// End of some of the motions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fate {
     pub end: LocalLongRun,
-    /// How many starts end there, of [`LocalOutcome::starts`].
+    /// Number of starts with this end, out of [`LocalOutcome::starts`].
     pub starts: usize,
 }
 
@@ -65,7 +65,7 @@ document!(Fate as fate {
 });
 
 impl LocalOutcome {
-    /// How many starts were run.
+    /// Number of starts that were run.
     pub fn starts(&self) -> usize {
         self.fates.iter().map(|fate| fate.starts).sum()
     }
@@ -77,8 +77,8 @@ impl LocalMap {
         [-1.0, 1.0, 0.0].map(|mu| self.outcome(mu))
     }
 
-    /// Simulates the map for `mu` from x = 0 and from circles around it, a tenth, one and ten times its size: its natural
-    /// units, or how far its fixed points are where that is further.
+    /// Simulates the map for `mu` from x = 0 and from circles around it, a tenth, one and ten times its size. The size is its natural
+    /// units, or the distance of its fixed points if that is larger.
     pub fn outcome(&self, mu: f64) -> LocalOutcome {
         const DIRECTIONS: u32 = 8;
         const CIRCLES: [f64; 3] = [0.1, 1.0, 10.0];
@@ -89,7 +89,7 @@ impl LocalMap {
         let scales = there.fold(self.scales(), |scales, point| scales.sup(&point.abs()));
         let around = CIRCLES.iter().flat_map(|radius| {
             (0..DIRECTIONS).map(move |index| {
-                // Off the axes, which can be invariant.
+                // The angles avoid the axes, which can be invariant.
                 let angle = std::f64::consts::TAU * (f64::from(index) + 0.3) / f64::from(DIRECTIONS);
                 Vector2::new(elementary::cos(angle) * scales[0], elementary::sin(angle) * scales[1]) * *radius
             })
@@ -115,7 +115,7 @@ impl LocalMap {
 }
 
 impl LocalLongRun {
-    /// Its name in documents.
+    /// Name in documents.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Periodic(orbit) if orbit.word.sides().len() == 1 => "fixed-point",
@@ -167,7 +167,7 @@ impl LocalLongRun {
         }
     }
 
-    /// Whether both are one kind of end, at one place up to rounding.
+    /// Whether both are the same kind of end, and the same orbit or exponent up to error.
     pub(super) fn is_like(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Periodic(one), Self::Periodic(other)) => one.word == other.word,
@@ -179,7 +179,7 @@ impl LocalLongRun {
         }
     }
 
-    /// The exponent of a motion that repeats nothing.
+    /// Exponent of a motion that repeats no word.
     fn exponent(&self) -> Option<&Estimate> {
         match self {
             Self::Chaotic(LocalChaos { exponent, .. }) | Self::Undecided(exponent) => Some(exponent),
@@ -187,7 +187,7 @@ impl LocalLongRun {
         }
     }
 
-    /// The side of a fixed point.
+    /// Side of a fixed point.
     pub fn fixed_on(&self) -> Option<Side> {
         match self {
             Self::Periodic(orbit) => match orbit.word.sides() {

@@ -1,22 +1,22 @@
-//! Robust chaos: the theorem by which a corner impact makes chaos by itself, and whether its hypotheses hold.
+//! Robust chaos: the theorem by which a corner impact alone makes chaos, and its hypotheses.
 //!
-//! Let one side's fixed point, L, be a saddle with an eigenvalue above 1, and the other side's, R, one with an eigenvalue below
-//! -1, both with positive determinants, at a sign of mu at which they are there:
+//! Let one side's fixed point, L, be a saddle with an eigenvalue above 1, and the other side's, R, a saddle with an eigenvalue below -1.
+//! Let both determinants be positive, at a sign of mu at which both saddles exist:
 //!
 //! ```text
 //! delta_L > 0,   delta_R > 0,   tau_L > 1 + delta_L,   tau_R < -(1 + delta_R)
 //! phi = l (l - delta_L) + (l - 1)(l tau_R - delta_R) > 0,   l the eigenvalue of A_L above 1
 //! ```
 //!
-//! Then there is a bounded region that the map sends into itself (Banerjee, Yorke and Grebogi 1998; proved by Glendinning and
-//! Simpson 2021). Both matrices also send one cone of directions into itself and stretch it, in companion coordinates along x, at
-//! least l-fold on L and k-fold on R; -k is the eigenvalue of A_R below -1 (`derivations/border_collision.py`). So every motion's
-//! Lyapunov exponent is at least ln min(l, k), and no orbit of any period is stable. The cone does not need phi.
+//! Then there is a bounded region that the map sends into itself (Banerjee, Yorke and Grebogi 1998; proved by Glendinning and Simpson
+//! 2021). Both matrices also send one cone of directions into itself and stretch it. In companion coordinates the stretch along x is at
+//! least l-fold on L and k-fold on R; -k is the eigenvalue of A_R below -1 (`derivations/border_collision.py`). So every motion's Lyapunov
+//! exponent is at least ln min(l, k), and no orbit of any period is stable. The cone does not need phi.
 //!
-//! For the follower the linear map is the limit of small |dT|. Where both sides are twice continuously differentiable up to the
-//! border, the terms left out are of the size of |dT|, in the first derivatives too. A region that is mapped into its interior and a
-//! cone that is stretched remain so under them (Simpson and Glendinning 2021, on terms of higher order). The theorem does not
-//! say how small |dT| must be.
+//! For the follower the linear map is the limit of small |dT|. If both sides are twice continuously differentiable up to the border, the
+//! terms left out are of the size of |dT|, also in the first derivatives. A region that is mapped into its interior and a cone that is
+//! stretched persist under these terms (Simpson and Glendinning 2021, on terms of higher order). The theorem does not say how small |dT|
+//! must be.
 
 use super::conditions::{Condition, Decides};
 use super::local_map::LocalMap;
@@ -29,15 +29,15 @@ use crate::known::Evidence;
 use crate::orbit::Eigenvalue;
 use crate::tolerance;
 
-/// The theorem at one sign of mu, where there are such saddles.
+/// Theorem of robust chaos at one sign of mu, if the saddles exist.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[doc(hidden)]
 pub struct RobustChaos {
-    /// The side L.
+    /// Side L.
     pub saddle: Side,
     /// Quantities that must be positive.
     pub hypotheses: [Condition; 5],
-    /// `ln min(l, k)` per step, a lower bound of every motion's Lyapunov exponent.
+    /// Lower bound `ln min(l, k)` per step of every motion's Lyapunov exponent.
     pub least_exponent: f64,
     /// Evidence for the signs of the hypotheses.
     pub known: Evidence,
@@ -74,7 +74,7 @@ fn hypotheses<N: Number>([tau_l, tau_r]: [N; 2], [delta_l, delta_r]: [N; 2]) -> 
     ]
 }
 
-/// Name of each, and the consequence of its failure.
+/// Name of each hypothesis, and the consequence of its failure.
 const NAMES: [[&str; 2]; 5] = [
     ["delta_L", "the map does not keep the orientation"],
     ["delta_R", "the map does not keep the orientation"],
@@ -84,7 +84,7 @@ const NAMES: [[&str; 2]; 5] = [
 ];
 
 impl RobustChaos {
-    /// Marks the hypotheses as proved, if they hold for all matrices A of L and of R, by rows, whose entries lie in these intervals.
+    /// Marks the hypotheses as proved, if they are true for all matrices A of L and of R, by rows, with entries in these intervals.
     pub fn prove(&mut self, matrices: [[[Interval; 2]; 2]; 2]) {
         let traces = matrices.map(|[[a, _], [_, d]]| a + d);
         let determinants = matrices.map(|[[a, b], [c, d]]| a * d - b * c);
@@ -95,7 +95,7 @@ impl RobustChaos {
 }
 
 impl LocalMap {
-    /// The theorem at `mu`; `None` where its saddles are not there.
+    /// Theorem at `mu`; `None` if its saddles do not exist.
     pub fn robust_chaos(&self, mu: f64) -> Option<RobustChaos> {
         let sides = [(Side::Minus, Side::Plus, "L"), (Side::Plus, Side::Minus, "R")];
         sides.into_iter().find_map(|(saddle, other, word)| {
@@ -107,7 +107,7 @@ impl LocalMap {
                 let (distance, least, decides) = (value / terms, tolerance::DEGENERATE, Decides::RobustChaos);
                 Condition { name, meaning, value, distance, least, decides }
             });
-            // Where one saddle is on its own side, so is the other.
+            // If one saddle is on its own side, so is the other.
             let is_there = self.orbit(&Word::read(word)?, mu)?.admissible();
             (is_there && hypotheses.iter().take(4).all(Condition::holds)).then(|| RobustChaos {
                 saddle,

@@ -1,22 +1,22 @@
-//! Effect of a rounded corner: the shift of the end of a nonsmooth fold.
+//! Effect of a rounded corner: the shift of a nonsmooth fold.
 //!
-//! No cam has a corner to the last digit. Let the lift around it, over an angle epsilon, be the polynomial of fifth degree that
-//! meets both laws with their slopes and curvatures; its acceleration goes from one to the other as J phi(sigma), sigma from -1 to 1:
+//! No real cam has a perfectly sharp corner. Over an angle epsilon around it, let the lift be the polynomial of fifth degree that meets
+//! both laws with their slopes and curvatures. Its acceleration changes from one law to the other as J phi(sigma), sigma from -1 to 1:
 //!
 //! ```text
 //! phi(sigma) = 1/2 + (9 sigma - 5 sigma^3)/8,   Phi(sigma) = sigma/2 + (3 + 18 sigma^2 - 5 sigma^4)/32,   Phi' = phi
 //! ```
 //!
-//! To first order in epsilon, A at an impact there is A- + phi (A+ - A-), and det(I - A) is linear in phi. With the gap
-//! g = e dx + f dT of the fixed point from the border, G = (c' - v) epsilon/(2 omega) that at the polynomial's end and beta of the
+//! To first order in epsilon, A at an impact there is A- + phi (A+ - A-), and det(I - A) is linear in phi. Let g = e dx + f dT be the gap
+//! of the fixed point from the border, and G = (c' - v) epsilon/(2 omega) its value at the polynomial's end. With beta of the
 //! classification,
 //!
 //! ```text
 //! beta dT = det(I - A-) g + (det(I - A+) - det(I - A-)) G Phi(g/G),
 //! ```
 //!
-//! so that where the determinants have opposite signs two fixed points meet smoothly where det(I - A) vanishes,
-//! phi = det(I - A-)/(det(I - A-) - det(I - A+)), at a dT that grows as epsilon.
+//! Therefore, if the determinants have opposite signs, two fixed points meet smoothly where det(I - A) vanishes, at phi = det(I -
+//! A-)/(det(I - A-) - det(I - A+)). The dT of this point grows in proportion to epsilon.
 
 use std::convert::Infallible;
 
@@ -29,9 +29,9 @@ use crate::tolerance;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[doc(hidden)]
 pub struct RoundedCorner {
-    /// Shift of the speed at which the fixed points meet, rpm for each degree over which the corner is rounded.
+    /// Shift of the speed at which the fixed points meet, rpm per degree of rounding.
     pub rpm_per_degree: f64,
-    /// Angle of rounding at which that shift is [`tolerance::ROUNDED_AWAY`], degrees.
+    /// Angle of rounding, degrees, at which the shift is [`tolerance::ROUNDED_AWAY`].
     pub degrees: f64,
 }
 
@@ -41,7 +41,7 @@ document!(RoundedCorner as it {
     for_rpm: tolerance::ROUNDED_AWAY.value,
 });
 
-/// Effect to first order in the angle, for a corner impact that is a nonsmooth fold; none for another.
+/// Computes the effect to first order in the angle for a nonsmooth fold; `None` for other scenarios.
 #[doc(hidden)]
 pub fn rounded(kind: &Classification, at: &CornerImpact) -> Option<RoundedCorner> {
     if kind.scenario != Scenario::NonsmoothFold {
@@ -50,7 +50,7 @@ pub fn rounded(kind: &Classification, at: &CornerImpact) -> Option<RoundedCorner
     let (minus, plus) = (kind.minus.determinant, kind.plus.determinant);
     let part = minus / (minus - plus);
     let blend = |sigma: f64| 0.5 + (9.0 * sigma - 5.0 * sigma.powi(3)) / 8.0;
-    // phi rises between its extremes, from below 0 to above 1: there alone it takes a value between.
+    // phi rises between its extremes, from below 0 to above 1: only there does it take a value between 0 and 1.
     let extreme = 0.6_f64.sqrt();
     let Ok([sigma, _]) = halve([-extreme, extreme], Width::Absolute(tolerance::ROOT_WIDTH.value), |sigma| {
         Ok::<_, Infallible>(blend(sigma) > part)

@@ -1,10 +1,10 @@
-//! Whether a motion of the local map stays: regions that the map sends into themselves.
+//! Trapping regions of the local map, which prove that a motion stays bounded.
 //!
-//! That a motion has not left for some thousand steps proves little: next to where an attractor ends, motions stay for millions
-//! of steps and then leave. A region that the map sends into its own inside settles it. Here it is made of convex polygons, one
-//! for each of the words of the last few sides visited: a side's part of a polygon has a convex image, so that its corners
-//! alone decide. A polygon starts as the hull of where the motion was, and takes in what is sent out of it, until nothing is.
-//! One polygon does for most attractors; those in several pieces take one for each side that was visited last.
+//! A motion that has not left for some thousand steps may still leave: near the end of an attractor, motions stay for millions of steps and
+//! then leave. A region that the map sends into its own interior proves that they stay. Here it consists of convex polygons, one for each
+//! word of the last few sides visited. A side's part of a polygon has a convex image, so that only its corners need a check. A polygon
+//! starts as the hull of the visited points and grows to include images outside it, until none is outside. Most attractors need one
+//! polygon; attractors in several pieces need one for each side visited last.
 
 use nalgebra::Vector2;
 
@@ -12,26 +12,26 @@ use super::local_map::LocalMap;
 use crate::cam::Side;
 use crate::tolerance;
 
-/// The longest word of sides by which polygons are distinguished.
+/// Largest length of the words of sides by which polygons are distinguished.
 const LONGEST_MEMORY: u32 = 3;
-/// Rounds of taking in after which a region is given up.
+/// Number of rounds of growth after which the search fails.
 const ROUNDS: usize = 400;
 
-/// The corners of a convex polygon, counter-clockwise, in units in which the motion is of size 1; of a segment two.
+/// Corners of a convex polygon, counter-clockwise, in units in which the motion has size 1; two for a segment.
 type Polygon = Vec<Vector2<f64>>;
 
-/// A region that the map sends into its own inside.
+/// Region that the map sends into its own interior.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TrappingRegion {
-    /// How many convex polygons it consists of.
+    /// Number of convex polygons.
     pub polygons: usize,
-    /// How many corners these have together.
+    /// Total number of corners.
     pub corners: usize,
 }
 
 impl LocalMap {
-    /// A region around the `visited` points of one motion, in their order and all at `mu`, that the map sends into its inside
-    /// by [`tolerance::TRAPPED`]: so the motion stays in it for ever. With `None` such a region may still exist: it was not found.
+    /// Finds a region around the `visited` points of one motion, in order and all at `mu`, that the map sends into its interior by
+    /// [`tolerance::TRAPPED`]. The motion then stays in it for ever. `None` if no region was found, although one may exist.
     pub fn region(&self, visited: &[Vector2<f64>], mu: f64) -> Option<TrappingRegion> {
         let scaled = Scaled { map: self, mu, units: self.units() };
         (0..=LONGEST_MEMORY).find_map(|memory| scaled.region(visited, memory))
@@ -45,9 +45,9 @@ struct Scaled<'a> {
 }
 
 impl Scaled<'_> {
-    /// A region with one polygon for each word of `memory` sides.
+    /// Region with one polygon for each word of `memory` sides.
     fn region(&self, visited: &[Vector2<f64>], memory: u32) -> Option<TrappingRegion> {
-        // Too few points give no word, and so no region.
+        // Too few points give no word, so there is no region.
         if visited.len() <= memory as usize {
             return None;
         }
@@ -56,7 +56,7 @@ impl Scaled<'_> {
         let mut clouds = vec![Vec::new(); words];
         let mut word = 0;
         for (step, point) in visited.iter().enumerate() {
-            // Before that, the word is not that of the motion.
+            // Before that, the word is not yet a word of the motion.
             if step >= memory as usize {
                 clouds.get_mut(word)?.push(point.component_div(&self.units));
             }
@@ -86,11 +86,11 @@ impl Scaled<'_> {
             }
             for (polygon, out) in polygons.iter_mut().zip(sent_out).filter(|(_, out)| !out.is_empty()) {
                 let center = polygon.iter().sum::<Vector2<f64>>() / polygon.len().max(1) as f64;
-                // A little further than it must be, so that growing comes to an end.
+                // A little further than necessary, so that the growth ends.
                 polygon.extend(out.iter().map(|image| image + (image - center) * tolerance::TAKEN_IN.value));
                 *polygon = hull(std::mem::take(polygon));
             }
-            // What leaves has no region.
+            // A motion that leaves has no region.
             if polygons.iter().flatten().any(|corner| !(corner.amax() * tolerance::LEAVING.value < largest)) {
                 return None;
             }
@@ -98,7 +98,7 @@ impl Scaled<'_> {
         None
     }
 
-    /// `e x + f mu` in these units.
+    /// Height `e x + f mu` in these units.
     fn height(&self, point: Vector2<f64>) -> f64 {
         self.map.height(point.component_mul(&self.units), self.mu).0
     }
@@ -108,7 +108,7 @@ impl Scaled<'_> {
         (map.a * point.component_mul(&self.units) + map.b * self.mu).component_div(&self.units)
     }
 
-    /// The corners of a side's part of a polygon.
+    /// Corners of a side's part of a polygon.
     fn part(&self, polygon: &Polygon, side: Side) -> Polygon {
         let sign = if side == Side::Minus { -1.0 } else { 1.0 };
         let mut part = Vec::new();
@@ -125,19 +125,19 @@ impl Scaled<'_> {
     }
 }
 
-/// The edges of a polygon; for a point, one of length 0.
+/// Edges of a polygon; for a point, one edge of length 0.
 fn edges(polygon: &Polygon) -> impl Iterator<Item = (Vector2<f64>, Vector2<f64>)> {
     polygon.iter().zip(polygon.iter().cycle().skip(1)).map(|(from, to)| (*from, *to))
 }
 
-/// Twice the area of a triangle, positive where `third` is on the left of the way from `first` to `second`.
+/// Twice the area of a triangle, positive if `third` is on the left of the line from `first` to `second`.
 fn turn(first: Vector2<f64>, second: Vector2<f64>, third: Vector2<f64>) -> f64 {
     (second - first).perp(&(third - first))
 }
 
-/// Whether a point lies inside a polygon by the margin of [`tolerance::TRAPPED`], of `largest`.
+/// Whether a point lies inside a polygon by a margin: [`tolerance::TRAPPED`] times `largest`.
 ///
-/// A segment has no inside: across it, where the map of a line does not move, the margin is 0.
+/// A segment has no interior: the margin across it is 0, because a map of a line does not move points across.
 fn is_inside(polygon: &Polygon, point: Vector2<f64>, largest: f64) -> bool {
     let margin = tolerance::TRAPPED.value * largest;
     match polygon.as_slice() {
@@ -151,7 +151,7 @@ fn is_inside(polygon: &Polygon, point: Vector2<f64>, largest: f64) -> bool {
     }
 }
 
-/// The convex hull, by the monotone chain of Andrew (1979).
+/// Convex hull, by the monotone chain of Andrew (1979).
 fn hull(mut points: Vec<Vector2<f64>>) -> Polygon {
     points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
     points.dedup();
@@ -163,7 +163,7 @@ fn hull(mut points: Vec<Vector2<f64>>) -> Polygon {
     corners
 }
 
-/// The lower half of a hull, from points sorted to the right, without its last corner; or the upper half to the left.
+/// Lower half of a hull, from points sorted to the right, without its last corner; or the upper half from points sorted to the left.
 fn half(points: impl Iterator<Item = Vector2<f64>>) -> Polygon {
     let row = |points: &Polygon| match points.as_slice() {
         [.., before, last] => Some((*before, *last)),

@@ -1,9 +1,9 @@
-//! Validity range of the local map around the corner impact, measured against the simulated machine on its own cam.
+//! Range around the corner impact in which the local map is valid, measured on the simulated machine with its actual cam.
 //!
-//! The real map has terms of second order that the local one leaves out. For a period T* + dT the machine is run, and its
-//! displacement from x* is compared with the one that A and B predict; |dT| grows from almost nothing until they differ by a
-//! tenth of the prediction. The comparison is repeated with the terms of second order of [`crate::corner::second_order`], until they
-//! differ by a tenth, and by a ten-thousandth. Velocities count over the cam's angle, `|(q, v/omega)|`.
+//! The real map has terms of second order that the local map leaves out. The machine is run with a period T* + dT, and its displacement
+//! from x* is compared with the one predicted by A and B. |dT| grows from almost nothing until they differ by a tenth of the prediction.
+//! The comparison is repeated with the terms of second order of [`crate::corner::second_order`], until the difference is a tenth, and a
+//! ten-thousandth. Velocities are divided by omega, `|(q, v/omega)|`.
 
 use std::convert::Infallible;
 use std::f64::consts::TAU;
@@ -30,11 +30,11 @@ use crate::tolerance;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ComparedMotion {
-    /// The image of x* after one revolution, to first order `B dT`.
+    /// Image of x* after one revolution, to first order `B dT`.
     OneRevolution,
-    /// The fixed point before the corner, to first order `(I - A-)^{-1} B- dT`.
+    /// Fixed point before the corner, to first order `(I - A-)^{-1} B- dT`.
     FixedPointMinus,
-    /// The fixed point after the corner, to first order `(I - A+)^{-1} B+ dT`.
+    /// Fixed point after the corner, to first order `(I - A+)^{-1} B+ dT`.
     FixedPointPlus,
 }
 
@@ -44,15 +44,15 @@ named!(ComparedMotion);
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Ends {
-    /// The two differ by as much as is allowed.
+    /// Difference larger than allowed.
     Differs,
-    /// The real motion does not exist any more, or has not one impact.
+    /// Real motion that no longer exists, or does not have exactly one impact.
     OtherMotion,
-    /// Nothing, up to half and twice the speed.
+    /// No end, up to half and twice the speed.
     Nothing,
 }
 
-/// Range over which one prediction holds.
+/// Range in which one prediction is valid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Range {
     /// Quantity compared.
@@ -61,15 +61,15 @@ pub struct Range {
     pub order: u32,
     /// Largest allowed difference, relative to the prediction.
     pub within: f64,
-    /// Sign of dT: -1 for speeds above that of the corner impact, 1 for those below.
+    /// Sign of dT: -1 for speeds above the corner-impact speed, 1 for speeds below.
     pub sign: f64,
-    /// The last change of the period for which it holds, s, with its sign; 0 where it never does.
+    /// Last change of the period at which the prediction is valid, s, with its sign; 0 if it is valid nowhere.
     pub period_change: f64,
-    /// The speed there, rpm.
+    /// Speed at that change, rpm.
     pub speed_rpm: f64,
-    /// The relative difference there; none where the prediction holds nowhere.
+    /// Relative difference at that change; `None` if the prediction is valid nowhere.
     pub difference: Option<f64>,
-    /// Reason for its end.
+    /// Reason for the end of the range.
     pub ends: Ends,
 }
 
@@ -84,11 +84,10 @@ document!(Range as range {
     ends: range.ends,
 });
 
-/// A real displacement and the relative difference from the predicted one.
+/// Real displacement, and its relative difference from the predicted one.
 type Difference = Option<(Vector2<f64>, f64)>;
 
-/// The range of each prediction that there is, to first order and then to second, on either side of the corner-impact speed,
-/// faster speeds first.
+/// Range of each available prediction, to first order and then to second, on either side of the corner-impact speed, faster speeds first.
 pub fn ranges(model: &Model, cam: &Cam, at: &CornerImpact, map: &LocalMap, curved: &Sides<CurvedMap>) -> Vec<Range> {
     let machine = Real {
         at,
@@ -116,7 +115,7 @@ pub fn ranges(model: &Model, cam: &Cam, at: &CornerImpact, map: &LocalMap, curve
             let Some(point) = orbit.and_then(|_| curved.of(side).fixed_point()) else { continue };
             found.push(machine.range(asked(compared), |dt, before| {
                 let predicted = predicted(point, dt);
-                // The real one where it was, moved on as the prediction is.
+                // The guess is the last real displacement, scaled as the prediction.
                 let guess = before.map_or(predicted, |(real, at): (Vector2<f64>, f64)| real * (dt / at));
                 machine.fixed_point(dt, predicted, guess)
             }));
@@ -126,7 +125,7 @@ pub fn ranges(model: &Model, cam: &Cam, at: &CornerImpact, map: &LocalMap, curve
 }
 
 impl Range {
-    /// A range that is still to be found: it holds nowhere yet.
+    /// Empty range, before the search.
     fn asked(compared: ComparedMotion, order: u32, within: f64, sign: f64) -> Self {
         let (period_change, speed_rpm, difference, ends) = (0.0, f64::NAN, None, Ends::Nothing);
         Self { compared, order, within, sign, period_change, speed_rpm, difference, ends }
@@ -158,7 +157,7 @@ impl Real<'_> {
         State { position: self.at.state.position + dx[0], velocity: self.at.state.velocity + dx[1] }
     }
 
-    /// The displacement after a revolution from `x* + dx`, if it has one impact.
+    /// Displacement after a revolution from `x* + dx`, if it has one impact.
     fn image(&self, map: &StroboscopicMap, dx: Vector2<f64>) -> Option<Vector2<f64>> {
         let back = map.apply(self.displaced(dx)).ok()?;
         let [Event { kind: EventKind::Impact, .. }] = back.events.as_slice() else { return None };
@@ -178,10 +177,10 @@ impl Real<'_> {
         self.difference(real, predicted)
     }
 
-    /// The first |dT| at which a comparison fails, growing from [`tolerance::LINEAR_FROM`], then by halving.
+    /// Finds the first |dT| at which a comparison fails, growing from [`tolerance::LINEAR_FROM`], then by halving.
     fn range(&self, asked: Range, compare: impl Fn(f64, Option<(Vector2<f64>, f64)>) -> Difference) -> Range {
         let (period, Range { sign, within, .. }) = (self.at.period, asked);
-        // The last dT for which the prediction held, with the real displacement and the difference there.
+        // Last dT for which the prediction was valid, with the real displacement and the difference.
         let mut last: Option<(f64, Vector2<f64>, f64)> = None;
         let mut ends = Ends::Nothing;
         let mut fails = |dt: f64| {
@@ -200,7 +199,7 @@ impl Real<'_> {
         let most = if sign > 0.0 { period } else { 0.5 * period };
         while dt.abs() < most {
             let Ok(false) = fails(dt) else {
-                // If the prediction held nowhere, there is no range to narrow down.
+                // If the prediction was valid nowhere, there is no range to narrow down.
                 if let Some(held) = held {
                     let Ok(_) = halve([held, dt], Width::Relative(tolerance::LINEAR_BRACKET.value), &mut fails);
                 }

@@ -4,38 +4,38 @@ use std::fmt;
 
 use crate::cam::Side;
 
-/// A finite word over the sides, written with L for minus and R for plus.
+/// Finite word over the sides, written with L for minus and R for plus.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Word(Vec<Side>);
 
 impl Word {
-    /// From its letters; `None` for another letter than L and R, and for no letter at all.
+    /// Parses a word of the letters L and R; `None` if it is empty or has another letter.
     pub fn read(text: &str) -> Option<Self> {
         let letters: Option<Vec<Side>> = text.chars().map(side).collect();
         letters.filter(|letters| !letters.is_empty()).map(Self)
     }
 
-    /// The sides, in order.
+    /// Sides, in order.
     pub fn sides(&self) -> &[Side] {
         &self.0
     }
 
-    /// The word that starts `by` letters later, cyclically.
+    /// Rotation of the word that starts `by` letters later, cyclically.
     pub fn turned(&self, by: usize) -> Self {
         let mut sides = self.0.clone();
         sides.rotate_left(by % self.0.len());
         Self(sides)
     }
 
-    /// The first of its rotations in the order of letters, L before R, and by how many letters it is turned.
+    /// First of its rotations in the order of letters, L before R, and the number of letters by which it is rotated.
     pub fn least_rotation(&self) -> (Self, usize) {
         let spelled = |by: &usize| self.turned(*by).0.iter().map(|side| *side as u8).collect::<Vec<_>>();
         let by = (0..self.0.len()).min_by_key(spelled).unwrap_or(0);
         (self.turned(by), by)
     }
 
-    /// Every word of `longest` letters or fewer that is no repetition of a shorter one, one of its rotations each (Lyndon
-    /// words, by Duval's algorithm), the short ones first.
+    /// All words of at most `longest` letters that do not repeat a shorter one, one rotation of each (Lyndon words, by Duval's algorithm),
+    /// the short ones first.
     pub fn primitive(longest: usize) -> Vec<Self> {
         let mut words = Vec::new();
         let mut word = vec![Side::Minus];
@@ -56,10 +56,9 @@ impl Word {
         words
     }
 
-    /// The shortest word whose repetition ends with `sides`, if it fits in at least `times` times, in the order in which it
-    /// goes on.
+    /// Shortest word whose repetition ends with `sides`, if it fits at least `times` times, in the order in which the sequence continues.
     pub fn repeated(sides: &[Side], times: usize) -> Option<Self> {
-        // How long an end of each prefix is also a beginning (Knuth, Morris, Pratt), on the letters read backwards.
+        // Length of the longest end of each prefix that is also its beginning (Knuth, Morris, Pratt), on the letters read backwards.
         let at = |index: usize| sides[sides.len() - 1 - index];
         let mut overlap = vec![0; sides.len()];
         for index in 1..sides.len() {

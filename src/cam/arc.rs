@@ -28,7 +28,7 @@ impl Arc {
         (-(sin * self.distance) + self.radius) * (sin * self.distance + self.radius)
     }
 
-    /// Lift and derivatives at `angle`, rad; not a number where the ray misses the circle.
+    /// Lift and derivatives at `angle`, rad; NaN if the ray misses the circle.
     #[inline]
     pub fn lift<N: Number>(&self, angle: N) -> Lift<N> {
         let (sin, cos) = (angle - self.direction).sin_cos();
@@ -58,7 +58,7 @@ impl Arc {
         self.climb(from, turn).0
     }
 
-    /// [`Arc::rise`], and the lift where it ends.
+    /// Returns [`Arc::rise`] and the lift at the end of the turn.
     #[inline]
     pub fn climb(&self, from: f64, turn: f64) -> (f64, Lift) {
         let half = 0.5 * turn;
@@ -77,13 +77,13 @@ impl Arc {
         (shift + difference / (w0 + w1), self.lift_by(after, after_cos, w1))
     }
 
-    /// A bound on `|c'''|` over `[start, end]`: its terms at their largest, or from the middle by `|c''''|` where less.
+    /// Bound on `|c'''|` over `[start, end]`: the smaller of its terms at their largest and its value in the middle extended by `|c''''|`.
     #[inline]
     pub fn third_bound(&self, start: f64, end: f64) -> f64 {
         self.high_bounds(start, end)[0]
     }
 
-    /// A bound on `|c''''|` over `[start, end]`: its terms at their largest.
+    /// Bound on `|c''''|` over `[start, end]`: its terms at their largest.
     pub fn fourth_bound(&self, start: f64, end: f64) -> f64 {
         self.high_bounds(start, end)[1]
     }
@@ -96,7 +96,7 @@ impl Arc {
         let turn = elementary::sin_cos(reach);
         let kappa = self.distance.abs();
         let largest = largest_sine((sin, cos), turn, reach);
-        // The smallest w decides whether the ray reaches the circle all the way.
+        // The smallest w decides whether the ray meets the circle over the whole range.
         let w = self.root_squared(largest).sqrt();
         if !(w > 0.0) {
             return [f64::INFINITY; 2];
@@ -115,7 +115,7 @@ impl Arc {
         let w4 = (4.0 * u2 + 8.0 * w1 * w3 + 6.0 * w2 * w2) * half;
         let everywhere = kappa * largest + w3;
         let from_middle = self.lift(middle).third.abs() + reach * (kappa + w4);
-        // The last bits of a dozen operations and of the angle; no min, which would take a bound for one that is not a number.
+        // Rounding of a dozen operations and of the angle. `f64::min` is not used above: it would accept a bound where one value is NaN.
         let rounding = tolerance::JET_ROUNDING.value * (everywhere + kappa + w4);
         let third = if from_middle < everywhere { from_middle } else { everywhere };
         [third + rounding, kappa + w4 + rounding]
@@ -134,7 +134,7 @@ impl Arc {
     }
 }
 
-/// The largest `|sin|` from `reach` before an angle to `reach` after it; both given by sine and cosine.
+/// Largest `|sin|` within `reach` of an angle; both are given by sine and cosine.
 #[inline]
 fn largest_sine((sin, cos): (f64, f64), (sin_reach, cos_reach): (f64, f64), reach: f64) -> f64 {
     let (sin, cos) = (sin.abs(), cos.abs());

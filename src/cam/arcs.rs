@@ -1,9 +1,8 @@
-//! Appendix A of the paper: a cam of three circles that touch, met by a point, a roller or a flat face.
+//! Cam of three circles that touch, followed by a point, a roller or a flat face: Appendix A of the paper.
 //!
-//! The base circle (radius rho0) carries into the flank circle (rho1) at R, the flank into the nose circle (rho2) at P,
-//! the nose into the top dwell (rho3) at Q; the second half mirrors the first. The paper gives kappa1, kappa2, P and rho3
-//! as separate constants; here they follow from tangency: `kappa1 = rho1 - rho0`, `|O1 O2| = rho1 - rho2`,
-//! `rho3 = kappa2 + rho2`.
+//! The base circle (radius rho0) meets the flank circle (rho1) at R, the flank meets the nose circle (rho2) at P, and the nose meets the
+//! top dwell (rho3) at Q. The second half mirrors the first. The paper gives kappa1, kappa2, P and rho3 as separate constants. Here they
+//! follow from tangency: `kappa1 = rho1 - rho0`, `|O1 O2| = rho1 - rho2`, `rho3 = kappa2 + rho2`.
 
 use std::f64::consts::{PI, TAU};
 
@@ -15,7 +14,7 @@ use super::{Cam, Joint, within_turn};
 use crate::elementary;
 use crate::model::{ArcsProfile, FollowerContact, Model, ModelError};
 
-/// The cam of an `arcs` profile, or which field keeps its circles from touching.
+/// Builds the cam of an `arcs` profile; the error names the field that keeps its circles from touching.
 pub(super) fn build(model: &Model, profile: &ArcsProfile) -> Result<Cam, ModelError> {
     let ArcsProfile { base_radius, flank_radius, nose_radius, flank_start_deg, nose_end_deg, .. } = *profile;
     if nose_end_deg <= flank_start_deg {
@@ -41,7 +40,7 @@ pub(super) fn build(model: &Model, profile: &ArcsProfile) -> Result<Cam, ModelEr
     let root = (centres - flank_distance * span_sin) * (centres + flank_distance * span_sin);
     let nose_distance = root.sqrt() - flank_distance * span_cos;
     if !(root >= 0.0 && nose_distance > 0.0) {
-        // rho2 = rho0 puts O2 on the axis; past a right angle the circles part where O1 O2 is square to the ray at Q.
+        // rho2 = rho0 puts O2 on the axis; past a right angle the circles separate where O1 O2 is perpendicular to the ray at Q.
         let largest = if span_cos > 0.0 { base_radius } else { flank_radius - flank_distance * span_sin };
         let words = format!(
             "must be below {largest} for the nose circle to touch the flank circle and end at cam.nose_end_deg"
@@ -66,13 +65,14 @@ pub(super) fn build(model: &Model, profile: &ArcsProfile) -> Result<Cam, ModelEr
                 let words = format!("must be between -{base} and {base}, the radius of the pitch curve's base circle");
                 return Err(model.reject("cam.contact.offset", words));
             }
-            // The pitch curve is convex and its base circle is inside: a line that crosses this crosses the curve, and never only touches it.
+            // The pitch curve is convex and contains its base circle: a line that crosses the base circle crosses the curve and is never
+            // tangent to it.
             Ok(pitch.met_by_point(ends, base, offset))
         }
     }
 }
 
-/// Flank and nose circle, their centres at these distances from the axis.
+/// Flank and nose circle, with the distances of their centres from the axis.
 struct Circles {
     flank_distance: f64,
     flank_radius: f64,
@@ -92,7 +92,7 @@ impl Circles {
         [self.nose_distance * cos + self.flank_distance, self.nose_distance * sin]
     }
 
-    /// The cam of a point that moves on a line at a distance `offset` to the left of the axis, and follows these circles.
+    /// Cam of a point that moves on a line at a distance `offset` to the left of the axis and follows these circles.
     fn met_by_point(&self, ends: [f64; 2], base: f64, offset: f64) -> Cam {
         let Self { flank_distance, flank_radius, nose_distance, nose_radius } = *self;
         let [flank_start, nose_end] = ends;
@@ -102,7 +102,7 @@ impl Circles {
         let (x, y) = (stretch * x - flank_distance, stretch * y);
         let meeting = flank_start + elementary::atan2(y, x);
         let top = nose_distance + nose_radius;
-        // A point at a radius from the axis is on the line before the ray through it is parallel to the line.
+        // Offset turns the cam angle by asin(offset / radius): the point meets that radius earlier.
         let earlier = |radius: f64| elementary::asin(offset / radius);
         let early = [earlier(base), earlier(elementary::hypot(x, y)), earlier(top)];
         let law = |distance: f64, direction: f64, radius: f64| match offset == 0.0 {
@@ -123,7 +123,7 @@ impl Circles {
         )
     }
 
-    /// The cam of a face square to the line of motion: it touches a circle where its normal is the line, at `kappa cos(phi) + rho` from the axis.
+    /// Cam of a flat face perpendicular to the line of motion: it touches a circle at `kappa cos(phi) + rho` from the axis.
     fn met_by_face(&self, ends: [f64; 2], base: f64) -> Cam {
         let Self { flank_distance, flank_radius, nose_distance, nose_radius } = *self;
         let [flank_start, nose_end] = ends;
@@ -142,8 +142,8 @@ impl Circles {
     }
 }
 
-/// The cam of flank, nose, top, nose, flank and base. The contour is its own mirror image: its circles meet at `meetings` on the way up, and the
-/// follower is there `early` by these angles, rad, on the way up and down.
+/// Cam of flank, nose, top, nose, flank and base. The contour is its own mirror image: its circles meet at `meetings`, rad, on the way up.
+/// The follower reaches each meeting `early` by these angles, rad, on the way up and down.
 fn mirrored(
     meetings: [f64; 3],
     early: [f64; 3],
@@ -162,7 +162,7 @@ fn mirrored(
         (down[1], law(0, TAU - flank)),
         (down[2], base),
     ];
-    // With an offset the first may start before angle 0, or the last behind a turn.
+    // With an offset, the first law may start before angle 0, or the last after a full turn.
     let mut laws: Vec<(f64, Law)> = laws.into_iter().map(within_turn).collect();
     laws.sort_by(|one, two| one.0.total_cmp(&two.0));
     Cam::from_laws(laws, Joint::Free)

@@ -1,14 +1,14 @@
-//! Ranges that certainly hold a segment's lift and derivatives, from samples and a bound on the third derivative.
+//! Ranges that certainly contain a segment's lift and derivatives, from samples and a bound on the third derivative.
 //!
-//! Between two samples a derivative cannot leave them faster than the next one allows: the range of c'' follows from the
-//! bound on c''', that of c' from the range of c'', that of c from the range of c'.
+//! Between two samples a derivative changes no faster than the next derivative allows. The range of c'' follows from the bound on c''', the
+//! range of c' from the range of c'', and the range of c from the range of c'.
 
 use std::f64::consts::TAU;
 
 use super::law::Law;
 use crate::tolerance;
 
-/// Ranges over a segment, lowest and highest; infinite where the law does not reach.
+/// Ranges over a segment, lowest and highest; infinite where the law is not defined.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
     /// Range of c, m.
@@ -21,7 +21,7 @@ pub struct Bounds {
     pub third: f64,
 }
 
-/// A range as it grows: the sampled part, and the certain range including what may lie between.
+/// Range under construction: the sampled part, and the certain range, which includes values between samples.
 #[derive(Clone, Copy)]
 struct Range {
     sampled: [f64; 2],
@@ -36,7 +36,7 @@ impl Range {
         self.certain = hull(self.certain, certain);
     }
 
-    /// Whether what may lie between the samples adds little to them.
+    /// Whether the certain range is only slightly wider than the sampled range.
     fn is_close(&self) -> bool {
         let width = |range: [f64; 2]| range[1] - range[0];
         width(self.certain) <= (1.0 + tolerance::RANGE_WIDTH.value) * width(self.sampled)
@@ -76,7 +76,7 @@ impl Bounds {
             let high = if piece == pieces { end } else { start + width * piece as f64 };
             let right = law.lift(high);
             let bound = law.third_bound(low, high);
-            // A bound, not a sum: what is not a number is no bound.
+            // A bound that is NaN bounds nothing.
             if !bound.is_finite() {
                 return (Self { lift: ANYTHING, slope: ANYTHING, curvature: ANYTHING, third: f64::INFINITY }, true);
             }
@@ -93,7 +93,7 @@ impl Bounds {
         (bounds.widened(), lift.is_close() && slope.is_close() && curvature.is_close())
     }
 
-    /// Room for rounding: a dozen ulps of each quantity, and of what an ulp of the angle moves it by.
+    /// Widens the ranges for rounding: a dozen ulps of each quantity, and its change over an ulp of the angle.
     fn widened(self) -> Self {
         let largest = |range: [f64; 2]| range[0].abs().max(range[1].abs());
         let sizes = [largest(self.lift), largest(self.slope), largest(self.curvature), self.third];
@@ -113,12 +113,12 @@ impl Bounds {
 /// The range of a quantity between two samples `width` apart whose rate stays within `rates`.
 fn between(ends: [f64; 2], rates: [f64; 2], width: f64) -> [f64; 2] {
     let highest = peak(ends, rates, width);
-    // The lowest is the highest of the mirror image.
+    // The lowest value is the highest of the mirror image.
     let lowest = -peak([-ends[0], -ends[1]], [-rates[1], -rates[0]], width);
     [lowest.min(ends[0]).min(ends[1]), highest.max(ends[0]).max(ends[1])]
 }
 
-/// Where the fastest rise from the left end meets the fastest fall to the right one.
+/// Value at which the fastest rise from the left end meets the fastest fall to the right end.
 fn peak(ends: [f64; 2], [slowest, fastest]: [f64; 2], width: f64) -> f64 {
     if slowest >= 0.0 || fastest <= 0.0 {
         return ends[0].max(ends[1]);

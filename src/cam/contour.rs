@@ -1,16 +1,16 @@
-//! The contour of a cam, from the lift of the follower that touches it.
+//! Contour of a cam, computed from the lift of the follower that touches it.
 
 use super::{Cam, Lift};
 use crate::elementary;
 use crate::model::{FollowerContact, Model, ModelError};
 
-/// Where the follower touches the cam at an angle.
+/// Contact point of the follower on the contour at a cam angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[doc(hidden)]
 pub struct ContourPoint {
     /// Cam angle, rad.
     pub cam_angle: f64,
-    /// Place on the contour, m: along the follower's motion from the cam's axis, and to the left of it.
+    /// Position on the contour, m: along the follower's motion from the cam's axis, and to the left of it.
     pub place: [f64; 2],
     /// Radius of curvature of the contour, m; negative where it is hollow, infinite where it is straight.
     pub radius: f64,
@@ -39,7 +39,7 @@ impl FollowerContact {
         Err(model.reject("cam.contact.roller_radius", words))
     }
 
-    /// Where the follower touches the cam at an angle, rad, with this lift.
+    /// Contact point at a cam angle, rad, with this lift.
     ///
     /// The roller's centre, or the point, is at `X = (c, e)` along the motion and to the left of it, and moves on the cam by `X'`:
     ///
@@ -67,9 +67,9 @@ impl FollowerContact {
 }
 
 impl Cam {
-    /// The contour of a cam that this follower touches, by rising angle; a corner has a point on either side.
+    /// Contour of a cam that this follower touches, by rising angle; a corner has a point on either side.
     pub fn contour(&self, contact: FollowerContact) -> impl Iterator<Item = ContourPoint> {
-        /// Points of a segment, and of all segments of a cam that has many.
+        /// Points of a segment, and of all segments of a cam with many segments.
         const POINTS: usize = 360;
         const POINTS_OF_ALL: usize = 24 * POINTS;
         let points = (POINTS_OF_ALL / self.segments().len()).clamp(2, POINTS);

@@ -1,7 +1,7 @@
-//! A cam whose corners are rounded: no cam has one to the last digit.
+//! Cams with rounded corners, as on every machined cam.
 //!
-//! Over an angle e around a corner of the acceleration the lift is the polynomial of fifth degree that meets the laws on both
-//! sides with their slopes and curvatures. With x from 0 to 1 over the angle, and p, q the lifts at its ends,
+//! Over an angle e around a corner of the acceleration, the lift is the polynomial of fifth degree that meets the laws on both sides with
+//! their slopes and curvatures. With x from 0 to 1 over the angle, and p, q the lifts at its ends,
 //!
 //! ```text
 //! c = p + p' x + p''/2 x^2 + (10 a - 4 b + d/2) x^3 + (-15 a + 7 b - d) x^4 + (6 a - 3 b + d/2) x^5
@@ -16,7 +16,7 @@ use super::{Cam, Joint};
 use crate::model::{CORNER_ROUNDING, Model, ModelError};
 
 impl Cam {
-    /// The cam with each corner of its acceleration rounded over so many degrees.
+    /// Returns the cam with each corner of its acceleration rounded over this angle, degrees.
     pub(super) fn rounded(self, model: &Model, degrees: f64) -> Result<Self, ModelError> {
         let corners: Vec<_> = self.corners().iter().copied().filter(|corner| corner.jump_order == 2).collect();
         if corners.is_empty() {
@@ -46,11 +46,11 @@ impl Cam {
     }
 }
 
-/// The polynomial from `half` before a corner to `half` after it, each side's law with the angle at which it meets the corner.
+/// Polynomial from `half` before a corner to `half` after it; each side is a law with the angle at which it meets the corner.
 fn blend((before, end): (&Law, f64), (after, start): (&Law, f64), half: f64) -> Polynomial {
     let angle = 2.0 * half;
     let (from, to) = (before.lift(end - half), after.lift(start + half));
-    // In parts of the angle. Rises have the digits that the difference of two lifts loses.
+    // In units of the angle. `rise` keeps digits that the difference of two lifts loses.
     let rise = after.rise(start, half) - before.rise(end, -half);
     let [dp, ddp] = [from.slope * angle, from.curvature * angle * angle];
     let [dq, ddq] = [to.slope * angle, to.curvature * angle * angle];

@@ -1,16 +1,17 @@
-//! Test for a jump of the second derivative in the rows around a place.
+//! Test for a jump of the second derivative in the rows near an angle.
 //!
-//! At a corner the rows on both sides fit a cubic plus a jump of its second and third derivatives. A smooth motion may do nearly the same
-//! with a steep rise of the second derivative, so that every such rise is tried in the place of the jump, each with its middle where it
-//! leaves the least: over four rows or four degrees at least, whichever is more, and over ever more rows. A quartic with a jump of the third
-//! derivative alone is tried as well. The evidence for a corner is
+//! At a corner the rows on both sides fit a cubic plus jumps of its second and third derivatives. A smooth motion with a steep rise of the
+//! second derivative may fit nearly as well. Therefore each such rise is tried in place of the jump, with its middle where the least
+//! squares remain. The rises extend over at least four rows or four degrees, whichever is more, and grow wider step by step. A quartic with
+//! a jump of the third derivative alone is tried as well. The evidence for a corner is
 //!
 //! ```text
-//! F = (least squares left by a smooth motion - squares left by the jump) / mean square that the jump leaves
+//! F = (least squares left by a smooth motion - squares left by the jump) / mean square left by the jump
 //! ```
 //!
-//! where the noise of all rows counts as some rows more, as so few rows may agree by chance. Two thresholds on F, [`tolerance::CORNER_CERTAIN`] and [`tolerance::CORNER_DOUBTFUL`], were set on simulated cams without corners; the rate of
-//! false alarms is in `docs/reliability.md`.
+//! In the denominator the noise of all rows counts as some additional rows, because a few rows may agree by chance. Two thresholds on F,
+//! [`tolerance::CORNER_CERTAIN`] and [`tolerance::CORNER_DOUBTFUL`], were set on simulated cams without corners; the rate of false alarms
+//! is in `docs/reliability.md`.
 
 use nalgebra::DVector;
 
@@ -42,7 +43,7 @@ enum Change {
     Jump,
     /// A rise at a constant rate over this angle on either side, in units of the reach.
     Rise(f64),
-    /// None; a term of fourth degree instead.
+    /// No change of the second derivative; a term of fourth degree instead.
     Quartic,
 }
 
@@ -56,7 +57,7 @@ struct Fitted {
     jump: f64,
 }
 
-/// Rows around a place, without the cubic that is nearest to them.
+/// Rows near an angle, less the cubic that fits them best.
 struct Window {
     /// Angles from the middle row, in units of the reach.
     angles: Vec<f64>,
@@ -64,14 +65,15 @@ struct Window {
     lifts: DVector<f64>,
 }
 
-/// Looks for a jump among rows of angle and lift, as many on either side of the middle one. None where the evidence or the jump is small.
+/// Searches for a jump among rows of angle and lift, with equally many rows on either side of the middle one. Returns `None` if the
+/// evidence or the jump is small.
 pub(super) fn jump(rows: &[(f64, f64)], scales: &Scales) -> Option<Jump> {
-    /// Steepest rise of a smooth motion, in rows or in degrees, whichever is more: one over fewer rows looks like a jump, and a jump over fewer
-    /// degrees is one to every follower.
+    /// Width of the steepest rise of a smooth motion, in rows or degrees, whichever is more. A rise over fewer rows looks like a jump, and
+    /// a jump over fewer degrees acts as a corner on every follower.
     const STEEPEST: f64 = 4.0;
     /// Number of rows that the noise of all rows counts as.
     const OF_NOISE: f64 = 6.0;
-    /// Ratio of one width of a rise to the one before.
+    /// Ratio of the widths of successive rises.
     const WIDER: f64 = 1.4;
     /// Widest rise on either side, in units of the reach.
     const WIDEST: f64 = 0.75;
@@ -84,9 +86,9 @@ pub(super) fn jump(rows: &[(f64, f64)], scales: &Scales) -> Option<Jump> {
     cubics.take(&mut lifts);
     let window = Window { angles, cubics, lifts };
     let jump = window.best(Change::Jump);
-    // The rows less two polynomials and where they meet.
+    // Number of rows less the parameters of two polynomials and the angle where they meet.
     let freedom = (rows.len() - 7) as f64;
-    // Two cubics do not follow a motion exactly: the rest is no noise, and hides more than one jump.
+    // Two cubics do not fit a motion exactly: the remainder is not noise, and hides more than one jump.
     let coarse = tolerance::CORNER_MISFIT.value * scales.curvature * scales.gap * scales.gap;
     let [noise, coarse] = [scales.noise.max(coarse), coarse].map(|size| size * size);
     let mean = jump.squares / freedom;
@@ -109,9 +111,9 @@ pub(super) fn jump(rows: &[(f64, f64)], scales: &Scales) -> Option<Jump> {
 }
 
 impl Window {
-    /// The least squares with a change of this kind, over its places.
+    /// Least squares with a change of this kind, over all its places.
     fn best(&self, change: Change) -> Fitted {
-        /// Parts of half the stretch that are tried, at first and after each round.
+        /// Steps tried on either side of the best place in a round, and the number of rounds.
         const PARTS: i32 = 6;
         const ROUNDS: i32 = 9;
         let mut step = 0.5 / f64::from(PARTS);
@@ -128,7 +130,7 @@ impl Window {
         best
     }
 
-    /// Fit of a cubic, this change at `at` and a jump of the third derivative there; none where the rows cannot distinguish them.
+    /// Fits a cubic, this change at `at` and a jump of the third derivative there; `None` if the rows cannot distinguish them.
     fn fitted(&self, at: f64, change: Change) -> Option<Fitted> {
         let column = |value: &dyn Fn(f64) -> f64| {
             let values = self.angles.iter().map(|angle| value(angle - at));
@@ -138,7 +140,7 @@ impl Window {
         };
         let mut changed = match change {
             Change::Jump => column(&|u| u.max(0.0).powi(2)),
-            // The integral of the integral of a second derivative that rises from 0 to 2.
+            // Double integral of a second derivative that rises from 0 to 2.
             Change::Rise(rise) => {
                 column(&|u| ((u + rise).max(0.0).powi(3) - (u - rise).max(0.0).powi(3)) / (6.0 * rise))
             }

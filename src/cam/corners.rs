@@ -1,4 +1,4 @@
-//! Where segments meet: which derivative jumps there, and the cam with one side continued past it.
+//! Corners, where segments meet, with the derivative that jumps; and cams with the law of one side continued past a corner.
 
 use std::f64::consts::TAU;
 
@@ -14,7 +14,7 @@ use crate::tolerance;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Side {
-    /// Before the corner: `c''-`, the limit from `t < 0`.
+    /// Side of a corner: the segment before it or the one after.
     Minus,
     /// After the corner: `c''+`, the limit from `t > 0`.
     Plus,
@@ -22,16 +22,16 @@ pub enum Side {
 
 named!(Side);
 
-/// A point of the cam where a derivative of the lift jumps.
+/// Point of the cam where a derivative of the lift jumps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Corner {
     /// Cam angle, rad, in `[0, 2 pi)`.
     pub angle: f64,
-    /// Index of the segment that starts there.
+    /// Index of the segment that starts at the corner.
     pub segment: usize,
-    /// The lowest derivative that jumps: 1 velocity, 2 acceleration, 3 jerk, and so on.
+    /// Order of the lowest derivative that jumps: 1 velocity, 2 acceleration, 3 jerk, and so on.
     pub jump_order: usize,
-    /// Jump of that derivative, after less before, m/rad^order.
+    /// Jump of that derivative, value after less value before, m/rad^order.
     pub jump: f64,
     /// Lift and derivatives in the limit from before.
     pub minus: Lift,
@@ -52,14 +52,14 @@ document!(Corner as it {
 });
 
 impl Corner {
-    /// Lift and derivatives of the law of one side.
+    /// Lift and derivatives at the corner on one side.
     pub fn lift(&self, side: Side) -> Lift {
         if side == Side::Minus { self.minus } else { self.plus }
     }
 }
 
 impl Cam {
-    /// The corners, in order of angle, whatever derivative jumps.
+    /// Corners in order of angle, for jumps of any order.
     pub fn corners(&self) -> &[Corner] {
         &self.corners
     }
@@ -71,14 +71,14 @@ impl Cam {
 
     fn corner(&self, before: usize, after: usize) -> Option<Corner> {
         let (before, next) = (&self.segments()[before], &self.segments()[after]);
-        // One law that goes on past 2 pi is smooth there.
+        // A law that continues past 2 pi is smooth there.
         if after == 0 && before.law.turned(-TAU) == next.law {
             return None;
         }
         let (minus, plus) = (before.law.jet(before.end), next.law.jet(next.start));
         let jump = |order: usize| plus.0[order] - minus.0[order];
         let jump_order = match self.joint() {
-            // Two pieces that differ at all differ in the highest power, however little.
+            // Two different pieces of a spline differ at least in the highest power, however little.
             Joint::Spline { degree, breaks } => {
                 let broken = breaks.iter().find(|(angle, _)| *angle == next.start);
                 let order = broken.map_or(*degree, |(_, order)| *order);
@@ -110,10 +110,10 @@ impl Cam {
         })
     }
 
-    /// The cam with the law of one side of `corner` continued past it by `reach`, rad.
+    /// Returns the cam with the law of one side of `corner` continued past it by `reach`, rad.
     ///
-    /// At angle 0 the continued stretch is a segment of its own: the last law a revolution back, or the first one a
-    /// revolution on. Refused (`None`) where the neighbour is shorter than twice `reach` or the law ends before.
+    /// At angle 0 the continued part is a separate segment: the last law turned back by a revolution, or the first law turned forward.
+    /// `None` if the neighbouring segment is shorter than twice `reach`, or the law is not defined that far.
     pub fn continued(&self, corner: &Corner, side: Side, reach: f64) -> Option<Self> {
         let mut segments = self.segments().to_vec();
         let (before, after) = (self.before(corner.segment), corner.segment);
@@ -152,12 +152,11 @@ impl Cam {
 }
 
 impl Segment {
-    /// The lowest order of a derivative that is not 0 at an extremum of the lift, rad; none where the lift is constant as far as rounding
-    /// shows.
+    /// Order of the lowest derivative that is not 0 at an extremum of the lift, rad; `None` if the lift is constant up to rounding.
     ///
-    /// Where derivatives up to n - 1 vanish, the extremum is found to about the nth root of the lift's rounding. That far beside it
-    /// lower derivatives are not 0. So an order counts only if its term of the Taylor series alone decides the lift where it exceeds
-    /// rounding, and does so within a radian:
+    /// If derivatives up to n - 1 vanish, the extremum is found to about the nth root of the lift's rounding, and at that distance lower
+    /// derivatives are not 0. Therefore an order counts only if two conditions are met. Within a radian its Taylor term must exceed
+    /// rounding, and there the higher terms must be below rounding:
     ///
     /// ```text
     /// d = (rounding / |c_n|)^(1/n) <= 1,    |c_m| d^m <= rounding for m > n,    c_n = c^(n) / n!
@@ -179,7 +178,7 @@ impl Segment {
     }
 }
 
-/// The largest derivative of each order over a segment: of eight samples, so that zeros in step with them hide none.
+/// Largest derivative of each order over a segment, from eight samples: zeros at regular distances do not hide all of it.
 fn sizes(segment: &Segment) -> [f64; Jet::ORDERS] {
     const SAMPLES: usize = 8;
     let mut sizes = [0.0_f64; Jet::ORDERS];

@@ -1,15 +1,15 @@
-//! Symmetric positive definite systems in which every unknown meets its two neighbours on a circle.
+//! Solver for symmetric positive definite systems in which every unknown is coupled to its two neighbours on a circle.
 //!
-//! `N_{i-1}^T x_{i-1} + D_i x_i + N_i x_{i+1} = r_i`, indices modulo n, with blocks of size K. Block Cholesky elimination
-//! from the first unknown on; the last one, which meets the first, is carried along as a border. O(n).
+//! `N_{i-1}^T x_{i-1} + D_i x_i + N_i x_{i+1} = r_i`, indices modulo n, with blocks of size K. Block Cholesky elimination starts from the
+//! first unknown; the last one, which is coupled to the first, is carried along as a border. O(n).
 
 use nalgebra::{Cholesky, Const, SMatrix, SVector};
 
-/// A system being set up, one equation a knot.
+/// System of equations under construction, one equation per knot.
 #[derive(Clone, Debug)]
 pub(super) struct Cyclic<const K: usize> {
     pub diagonal: Vec<SMatrix<f64, K, K>>,
-    /// N_i, between i and i + 1.
+    /// N_i, coupling of i and i + 1.
     pub next: Vec<SMatrix<f64, K, K>>,
     pub right: Vec<SVector<f64, K>>,
 }
@@ -17,7 +17,7 @@ pub(super) struct Cyclic<const K: usize> {
 /// Blocks (i, i) and (i, i + 1) of the inverse, for each i.
 pub(super) type Blocks<const K: usize> = Vec<[SMatrix<f64, K, K>; 2]>;
 
-/// An eliminated unknown: `x_i = y - N x_{i+1} - W x_last`, everything already divided by its pivot.
+/// Eliminated unknown: `x_i = y - N x_{i+1} - W x_last`, with all terms divided by its pivot.
 struct Eliminated<const K: usize> {
     y: SVector<f64, K>,
     next: SMatrix<f64, K, K>,
@@ -32,17 +32,17 @@ impl<const K: usize> Cyclic<K> {
         Self { diagonal: vec![block; count], next: vec![block; count], right: vec![column; count] }
     }
 
-    /// The solution; none where the system is not positive definite, or fewer than three unknowns.
+    /// Returns the solution; `None` if the system is not positive definite or has fewer than three unknowns.
     pub fn solve(self) -> Option<Vec<SVector<f64, K>>> {
         self.factored().map(|(solution, _)| solution)
     }
 
-    /// The solution, and the blocks (i, i) and (i, i + 1) of the inverse, for each i.
+    /// Returns the solution, and the blocks (i, i) and (i, i + 1) of the inverse, for each i.
     pub fn solve_and_invert(self) -> Option<(Vec<SVector<f64, K>>, Blocks<K>)> {
         let (solution, (eliminated, corner)) = self.factored()?;
         let last = eliminated.len();
-        // Without the last unknown the inverse is T^-1, from the last row back; with it z S^-1 z^T more, z = T^-1 times the
-        // border, and S what is left of the last equation. Between an unknown and the last one it is -z S^-1.
+        // Without the last unknown the inverse is T^-1, computed from the last row back. With it, z S^-1 z^T is added: z = T^-1 times the
+        // border, and S is the remainder of the last equation. The block between an unknown and the last one is -z S^-1.
         let mut blocks = vec![[SMatrix::zeros(); 2]; last + 1];
         let (mut inner, mut z) = (SMatrix::zeros(), SMatrix::zeros());
         for (index, row) in eliminated.iter().enumerate().rev() {
@@ -60,7 +60,7 @@ impl<const K: usize> Cyclic<K> {
         Some((solution, blocks))
     }
 
-    /// The solution, the eliminated unknowns, and the inverse of the remainder of the last equation.
+    /// Returns the solution, the eliminated unknowns, and the inverse of the remainder of the last equation.
     #[expect(clippy::type_complexity, reason = "its two users take it apart at once")]
     fn factored(self) -> Option<(Vec<SVector<f64, K>>, (Vec<Eliminated<K>>, SMatrix<f64, K, K>))> {
         let Self { diagonal, next, right } = self;
@@ -69,9 +69,9 @@ impl<const K: usize> Cyclic<K> {
             return None;
         }
         let last = count - 1;
-        // The last equation, and what it makes of the unknowns before it.
+        // The last equation, reduced as the unknowns before it are eliminated.
         let (mut corner, mut corner_right) = (diagonal[last], right[last]);
-        // Unknown 0 meets the last one through N_last^T; the one before the last meets it through its own N.
+        // Unknown 0 is coupled to the last one through N_last^T; the last but one is coupled to it through its own N.
         let (mut pivot, mut y, mut border) = (diagonal[0], right[0], next[last].transpose());
         let mut eliminated: Vec<Eliminated<K>> = Vec::with_capacity(last);
         for index in 0..last {
@@ -87,7 +87,7 @@ impl<const K: usize> Cyclic<K> {
                 last: factor.solve(&border),
                 inverse: factor.inverse(),
             };
-            // Schur complement: what is left of the next unknown and of the last one.
+            // Schur complement: the remainder of the next equation and of the last one.
             corner -= border.transpose() * row.last;
             corner_right -= border.transpose() * row.y;
             if !is_neighbour {

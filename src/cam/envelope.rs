@@ -1,4 +1,4 @@
-//! The lift of a flat face or a roller on a contour: the exact envelope, in pieces of polynomials.
+//! Lift of a flat face or a roller on a contour: the exact envelope, in polynomial pieces.
 //!
 //! The contour is `P = R(phi) e^{i phi}`, `phi` its polar angle. With `N = |P'| = sqrt(R^2 + R'^2)` its outward normal is
 //! `n = (R - i R')/N`, turned by `e^{i phi}` like everything here, and its curvature `(R^2 + 2 R'^2 - R R'')/N^3`.
@@ -10,8 +10,8 @@
 //! theta' = 1 + (Im(conj(Z) Z') + e c')/|Z|^2
 //! ```
 //!
-//! `a` is the radius of the roller and `Z` its centre, `e` the offset of the line of motion. Derivatives of the lift are those of the two
-//! power series, `d/dtheta = (1/theta') d/dphi`. A polynomial of degree 11 has the lift and five derivatives at both ends of a piece.
+//! `a` is the radius of the roller, `Z` its centre, and `e` the offset of the line of motion. Derivatives of the lift follow from two power
+//! series, `d/dtheta = (1/theta') d/dphi`. A polynomial of degree 11 matches the lift and five derivatives at both ends of a piece.
 
 use super::law::Law;
 use super::polynomial::Polynomial;
@@ -21,31 +21,31 @@ use crate::elementary;
 use crate::model::{FollowerContact, ModelError};
 use crate::tolerance;
 
-/// Coefficients of a series: the lift needs five derivatives, and the radius one or two more.
+/// Number of coefficients of a series: the lift needs five derivatives, and the radius one or two more.
 const TERMS: usize = 7;
-/// Lift and derivatives that a piece has at either end.
+/// Number of derivatives, with the lift, that a piece matches at either end.
 const MATCHED: usize = 6;
-/// Number of times that a piece is halved.
+/// Largest number of times that a piece is halved.
 const HALVINGS: u32 = 16;
 
 type Series = [f64; TERMS];
 
-/// Why a follower cannot have a contour's lift.
+/// Reason why a follower cannot follow a contour.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Unfollowed {
-    /// The radius is not above 0.
+    /// Radius that is not above 0.
     NoRadius,
-    /// A flat face does not touch a contour of this radius of curvature, which is hollow or straight.
+    /// Hollow or straight contour, which a flat face does not touch; with its radius of curvature.
     Hollow { radius: f64 },
-    /// The roller does not fit into a hollow of this radius of curvature.
+    /// Hollow into which the roller does not fit; with its radius of curvature.
     Undercut { radius: f64 },
-    /// The line of motion does not cross the path of the roller's centre.
+    /// Line of motion that does not cross the path of the roller's centre.
     Beside,
-    /// The lift turns within less than the pieces resolve.
+    /// Lift that changes over less than the pieces resolve.
     Sharp,
 }
 
-/// Where the follower touches the contour at a polar angle.
+/// Contact of the follower with the contour at a polar angle.
 struct Touch {
     /// Cam angle, rad.
     angle: f64,
@@ -54,7 +54,7 @@ struct Touch {
 }
 
 impl Touch {
-    /// Where `contact` touches a contour whose radius has this law, at a polar angle, rad.
+    /// Contact of a follower with a contour whose radius has this law, at a polar angle, rad.
     fn new(law: &Law, polar: f64, contact: FollowerContact) -> Result<Self, Unfollowed> {
         let jet = law.jet(polar).series();
         let radius: Series = std::array::from_fn(|n| jet[n]);
@@ -80,7 +80,7 @@ impl Touch {
             }
             FollowerContact::Flat => return Err(Unfollowed::Hollow { radius: of_curvature }),
             FollowerContact::Roller { roller_radius: a, offset: e } => {
-                // The centre moves by |P'| + a (rate of the normal), backwards where the roller is too large.
+                // The centre moves by |P'| + a (rate of the normal): backwards if the roller is too large.
                 if !(speed[0] + a * normal[0] > 0.0) {
                     return Err(Unfollowed::Undercut { radius: of_curvature });
                 }
@@ -127,7 +127,8 @@ fn unit() -> Series {
     std::array::from_fn(|n| if n == 0 { 1.0 } else { 0.0 })
 }
 
-/// Coefficients of the powers 6 to 11 of x from what is left at x = 1 of the lift and `derivative/order!` up to the fifth, all others 0.
+/// Coefficients of the powers 6 to 11 of x, from the remainders at x = 1 of the lift and of `derivative/order!` up to the fifth; lower
+/// powers are 0.
 #[rustfmt::skip]
 const HERMITE: [[f64; MATCHED]; MATCHED] = [
     [462.0, -210.0, 84.0, -28.0, 7.0, -1.0],
@@ -138,7 +139,8 @@ const HERMITE: [[f64; MATCHED]; MATCHED] = [
     [-252.0, 126.0, -56.0, 21.0, -6.0, 1.0],
 ];
 
-/// The polynomial of degree 11 in the angle from `from`, with the lift and derivatives of both ends, `width` apart; negative for one before.
+/// Polynomial of degree 11 in the angle from `from`, which matches lift and derivatives at both ends. They are `width` apart; a negative
+/// width puts the other end before `from`.
 fn hermite(from: &Touch, other: &Touch, width: f64) -> Polynomial {
     let scaled = |lift: &[f64; MATCHED]| {
         let mut scale = 1.0;
@@ -149,7 +151,7 @@ fn hermite(from: &Touch, other: &Touch, width: f64) -> Polynomial {
         each
     };
     let (start, end) = (scaled(&from.lift), scaled(&other.lift));
-    // What is left at the end: t_k = end_k - sum_{j >= k} binomial(j, k) start_j.
+    // Remainder at the end: t_k = end_k - sum_{j >= k} binomial(j, k) start_j.
     let mut left: [f64; MATCHED] = std::array::from_fn(|k| {
         let mut binomial = 1.0;
         let taken = (k..MATCHED).map(|j| {
@@ -158,7 +160,7 @@ fn hermite(from: &Touch, other: &Touch, width: f64) -> Polynomial {
         });
         end[k] - taken.sum::<f64>()
     });
-    // Of two lifts that differ by rounding alone nothing is left: over a short piece it would be a large derivative.
+    // A remainder of the size of rounding is set to 0: over a short piece it would make a large derivative.
     if left[0].abs() <= ROUNDINGS * tolerance::ULP.value * start[0].abs() {
         left[0] = 0.0;
     }
@@ -173,10 +175,10 @@ fn hermite(from: &Touch, other: &Touch, width: f64) -> Polynomial {
     Polynomial::new(from.angle, &coefficients)
 }
 
-/// Roundings of a lift that its series leaves.
+/// Rounding error of a lift from its series, in ulps.
 const ROUNDINGS: f64 = 16.0;
 
-/// Builds the pieces of the lift.
+/// Builder of the lift's pieces.
 struct Pieces {
     contact: FollowerContact,
     /// Height of the contour, m.
@@ -186,7 +188,7 @@ struct Pieces {
 }
 
 impl Pieces {
-    /// Adds the pieces of a law of the radius between two polar angles; `rests` is whether it comes to a dwell at its end.
+    /// Adds the pieces of a law of the radius between two polar angles; `rests` is whether a dwell follows.
     fn add(
         &mut self,
         law: &Law,
@@ -197,7 +199,7 @@ impl Pieces {
     ) -> Result<(), (f64, Unfollowed)> {
         let [start, end] = touches;
         let width = end.angle - start.angle;
-        // About the end where it meets a dwell, so that it comes to rest there to the last bit.
+        // Expanded about the end if a dwell follows, so that the lift is constant there to the last bit.
         let piece = if rests { hermite(end, start, -width) } else { hermite(start, end, width) };
         let middle = 0.5 * (polar[0] + polar[1]);
         let mut is_near = true;
@@ -218,9 +220,9 @@ impl Pieces {
         self.add(law, [middle, polar[1]], [&touch, end], rests, halvings - 1)
     }
 
-    /// What a follower is near where no piece resolves its lift.
+    /// Most likely reason where no piece resolves the lift.
     fn nearest(&self, touch: &Touch) -> Unfollowed {
-        /// Tangent of a pressure angle that counts as a right one.
+        /// Tangent of a pressure angle that counts as 90 degrees.
         const STEEP: f64 = 10.0;
         let [value, slope, curvature, third, ..] = touch.lift;
         let at = self.contact.touches(touch.angle, &Lift { value, slope, curvature, third });
@@ -234,7 +236,7 @@ impl Pieces {
         }
     }
 
-    /// Whether a piece has the lift and the second derivative of a place.
+    /// Whether a piece has the lift and the second derivative of a contact.
     fn is_near(&self, piece: &Polynomial, touch: &Touch, width: f64) -> bool {
         let found = piece.lift(touch.angle);
         let rounding = ROUNDINGS * tolerance::ULP.value * touch.lift[0].abs();
@@ -247,9 +249,9 @@ impl Pieces {
 }
 
 impl Cam {
-    /// The sharpest of the hollows that the follower does not fit into, with its polar angle, rad, of those at sampled angles.
+    /// Sharpest hollow into which the follower does not fit, among sampled angles; with its polar angle, rad.
     fn sharpest_hollow(&self, contact: FollowerContact) -> Option<(f64, Unfollowed)> {
-        /// Samples of all segments together, and of one at most.
+        /// Samples of all segments together, and largest number in one segment.
         const SAMPLES: usize = 1 << 16;
         const OF_ONE: usize = 64;
         let samples = (SAMPLES / self.segments().len()).clamp(1, OF_ONE);
@@ -267,8 +269,8 @@ impl Cam {
         Some((polar, if is_face { Unfollowed::Hollow { radius } } else { Unfollowed::Undercut { radius } }))
     }
 
-    /// The lift of a follower on a contour, of which `self` is the radius over the polar angle. `reject` says why there is none, with the polar
-    /// angle, rad.
+    /// Returns the lift of a follower on a contour; `self` is the contour's radius over the polar angle. `reject` turns the reason for a
+    /// failure and its polar angle, rad, into an error.
     pub(super) fn enveloped(
         self,
         contact: FollowerContact,

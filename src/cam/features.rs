@@ -1,12 +1,12 @@
-//! Corners and dwells, found in the rows of a table.
+//! Detection of corners and dwells in the rows of a table.
 //!
-//! A dwell is a stretch over which rows stay within their noise, without a trend. It must be so long that a curvature hidden by noise is a
-//! small part of the cam's largest, and the lift must move on where it ends. A stretch that is left slowly is none if it and as many rows
-//! on one side follow one smooth motion within their noise: so do the parts of a base circle that runs out. A dwell is taken to end a little
-//! inside: a motion leaves it too slowly to be seen at first.
+//! A dwell is a range over which rows stay within their noise, without a trend. It must be so long that a curvature hidden by noise is a
+//! small part of the cam's largest, and the lift must change beyond its ends. A range that the lift leaves slowly is no dwell if it fits
+//! one smooth motion together with as many rows on one side. Parts of an eccentric base circle are such ranges. A dwell is taken to end a
+//! little further inside, because at first a motion leaves it too slowly to be seen.
 //!
-//! A corner is where the rows on both sides fit a jump of the second derivative better than any smooth motion, by a test
-//! (`corner_test`). The jump must also be no small part of the largest curvature. A corner with less evidence is doubtful.
+//! A corner is an angle where the rows on both sides fit a jump of the second derivative better than any smooth motion (`corner_test`). The
+//! jump must also be a considerable part of the largest curvature. A corner with less evidence is doubtful.
 
 use std::f64::consts::TAU;
 
@@ -20,22 +20,22 @@ use crate::elementary;
 use crate::model::{Smoothing, TableProfile, TableRow};
 use crate::tolerance;
 
-/// Rows at rising angles, once round.
+/// Rows at rising angles over one turn.
 struct Rows<'a> {
     angles: &'a [f64],
     lifts: &'a [f64],
-    /// The mean gap, rad.
+    /// Mean gap, rad.
     gap: f64,
-    /// The standard deviation of the noise, m.
+    /// Standard deviation of the noise, m.
     noise: f64,
-    /// The largest second derivative, estimated from rows some degrees apart, m/rad^2.
+    /// Largest second derivative, estimated from rows some degrees apart, m/rad^2.
     curvature: f64,
 }
 
-/// With more rows than this, one in so many is examined: the features are some degrees long.
+/// Number of rows above which only every nth row is examined: features are some degrees long.
 const MOST_ROWS: usize = 1000;
 
-/// Corners that were looked for in rows, rad, ascending.
+/// Corners found in rows, rad, ascending.
 #[derive(Clone, Debug, Default)]
 struct FoundCorners {
     /// Corners that no smooth motion explains.
@@ -44,8 +44,8 @@ struct FoundCorners {
     doubtful: Vec<f64>,
 }
 
-/// Features that a model gives and those that it leaves to be found, with doubtful corners; `half_step` is half of the rounding step of the
-/// lifts.
+/// Returns the features that a model gives, completed by features found in the rows, and the doubtful corners. `half_step` is half of the
+/// rounding step of the lifts.
 pub(super) fn of(smoothing: &Smoothing, angles: &[f64], lifts: &[f64], half_step: f64) -> (Features, Vec<f64>) {
     let given = |degrees: &Vec<f64>| degrees.iter().map(|angle| angle.to_radians()).collect();
     let corners: Option<Vec<f64>> = smoothing.corners_deg.as_ref().map(given);
@@ -73,41 +73,41 @@ pub(super) fn of(smoothing: &Smoothing, angles: &[f64], lifts: &[f64], half_step
     (Features { corners: found.certain, dwells }, found.doubtful)
 }
 
-/// Whether a corner is inside of a dwell; both in radians.
+/// Whether a corner is inside a dwell; both in radians.
 pub(super) fn is_inside(corner: f64, [from, to]: &[f64; 2]) -> bool {
-    // A dwell that ends at a corner ends there to the last bit but for a turn.
+    // A dwell that ends at a corner ends there to the last bit, up to a whole turn.
     let room = tolerance::SAME_KNOT.value;
     (room..to - from - room).contains(&(corner - from).rem_euclid(TAU))
 }
 
-/// A row of a table that is far from the value that the rows beside it give.
+/// Row of a table that is far from the value interpolated from the rows beside it.
 #[derive(Clone, Copy, Debug, Serialize)]
 #[doc(hidden)]
 pub struct Stray {
-    /// Its line in the file of the table or of the model; for rows without a file, its index.
+    /// Line in the file of the table or of the model; for rows without a file, its index.
     pub line: usize,
-    /// Its angle, degrees.
+    /// Angle, degrees.
     pub cam_angle_deg: f64,
-    /// Its lift, m.
+    /// Lift, m.
     pub lift_m: f64,
-    /// Its distance above the value that the rows beside it give, m.
+    /// Distance above the value interpolated from the rows beside it, m.
     pub off_m: f64,
 }
 
-/// Standard deviation of the rows of a table from the values that the rows beside them give, m: their noise, or their rounding.
+/// Standard deviation of the rows of a table from values interpolated from the rows beside them, m: their noise or their rounding.
 pub(crate) fn spread(profile: &TableProfile) -> f64 {
     let (angles, lifts): (Vec<f64>, Vec<f64>) =
         profile.rows.iter().map(|row| (row.angle_deg.to_radians(), row.lift)).unzip();
     Rows::new(&angles, &lifts, profile.reading.half_step()).noise
 }
 
-/// Stray rows of a table, such as a slip of a hand or a gauge leaves, in order. An interpolating spline follows them, a smoothing spline
-/// half follows them. A cam that turns sharply between two rows has such rows, too.
+/// Finds stray rows of a table, for example from a slip of a gauge, in order. An interpolating spline follows them fully, a smoothing
+/// spline partly. A cam that turns sharply between two rows has such rows, too.
 pub(crate) fn strays(profile: &TableProfile) -> Vec<Stray> {
-    /// Distance beyond any that noise gives a row, in its standard deviations.
+    /// Distance in standard deviations that noise does not reach.
     const FAR: f64 = 8.0;
-    /// Part of the bend that the largest second derivative makes from one row to the next. At a jump of that derivative, at most
-    /// twice as large, a polynomial through both sides is off by a tenth of that.
+    /// Smallest distance of a stray row, as a part of the bend that the largest second derivative makes from one row to the next. At a jump
+    /// of that derivative, at most twice as large, a polynomial through both sides is off by a tenth of this bend.
     const BENT: f64 = 0.25;
     /// Largest number of rounds over the rows.
     const ROUNDS: usize = 20;
@@ -117,13 +117,13 @@ pub(crate) fn strays(profile: &TableProfile) -> Vec<Stray> {
     let (angles, mut lifts): (Vec<f64>, Vec<f64>) =
         profile.rows.iter().map(|row| (row.angle_deg.to_radians(), row.lift)).unzip();
     let mut is_far = vec![false; lifts.len()];
-    // One that is far off hides others until it stands where the rows beside it say.
+    // A stray row far off hides others until it is replaced by its interpolated value.
     for _ in 0..ROUNDS {
         let rows = Rows::new(&angles, &lifts, profile.reading.half_step());
         let misses: Vec<(f64, f64)> = (0..angles.len() as isize).map(|row| rows.miss(row)).collect();
         let is_stray = |row: &usize| {
             let (off, by_noise) = misses[*row];
-            // The rows beside a stray one are missed as well, by less.
+            // The rows beside a stray one also deviate, by less.
             let beside = [1, 2, 3].into_iter().flat_map(|away| [row + away, row + misses.len() - away]);
             off.abs() > BENT * rows.curvature * rows.gap * rows.gap
                 && by_noise.abs() > FAR * rows.noise
@@ -145,9 +145,9 @@ pub(crate) fn strays(profile: &TableProfile) -> Vec<Stray> {
     (0..lifts.len()).filter(|row| is_far[*row]).map(stray).collect()
 }
 
-/// Polynomial of fourth degree that is nearest to rows.
+/// Polynomial of fourth degree fitted to rows.
 struct Trend {
-    /// Whether it takes more from their squares than noise gives it.
+    /// Whether it reduces their squares by more than noise explains.
     is_seen: bool,
     /// Whether the rows are as near to it as their noise allows.
     is_smooth: bool,
@@ -162,7 +162,7 @@ impl<'a> Rows<'a> {
         let reach = ((REACH / gap) as isize).clamp(1, angles.len() as isize / 4);
         let all = || 0..angles.len() as isize;
         rows.curvature = all().map(|row| rows.bend(row, reach).abs()).fold(0.0, f64::max);
-        // On a dwell rounding alone is left of lifts that are one number; how much depends on the unit that they are in.
+        // On a dwell, lifts that are the same number differ by rounding alone, which depends on their unit.
         let size = lifts.iter().fold(0.0_f64, |size, lift| size.max(lift.abs()));
         let rounding = 64.0 * tolerance::ULP.value * size;
         let mut misses: Vec<f64> = all().map(|row| rows.miss(row).1.abs()).filter(|miss| *miss > rounding).collect();
@@ -174,7 +174,7 @@ impl<'a> Rows<'a> {
         rows
     }
 
-    /// Angle, from any turn on, and lift of a row.
+    /// Angle and lift of a row; an index beyond a turn continues into the next turn.
     fn row(&self, index: isize) -> (f64, f64) {
         let count = self.angles.len() as isize;
         let inside = index.rem_euclid(count);
@@ -189,8 +189,8 @@ impl<'a> Rows<'a> {
         2.0 * (slope(here, after) - slope(before, here)) / (after.0 - before.0)
     }
 
-    /// Distance of a row from the polynomial of fifth degree through three rows on either side, m; and that divided by the one from noise
-    /// of 1.
+    /// Distance of a row from the polynomial of fifth degree through three rows on either side, m; and that distance divided by its
+    /// standard deviation for noise of 1.
     fn miss(&self, row: isize) -> (f64, f64) {
         let (at, lift) = self.row(row);
         let others = [-3, -2, -1, 1, 2, 3].map(|away| self.row(row + away));
@@ -204,24 +204,24 @@ impl<'a> Rows<'a> {
         (off, off / (1.0 + weights.iter().map(|weight| weight * weight).sum::<f64>()).sqrt())
     }
 
-    /// Stretches of one lift, by their ends; at one of `corners` a stretch may end abruptly.
+    /// Finds ranges of constant lift, by their ends; at one of `corners` a range may end abruptly.
     fn dwells(&self, corners: &[f64]) -> Vec<[f64; 2]> {
         /// Largest deviation of a row by noise, in standard deviations.
         const FAR: f64 = 3.0;
-        /// The fewest rows of a dwell.
+        /// Smallest number of rows of a dwell.
         const FEWEST: isize = 6;
-        /// Angle in which the acceleration of a motion rises to its largest, rad.
+        /// Angle over which the acceleration of a motion rises to its largest, rad.
         const RISE: f64 = 0.2;
-        /// Longest way over which a motion that has left a dwell stays within the room once more, over the way that it needed to leave.
+        /// Longest second stay of a motion within the noise after it has left a dwell, relative to the angle that it needed to leave.
         const LEAVING: f64 = 0.6;
-        /// Length over that way from which a stretch may be a dwell, however slowly it is left.
+        /// Length, relative to that angle, from which a range may be a dwell even if it is left slowly.
         const LONG: f64 = 10.0;
         let count = self.angles.len() as isize;
         let room = FAR * self.noise;
-        // From where the lift changes most, so that no dwell is cut in two.
+        // Starts where the lift changes most, so that no dwell is cut in two.
         let change = |row: &isize| (self.row(row + 1).1 - self.row(*row).1).abs();
         let first = (0..count).max_by(|one, two| change(one).total_cmp(&change(two))).map_or(0, |row| row + 1);
-        // Off by the room: what leaves at a corner after c'' x^2/2 = 2 room, what leaves smoothly after c''' x^3/6.
+        // Angle after which a motion has left the noise: c'' x^2/2 = 2 room at a corner, c''' x^3/6 if it leaves smoothly.
         let sudden = (4.0 * room / self.curvature).sqrt();
         let smooth = elementary::cbrt(12.0 * room * RISE / self.curvature).max(sudden);
         let mut stretches: Vec<[isize; 2]> = Vec::new();
@@ -232,7 +232,7 @@ impl<'a> Rows<'a> {
             // A parabola that stays within the room over the stretch: c'' (length/2)^2 / 2 = 2 room.
             let hidden = 16.0 * room / (to - from).powi(2);
             if end - row + 1 >= FEWEST && hidden <= tolerance::HIDDEN_CURVATURE.value * self.curvature {
-                // Noise may part a dwell: two stretches that meet at one lift are one, or are none if they have a trend together.
+                // Noise may divide a dwell: two ranges that meet at one lift are merged. If they have a common trend, neither is a dwell.
                 let meets = |before: &&mut [isize; 2]| {
                     let apart = (self.mean(**before) - self.mean([row, end])).abs();
                     from - self.row(before[1]).0 <= smooth + 2.0 * self.gap && apart <= 2.0 * room
@@ -255,12 +255,13 @@ impl<'a> Rows<'a> {
                 corners.iter().find_map(near).unwrap_or(end + inward * smooth)
             };
             let [from, to] = [snap(start, 1.0), snap(end, -1.0)];
-            // The top or the bottom of a wave stays long as well, but moves on slowly.
+            // The top or the bottom of a wave also stays long within the noise, but leaves slowly.
             let moves_on = |row: isize, way: isize| {
                 let last = self.stays(row + way, way, count, room);
                 (self.row(last).0 - self.row(row + way).0).abs() <= LEAVING * smooth + 1.5 * self.gap
             };
-            // So does a slope or a crest of a base circle that runs out. There the stretch and as many rows on one side follow one smooth motion.
+            // A slope or a crest of an eccentric base circle also leaves slowly. There the range and as many rows on one side follow one
+            // smooth motion.
             let beyond = ends[1] - ends[0] + 1;
             let goes_on =
                 |more: [isize; 2]| self.trend(more, None).is_some_and(|trend| trend.is_seen && trend.is_smooth);
@@ -276,7 +277,7 @@ impl<'a> Rows<'a> {
         found
     }
 
-    /// The last row from `row` on, forwards or backwards and `most` rows away at most, up to which the lifts stay within twice the room.
+    /// Last row from `row` on, in direction `way` and at most `most` rows away, up to which the lifts stay within twice the room.
     fn stays(&self, row: isize, way: isize, most: isize, room: f64) -> isize {
         let mut range = [self.row(row).1; 2];
         let within = |away: &isize| {
@@ -287,13 +288,12 @@ impl<'a> Rows<'a> {
         row + way * (1..=most).take_while(within).last().unwrap_or(0)
     }
 
-    /// The mean lift from one row to another.
+    /// Mean lift from one row to another.
     fn mean(&self, [start, end]: [isize; 2]) -> f64 {
         (start..=end).map(|row| self.row(row).1).sum::<f64>() / (end - start + 1) as f64
     }
 
-    /// Trend of the rows from one to another, or of those of them between two angles, rad; none of so few rows that a polynomial goes
-    /// through all of them.
+    /// Trend of the rows from one to another, or of those between two angles, rad; `None` if a polynomial passes through all of these rows.
     fn trend(&self, [start, end]: [isize; 2], within: Option<[f64; 2]>) -> Option<Trend> {
         const DEGREE: i32 = 4;
         let [from, to] = within.unwrap_or([start, end].map(|row| self.row(row).0));
@@ -312,13 +312,13 @@ impl<'a> Rows<'a> {
         })
     }
 
-    /// Places where the second derivative jumps.
+    /// Finds the angles where the second derivative jumps.
     fn corners(&self) -> FoundCorners {
-        /// Rows examined on either side, a scale at a time.
+        /// Number of rows examined on either side, one scale after the other.
         const SCALES: [isize; 4] = [6, 12, 24, 48];
-        /// Rows on either side that are examined however far apart they are.
+        /// Number of rows on either side that are examined even if they are far apart.
         const FEW: isize = 24;
-        /// Angle on either side over which more rows are examined, rad: those of 24 rows that are a degree apart.
+        /// Angle on either side over which more rows are examined, rad: 24 rows that are a degree apart.
         const WIDE: f64 = 0.45;
         let is_near = |reach: isize| reach <= FEW || reach as f64 * self.gap <= WIDE;
         let count = self.angles.len() as isize;
@@ -327,7 +327,7 @@ impl<'a> Rows<'a> {
         let apart = |one: f64, two: f64| ((one - two + 0.5 * TAU).rem_euclid(TAU) - 0.5 * TAU).abs();
         for reach in SCALES.into_iter().filter(|reach| 4 * reach < count && is_near(*reach)) {
             let half = reach / 2;
-            // One-sided second differences cheaply show where a corner is likely: where they differ most.
+            // One-sided second differences cheaply show likely corners: the angles where they differ most.
             let differ = |row: isize| (self.bend(row + half, half) - self.bend(row - half, half)).abs();
             let least = 0.5 * tolerance::CORNER_SHARE.value * self.curvature;
             let is_most = |row: &isize| {
@@ -338,7 +338,7 @@ impl<'a> Rows<'a> {
             seen.sort_by(|one, two| two.evidence.total_cmp(&one.evidence));
             for jump in seen {
                 match found.iter_mut().find(|other| apart(other.at, jump.at) <= half as f64 * self.gap) {
-                    // Rows over a longer stretch may settle a doubt.
+                    // Rows over a longer range may settle a doubt.
                     Some(other) if !is_certain(other) && is_certain(&jump) => *other = jump,
                     Some(_) => {}
                     None => found.push(jump),
@@ -354,7 +354,7 @@ impl<'a> Rows<'a> {
         FoundCorners { certain: of(true), doubtful: of(false) }
     }
 
-    /// A jump among the rows around one.
+    /// Tests the rows around one for a jump.
     fn corner(&self, row: isize, reach: isize) -> Option<Jump> {
         let rows: Vec<(f64, f64)> = (row - reach..=row + reach).map(|row| self.row(row)).collect();
         corner_test::jump(&rows, &Scales { gap: self.gap, noise: self.noise, curvature: self.curvature })

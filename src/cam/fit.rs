@@ -1,14 +1,14 @@
-//! Distance of a smoothing spline from the rows of a table, and the noise that the rows show.
+//! Fit of a smoothing spline to the rows of a table, and the noise that the rows show.
 //!
 //! With a tolerance, the weight makes the largest distance from a row equal to it. Without one, the weight minimises generalised
 //! cross-validation (Craven and Wahba 1978; the factor: Kim and Gu 2004), an estimate of the error at a row that is left out:
 //!
 //! ```text
-//! V = n sum of residuals^2 / (n - 1.4 p)^2      p what the spline has taken from the n rows, noise^2 = sum of residuals^2 / (n - p)
+//! V = n sum of residuals^2 / (n - 1.4 p)^2      p degrees of freedom of the spline, noise^2 = sum of residuals^2 / (n - p)
 //! ```
 //!
-//! over the rows outside of dwells. The fit is no closer than half of the rounding step of the lifts, since a true lift may be as far from
-//! its row.
+//! over the rows outside dwells. The distances are allowed to reach half of the rounding step of the lifts, since a true lift may be that
+//! far from its row.
 
 use std::f64::consts::TAU;
 
@@ -19,26 +19,26 @@ use crate::bracket::{Width, halve};
 use crate::elementary;
 use crate::model::{Model, ModelError, Smoothing, SmoothingTolerance, TableProfile};
 
-/// A smoothing spline fitted to a table.
+/// Smoothing spline fitted to a table.
 #[derive(Clone, Debug)]
 pub(crate) struct Fit {
     layout: Layout,
     spline: Smoothed,
-    /// The weight of the rows, its logarithm.
+    /// Logarithm of the weight of the rows.
     pub weight: f64,
     /// Corners and dwells, given or found.
     features: Features,
-    /// Corners that are doubtful and left out, rad.
+    /// Doubtful corners, which are left out, rad.
     doubtful: Vec<f64>,
-    /// The standard deviation of the rows from a smooth motion, m; not a number where the spline goes through them.
+    /// Standard deviation of the rows from a smooth motion, m; NaN if the spline passes through them.
     pub noise: f64,
 }
 
-/// The logarithms of the weights that are tried: a curve with nothing but the first harmonics, and one through the rows.
+/// Logarithms of the smallest and the largest weight tried: a curve of the first harmonics only, and one through the rows.
 const WEIGHTS: [f64; 2] = [-9.0, 9.0];
 
 impl Fit {
-    /// The largest distance from a row, m.
+    /// Largest distance from a row, m.
     pub fn distance(&self) -> f64 {
         largest(&self.spline.residuals)
     }
@@ -48,17 +48,17 @@ impl Fit {
         profile.rows.iter().zip(&self.spline.residuals).map(|(row, residual)| row.lift - residual).collect()
     }
 
-    /// Its corners, degrees.
+    /// Corners, degrees.
     pub fn corners_deg(&self) -> Vec<f64> {
         self.features.corners.iter().map(|corner| corner.to_degrees()).collect()
     }
 
-    /// Doubtful corners, which it leaves out, degrees.
+    /// Doubtful corners, which are left out, degrees.
     pub fn doubtful_deg(&self) -> Vec<f64> {
         self.doubtful.iter().map(|corner| corner.to_degrees()).collect()
     }
 
-    /// Its dwells, from and to, degrees.
+    /// Start and end of each dwell, degrees.
     pub fn dwells_deg(&self) -> Vec<[f64; 2]> {
         self.features.dwells.iter().map(|dwell| dwell.map(f64::to_degrees)).collect()
     }
@@ -69,7 +69,8 @@ impl Fit {
     }
 }
 
-/// Choices made for the smoothing spline of a model, for programs that compute it by other means; none where its cam is no such spline.
+/// Choices made for the smoothing spline of a model, for programs that compute it by other means; `None` if its cam is not a smoothing
+/// spline.
 pub(crate) fn fitted(model: &Model) -> Result<Option<Fitted>, ModelError> {
     let smoothed = model.table().and_then(|table| Some((table, table.spline.smoothing()?)));
     let fitted = smoothed.map(|(table, smoothing)| {
@@ -83,7 +84,7 @@ fn largest(residuals: &[f64]) -> f64 {
     residuals.iter().fold(0.0, |largest, residual| largest.max(residual.abs()))
 }
 
-/// The spline of a profile, or the complaint that there is none.
+/// Fits the spline of a profile.
 pub(crate) fn fit(model: &Model, profile: &TableProfile, smoothing: &Smoothing) -> Result<Fit, ModelError> {
     let angles: Vec<f64> = profile.rows.iter().map(|row| row.angle_deg.to_radians()).collect();
     let lifts: Vec<f64> = profile.rows.iter().map(|row| row.lift).collect();
@@ -98,14 +99,14 @@ pub(crate) fn fit(model: &Model, profile: &TableProfile, smoothing: &Smoothing) 
             layout.smoothed(&lifts, elementary::powf(10.0_f64, weight))
         })
     };
-    // Dwells that were found and leave no motion between them are none: the rows are so rough that all of them look alike.
-    // So are those between which the lift steps from one row to the next, as where a gauge has slipped.
+    // Found dwells that leave no motion between them are dropped: the rows are so rough that all of them look alike. Dwells between which
+    // the lift steps from one row to the next, as after a slip of a gauge, are dropped as well.
     let [smoothest, _] = WEIGHTS;
     let is_none = |laid: Layout| laid.smoothed(&lifts, elementary::powf(10.0_f64, smoothest)).is_none();
     if smoothing.dwells_deg.is_none() && layout(&features).map_or(true, is_none) {
         features.dwells.clear();
     }
-    // A dwell that the model gives has been checked with the model.
+    // A dwell that the model gives was checked when the model was read.
     let in_dwell = |corner: &&f64| features.dwells.iter().any(|dwell| features::is_inside(corner.to_radians(), dwell));
     if let Some(corner) = smoothing.corners_deg.iter().flatten().find(in_dwell) {
         let words =
@@ -127,7 +128,7 @@ pub(crate) fn fit(model: &Model, profile: &TableProfile, smoothing: &Smoothing) 
             laid.smoothed(&lifts, elementary::powf(10.0_f64, weight)).ok_or_else(|| overflow(model, profile))?;
         Ok((features, laid, weight, spline))
     };
-    // Between the end of a given dwell and a corner that was found within a row of it there is no row: no spline has both.
+    // Between the end of a given dwell and a found corner within a row of it there is no row: no spline fits both.
     let ends: Vec<f64> = features.dwells.iter().flatten().copied().collect();
     let is_at_end = |corner: &f64| ends.iter().any(|end| apart(*corner, *end) < TAU / angles.len() as f64);
     let mut fewer = features.clone();
@@ -143,9 +144,9 @@ fn overflow(model: &Model, profile: &TableProfile) -> ModelError {
     model.reject(profile.place(), "has lifts too large, or angles too close, for a spline near them")
 }
 
-/// Found corners, each moved within a gap to where the functional that the spline minimises is least.
+/// Moves each found corner within a gap to the minimum of the functional that the spline minimises.
 fn polished(mut features: Features, gap: f64, least: impl Fn(&Features) -> Option<f64>) -> Features {
-    /// Parts of a gap that a corner is moved by, at first, and how often they are halved.
+    /// First step of a corner, as a part of a gap, and the number of times that it is halved.
     const PARTS: f64 = 0.25;
     const ROUNDS: i32 = 7;
     for corner in 0..features.corners.len() {
@@ -165,7 +166,7 @@ fn polished(mut features: Features, gap: f64, least: impl Fn(&Features) -> Optio
     features
 }
 
-/// The logarithm of the weight that meets a tolerance.
+/// Logarithm of the weight that meets a tolerance.
 fn weight(
     model: &Model,
     profile: &TableProfile,
@@ -208,19 +209,19 @@ fn weight(
     }
 }
 
-/// Weights at which a limit is kept.
+/// Weights at which all rows are within a limit.
 enum Kept {
-    /// From this weight on, its logarithm.
+    /// Every weight from this logarithm on.
     At(f64),
-    /// With every weight.
+    /// Every weight.
     Always,
-    /// With no weight; the distance left at the largest weight.
+    /// No weight; with the distance left at the largest weight.
     Never(f64),
 }
 
-/// The least weight with which no row is farther than `limit`.
+/// Finds the least weight at which no row is farther than `limit`.
 fn within(at: &impl Fn(f64) -> Option<Smoothed>, limit: f64) -> Option<Kept> {
-    /// Halvings of the logarithm: the distance is then the limit to ten digits.
+    /// Number of halvings of the logarithm: the distance then equals the limit to ten digits.
     const HALVINGS: u32 = 40;
     let distance = |weight: f64| at(weight).map(|spline| largest(&spline.residuals));
     let [low, high] = WEIGHTS;
@@ -236,19 +237,19 @@ fn within(at: &impl Fn(f64) -> Option<Smoothed>, limit: f64) -> Option<Kept> {
     Some(Kept::At(weight))
 }
 
-/// The weight, its logarithm, of the least generalised cross-validation.
+/// Logarithm of the weight with the least generalised cross-validation.
 fn cross_validated(at: &impl Fn(f64) -> Option<Smoothed>) -> Option<f64> {
     /// Step between the weights tried, in their logarithm.
     const STEP: f64 = 0.75;
     /// Factor on the degrees of freedom. Without it cross-validation follows the noise in some tables.
     const CHARGED: f64 = 1.4;
-    /// Largest ratio of degrees of freedom to rows: well below where the charged degrees of freedom equal the rows.
+    /// Largest ratio of degrees of freedom to rows, well below the one where the charged degrees of freedom equal the rows.
     const MOST: f64 = 0.6;
-    /// Steps of the golden section; they give the logarithm to a hundredth.
+    /// Number of steps of the golden section, which give the logarithm to a hundredth.
     const SECTIONS: u32 = 10;
     let score = |weight: f64| {
         let spline = at(weight)?;
-        // A spline that goes through the rows leaves no residuals to judge it by.
+        // A spline through the rows leaves no residuals to judge it by.
         if spline.freedom > MOST * spline.moving {
             return Some(f64::INFINITY);
         }

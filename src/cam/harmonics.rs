@@ -1,4 +1,4 @@
-//! A sum of cosines: the `harmonic` law, one smooth segment all round.
+//! Sum of cosines: the `harmonic` law, one smooth segment over the whole turn.
 
 use super::jet::Jet;
 use super::lift::Lift;
@@ -23,7 +23,7 @@ struct Term {
     sine: f64,
 }
 
-/// `cos(k x)`, `sin(k x)` for k = 1, 2, ... by turning `(1, 0)` on by x.
+/// Yields `cos(k x)`, `sin(k x)` for k = 1, 2, ... by rotations by x.
 fn multiples<N: Number>(x: N) -> impl Iterator<Item = (N, N)> {
     let (sin, cos) = x.sin_cos();
     let turn = move |&(c, s): &(N, N)| Some((c * cos - s * sin, s * cos + c * sin));
@@ -31,7 +31,7 @@ fn multiples<N: Number>(x: N) -> impl Iterator<Item = (N, N)> {
 }
 
 impl Harmonics {
-    /// From the amplitudes and phases of `offset + sum a_k cos(k theta + p_k)`.
+    /// Sum `offset + sum a_k cos(k theta + p_k)` from its amplitudes and phases.
     pub fn new(profile: &HarmonicProfile) -> Self {
         let of_phase = |(amplitude, phase_deg): (&f64, &f64)| {
             let (sin, cos) = elementary::sin_cos(phase_deg.to_radians());
@@ -57,7 +57,7 @@ impl Harmonics {
         }
     }
 
-    /// Number of waves of its highest cosine in a turn.
+    /// Number of the highest harmonic.
     pub(super) fn highest(&self) -> usize {
         self.terms.len()
     }
@@ -92,12 +92,12 @@ impl Harmonics {
         rise
     }
 
-    /// A bound on `|c'''|` over `[start, end]`: everywhere, or from the middle where that is less.
+    /// Bound on `|c'''|` over `[start, end]`: everywhere, or from the middle if that is less.
     #[inline]
     pub fn third_bound(&self, start: f64, end: f64) -> f64 {
         let [third, fourth] = self.bounds;
         let from_middle = self.lift(0.5 * (start + end)).third.abs() + 0.5 * (end - start) * fourth;
-        // Turning on by x again and again rounds by an ulp a time.
+        // Each rotation by x adds a rounding of an ulp.
         let rounding = tolerance::TERM_ROUNDING.value * self.terms.len() as f64;
         third.min(from_middle + rounding * fourth) * (1.0 + rounding)
     }

@@ -1,4 +1,4 @@
-//! Derivatives of a lift law of any order, by power series: they show which derivative jumps where two laws meet.
+//! Derivatives of a lift law up to a high order, by power series: they show which derivative jumps where two laws meet.
 
 /// Lift and its derivatives at an angle, order 0 first.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -6,10 +6,10 @@
 pub struct Jet(pub [f64; Jet::ORDERS]);
 
 impl Jet {
-    /// Number of orders: 0 to 12, the last one only to judge the rounding of the one before.
+    /// Number of orders: 0 to 12. The last one serves only to judge the rounding of the one before.
     pub const ORDERS: usize = 13;
 
-    /// The highest order at which a jump is looked for; laws that agree up to it are taken to meet smoothly.
+    /// Highest order at which a jump is searched for; laws that agree up to it count as one smooth curve.
     pub const HIGHEST_JUMP: usize = Self::ORDERS - 2;
 
     pub(super) fn constant(value: f64) -> Self {
@@ -18,7 +18,7 @@ impl Jet {
         Self(orders)
     }
 
-    /// From the coefficients of `sum c_n t^n`: the derivatives are `n! c_n`.
+    /// Builds the derivatives `n! c_n` from the coefficients of `sum c_n t^n`.
     pub(super) fn from_series(mut series: [f64; Self::ORDERS]) -> Self {
         let mut factorial = 1.0;
         for (order, coefficient) in series.iter_mut().enumerate().skip(1) {

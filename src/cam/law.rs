@@ -1,4 +1,4 @@
-//! A lift law: one smooth formula, its derivatives, and certain bounds on them over a stretch of angle.
+//! Lift laws: one smooth formula each, with its derivatives and certain bounds on them over a range of angles.
 
 use super::arc::Arc;
 use super::harmonics::Harmonics;
@@ -9,25 +9,25 @@ use super::polynomial::Polynomial;
 use super::sinusoid::Sinusoid;
 use crate::interval::{Interval, Number};
 
-/// A smooth lift law, valid on its segment and some way past its ends.
+/// Smooth lift law, valid on its segment and some way past its ends.
 #[derive(Clone, Debug, PartialEq)]
 #[doc(hidden)]
 pub enum Law {
     /// Constant lift, m.
     Dwell(f64),
-    /// A circle seen from the cam's axis.
+    /// Circle seen from the cam's axis.
     Arc(Arc),
-    /// A circle seen along a line beside the cam's axis.
+    /// Circle seen along a line beside the cam's axis.
     OffsetArc(OffsetArc),
-    /// A polynomial in the angle.
+    /// Polynomial in the angle.
     Polynomial(Polynomial),
-    /// A sine on a straight line.
+    /// Sine on a straight line.
     Sinusoid(Sinusoid),
-    /// A sum of cosines of period 2 pi.
+    /// Sum of cosines of period 2 pi.
     Harmonics(Harmonics),
 }
 
-/// Dispatches on a law: a dwell, or any of the other kinds.
+/// Dispatches on the kind of a law: one expression for a dwell, another for all other kinds.
 macro_rules! of_law {
     ($law:expr, $lift:ident => $dwell:expr, $other:ident => $given:expr) => {
         match $law {
@@ -60,10 +60,10 @@ impl Law {
         of_law!(self, value => Lift::constant(*value), law => law.lift(angle))
     }
 
-    /// Enclosure of lift and derivatives over a range of angles, rad; everything where the law does not reach.
+    /// Enclosure of lift and derivatives over a range of angles, rad; unbounded where the law is not defined.
     ///
-    /// The formula on an interval overestimates, because it takes each occurrence of the angle for a different one. So each derivative is
-    /// also evaluated at the middle m and extended by the next derivative: `c(m + x) = c(m) + x c'(...)`.
+    /// A formula evaluated on an interval overestimates, because each occurrence of the angle varies independently. Therefore each
+    /// derivative is also evaluated at the middle m and extended by the next derivative: `c(m + x) = c(m) + x c'(...)`.
     pub fn lift_over(&self, angles: Interval) -> Lift<Interval> {
         let (whole, middle) = (self.lift(angles), self.lift(Interval::from(angles.middle())));
         let away = angles - angles.middle();
@@ -78,7 +78,7 @@ impl Law {
         of_law!(self, _still => 0.0, law => law.rise(from, turn))
     }
 
-    /// [`Law::rise`], and [`Law::lift`] where it ends, with their common terms computed once.
+    /// Returns [`Law::rise`] and the [`Law::lift`] at the end of the turn, with common terms computed once.
     #[inline]
     pub fn climb(&self, from: f64, turn: f64) -> (f64, Lift) {
         match self {
@@ -87,13 +87,13 @@ impl Law {
         }
     }
 
-    /// A bound on `|d^3c/dtheta^3|` over `[start, end]`, m/rad^3; infinite where the law does not reach.
+    /// Bound on `|d^3c/dtheta^3|` over `[start, end]`, m/rad^3; infinite where the law is not defined.
     #[inline]
     pub fn third_bound(&self, start: f64, end: f64) -> f64 {
         of_law!(self, _still => 0.0, law => law.third_bound(start, end))
     }
 
-    /// A bound on `|d^4c/dtheta^4|` over `[start, end]`, m/rad^4; infinite where the law does not reach.
+    /// Bound on `|d^4c/dtheta^4|` over `[start, end]`, m/rad^4; infinite where the law is not defined.
     pub fn fourth_bound(&self, start: f64, end: f64) -> f64 {
         of_law!(self, _still => 0.0, law => law.fourth_bound(start, end))
     }
@@ -103,7 +103,7 @@ impl Law {
         of_law!(self, value => Jet::constant(*value), law => law.jet(angle))
     }
 
-    /// Sizes of the terms that the derivatives at `angle` are sums of; sizes of the derivatives themselves where nothing can cancel.
+    /// Sizes of the terms whose sums are the derivatives at `angle`; for laws without cancellation, the derivatives themselves.
     pub(super) fn terms(&self, angle: f64) -> Jet {
         match self {
             Self::Polynomial(polynomial) => polynomial.terms(angle),
@@ -111,8 +111,8 @@ impl Law {
         }
     }
 
-    /// Polar distance, m, and direction, rad, of the centre of the circle of the cam's contour that this law follows; `None` for another law, and
-    /// for a circle about the axis.
+    /// Polar distance, m, and direction, rad, of the centre of the contour's circle that this law follows; `None` for another law or for a
+    /// circle about the axis.
     pub fn circle_centre(&self) -> Option<[f64; 2]> {
         match *self {
             Self::Arc(Arc { distance, direction, .. }) | Self::OffsetArc(OffsetArc { distance, direction, .. }) => {
@@ -126,7 +126,7 @@ impl Law {
         }
     }
 
-    /// This law with every lift times a ratio.
+    /// Returns this law with every lift multiplied by a ratio.
     pub(super) fn times(&self, ratio: f64) -> Self {
         match self {
             Self::Dwell(value) => Self::Dwell(ratio * value),
@@ -149,9 +149,10 @@ impl Law {
         }
     }
 
-    /// This law a revolution on: its value at `angle + turn` is that of this one at `angle`, for `turn` of 2 pi or -2 pi.
+    /// Returns this law shifted by a revolution: its value at `angle + turn` equals this law's value at `angle`, for `turn` of 2 pi or -2
+    /// pi.
     ///
-    /// Where the two meet, at 0 and 2 pi, the distance from the law's start rounds to the same bits.
+    /// At 0 and 2 pi, where the two meet, the distance from the law's start rounds to the same bits.
     pub(super) fn turned(&self, turn: f64) -> Self {
         match self {
             Self::Dwell(value) => Self::Dwell(*value),

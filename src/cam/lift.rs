@@ -1,10 +1,10 @@
-//! Lift and derivatives at one angle: the result of every law.
+//! Lift and derivatives at one angle: the value of every law.
 
 use crate::interval::Interval;
 
 /// Lift and its derivatives with respect to the cam angle: m, m/rad, m/rad^2, m/rad^3.
 ///
-/// In doubles, or in intervals that hold them over a range of angles.
+/// The numbers are doubles, or intervals that contain the values over a range of angles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lift<N = f64> {
     /// c(theta), m.
@@ -25,7 +25,7 @@ impl<N: From<f64>> Lift<N> {
 }
 
 impl Lift<Interval> {
-    /// Hull of both.
+    /// Hull of both enclosures.
     pub(crate) fn hull(self, other: Self) -> Self {
         Self {
             value: self.value.hull(other.value),
@@ -37,7 +37,7 @@ impl Lift<Interval> {
 }
 
 impl Lift {
-    /// The lift `turn`, rad, further on, by the Taylor sum of these derivatives; the third derivative is kept constant.
+    /// Lift after a turn, rad, by the Taylor sum of these derivatives; the third derivative is kept constant.
     #[inline]
     pub fn after(&self, turn: f64) -> Self {
         let Self { value, slope, curvature, third } = *self;

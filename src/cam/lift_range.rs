@@ -1,4 +1,4 @@
-//! The lift over a range of angles, from segment to segment and on into the next turn.
+//! Enclosure of the lift over a range of angles that may cross segments and turns.
 
 use std::f64::consts::TAU;
 
@@ -6,11 +6,11 @@ use super::{Cam, Lift};
 use crate::interval::Interval;
 
 impl Cam {
-    /// Enclosure of lift, slope and curvature over a range of angles, rad, of any number of turns. It is everything where that is no range.
-    /// The curvature is everything where the range passes a corner at which the velocity jumps.
+    /// Enclosure of lift, slope and curvature over a range of angles, rad, in any turn. All are unbounded if the range has a full turn or
+    /// more. The curvature is unbounded if the range passes a corner at which the velocity jumps.
     ///
-    /// `sharp` are the segments that begin at such a corner. At any other corner the slopes of both sides are taken to be one: a model
-    /// means its lift law to continue the one before, and only rounding makes them differ.
+    /// `sharp` lists the segments that begin at such a corner. At any other corner the slopes of both sides count as equal: the model means
+    /// a continuous slope, and only rounding makes them differ.
     pub fn lift_over(&self, angles: Interval, sharp: &[usize]) -> Lift<Interval> {
         let everything = Interval::EVERYTHING;
         let mut over = Lift { value: everything, slope: everything, curvature: everything, third: everything };
@@ -19,7 +19,7 @@ impl Cam {
         }
         let turns = (angles.low() / TAU).floor();
         let mut before = Interval::TURN * turns;
-        // The turn's own rounding may put the least angle at the end of the turn before, and where one begins the other ends.
+        // Rounding of the turn may put the lowest angle at the end of the turn before.
         if (angles - before).low() <= 0.0 {
             before = Interval::TURN * (turns - 1.0);
         }

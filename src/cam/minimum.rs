@@ -1,4 +1,4 @@
-//! The least value round the cam of a lift, or of a force that its derivatives make.
+//! Least value over a turn of the lift, or of a linear combination of its derivatives, such as a force.
 
 use std::f64::consts::TAU;
 
@@ -6,25 +6,25 @@ use super::{Cam, Law, Lift, Segment, apart};
 use crate::bracket::{Width, halve};
 use crate::tolerance;
 
-/// Where on a cam something is least.
+/// Minimum of a quantity on a cam.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[doc(hidden)]
 pub struct Least {
-    /// Index of the segment: at a corner either side may have it.
+    /// Index of the segment; at a corner either side may be given.
     pub segment: usize,
     /// Cam angle, rad.
     pub angle: f64,
     /// Least value.
     pub value: f64,
-    /// Lift and derivatives there, of that segment.
+    /// Lift and derivatives of that segment at the angle.
     pub lift: Lift,
 }
 
-/// Angles examined in a turn, and at least in a segment; for a cosine, in each of its periods.
+/// Number of angles examined in a turn, and the least number in a segment or, for cosines, in each period.
 const OF_A_TURN: f64 = 1440.0;
 const OF_A_SEGMENT: usize = 8;
 
-/// The highest lift is where this is least.
+/// Weights whose combination is least at the highest lift.
 const UPSIDE_DOWN: [f64; 4] = [-1.0, 0.0, 0.0, 0.0];
 
 impl Cam {
@@ -39,7 +39,7 @@ impl Cam {
         Least { value: -least.value, ..least }
     }
 
-    /// The places that are as high as the highest but for rounding, each once, by rising angle; of a dwell its ends.
+    /// Highest places of the lift, equal up to rounding, each once, by rising angle; a dwell is given by its ends.
     pub fn tops(&self) -> Vec<Least> {
         let segments = self.segments().iter().enumerate();
         let all: Vec<Least> = segments.flat_map(|(index, segment)| places(index, segment, UPSIDE_DOWN)).collect();
@@ -56,11 +56,11 @@ impl Cam {
         tops
     }
 
-    /// Place where `a_0 c + a_1 c' + a_2 c'' + a_3 c'''` is least: from the sign of its derivative between neighbouring angles. The
-    /// shortest wave of the cam has eight of these.
+    /// Place where `a_0 c + a_1 c' + a_2 c'' + a_3 c'''` is least, from sign changes of its derivative between neighbouring angles. The
+    /// shortest wave of the cam has eight of these angles.
     pub fn least(&self, weights: [f64; 4]) -> Least {
         let segments = self.segments().iter().enumerate();
-        // A cam has a segment.
+        // Every cam has a segment.
         lowest(segments.flat_map(|(index, segment)| places(index, segment, weights))).unwrap_or(Least {
             segment: 0,
             angle: 0.0,
@@ -69,7 +69,7 @@ impl Cam {
         })
     }
 
-    /// Place where the same combination is least on a segment before an angle. The distances from that angle halve down to its rounding.
+    /// Place where this combination is least on a segment before an angle. The distances from that angle halve down to its rounding.
     pub fn least_before(&self, segment: usize, angle: f64, weights: [f64; 4]) -> Option<Least> {
         let of = &self.segments()[segment];
         let angles = halved(angle - of.start).map(|before| angle - before);
@@ -77,26 +77,26 @@ impl Cam {
     }
 }
 
-/// Distances from 0 that halve, from the largest down to where an angle is rounded.
+/// Distances from 0 that halve, from the largest down to the rounding of an angle.
 pub(crate) fn halved(largest: f64) -> impl Iterator<Item = f64> {
     const HALVINGS: i32 = 48;
     (0..HALVINGS).map(move |halving| largest * 0.5_f64.powi(halving))
 }
 
 impl Segment {
-    /// Its lowest and its highest lift, m.
+    /// Lowest and highest lift, m.
     pub fn extremes(&self) -> [f64; 2] {
         let least = |weights| lowest(places(0, self, weights)).map_or(f64::NAN, |place| place.value);
         [least([1.0, 0.0, 0.0, 0.0]), -least(UPSIDE_DOWN)]
     }
 }
 
-/// The first of those places that are lowest.
+/// First of the lowest places.
 fn lowest(places: impl IntoIterator<Item = Least>) -> Option<Least> {
     places.into_iter().reduce(|least, found| if found.value < least.value { found } else { least })
 }
 
-/// The ends of a segment, the lower first, and the places between them that are lower than their neighbours.
+/// Ends of a segment, the lower first, and its local minima.
 fn places(index: usize, segment: &Segment, weights: [f64; 4]) -> Vec<Least> {
     let Segment { start, end, law, .. } = segment;
     let waves = match law {
@@ -108,8 +108,7 @@ fn places(index: usize, segment: &Segment, weights: [f64; 4]) -> Vec<Least> {
     places_among(index, law, weights, (0..=count).map(|place| start + (end - start) * place as f64 / count as f64))
 }
 
-/// The first and the last of some rising angles, the lower first, and the places between them where the derivative changes from falling to
-/// rising.
+/// First and last of some rising angles, the lower first, and the local minima between them, where the derivative changes sign.
 fn places_among(index: usize, law: &Law, weights: [f64; 4], angles: impl Iterator<Item = f64>) -> Vec<Least> {
     let at = |angle: f64| {
         let lift = law.lift(angle);

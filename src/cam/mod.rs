@@ -1,8 +1,8 @@
 //! The cam: lift against angle in smooth segments, and the corners where they meet.
 //!
-//! A [`Cam`] is an ordered list of [`Segment`]s that cover `[0, 2 pi]`. Each segment's [`Law`] gives lift and
-//! derivatives with respect to the angle, and goes on smoothly past its ends, so that a corner has values on both
-//! sides and a map can be continued past it. Nothing here depends on time or the follower.
+//! A [`Cam`] is an ordered list of [`Segment`]s that cover `[0, 2 pi]`. Each segment's [`Law`] gives lift and derivatives with respect to
+//! the angle. A law continues smoothly past its ends, so that a corner has values on both sides and a map can be continued past it. This
+//! module does not depend on time or the follower.
 
 mod arc;
 mod arcs;
@@ -56,27 +56,27 @@ pub use polynomial::Polynomial;
 pub use sinusoid::Sinusoid;
 pub(crate) use table::build as spline_of_rows;
 
-/// A stretch of cam with one law.
+/// Part of a cam with one lift law.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Segment {
-    /// Where it starts, rad.
+    /// Angle of its start, rad.
     pub start: f64,
-    /// Where it ends, rad; above `start`.
+    /// Angle of its end, rad; above `start`.
     pub end: f64,
-    /// Its lift.
+    /// Lift law.
     pub law: Law,
-    /// Ranges of its lift and derivatives.
+    /// Ranges of its lift and derivatives, from samples and bounds.
     pub bounds: Bounds,
-    /// Enclosures of its lift and derivatives.
+    /// Enclosures of its lift and derivatives, in interval arithmetic.
     pub(crate) over: Lift<Interval>,
 }
 
 impl Segment {
-    /// Most pieces that the ranges of a segment are made from, and of all segments of a cam together.
+    /// Largest number of pieces from which the ranges of one segment are computed, and of all segments of a cam together.
     const MOST_PIECES: usize = 256;
     const MOST_PIECES_OF_ALL: usize = 1 << 20;
 
-    /// A law on `[start, end]`, one of `count` segments.
+    /// Segment of a law on `[start, end]`, one of `count` segments.
     fn new(start: f64, end: f64, law: Law, count: usize) -> Self {
         let most = Self::MOST_PIECES.min(Self::MOST_PIECES_OF_ALL / count.max(1)).max(1);
         let bounds = Bounds::new(&law, start, end, most);
@@ -84,7 +84,7 @@ impl Segment {
         Self { start, end, law, bounds, over }
     }
 
-    /// From where it starts to where it ends, rad.
+    /// Range of its angles, rad.
     pub(crate) fn angles(&self) -> Interval {
         Interval::new(self.start, self.end)
     }
@@ -100,17 +100,18 @@ document!(Segment as it {
 /// Prior knowledge of how segments meet.
 #[derive(Clone, Debug, PartialEq)]
 enum Joint {
-    /// None: the laws decide.
+    /// No prior knowledge: the laws decide.
     Free,
-    /// Pieces of a spline: derivatives below `degree` agree by construction, but for those of `breaks`, by angle, rad, and order.
+    /// Pieces of a spline: derivatives below `degree` agree by construction, except at `breaks` (angle, rad, and order of the derivative
+    /// that jumps).
     Spline { degree: usize, breaks: std::sync::Arc<[(f64, usize)]> },
-    /// Pieces whose corners are known: their angles, rad, rising, and the orders of the derivatives that jump. From `degree` on they are knots.
+    /// Pieces with known corners: angle, rad, rising, and order of the derivative that jumps. Jumps of order `degree` and above are knots.
     Listed { degree: usize, corners: std::sync::Arc<[(f64, usize)]> },
-    /// A cam on which a law goes on past its corner up to this angle, rad, where the next law has another lift.
+    /// Cam on which a law continues past its corner up to this angle, rad, where the next law has another lift.
     Continued { up_to: f64 },
 }
 
-/// An angle, rad, in `[0, 2 pi)`.
+/// Returns the angle, rad, turned into `[0, 2 pi)`.
 #[doc(hidden)]
 pub fn within_a_turn(angle: f64) -> f64 {
     let angle = angle.rem_euclid(TAU);
@@ -118,25 +119,25 @@ pub fn within_a_turn(angle: f64) -> f64 {
     if angle >= TAU { 0.0 } else { angle }
 }
 
-/// A law with the angle where it starts, rad, brought into `[0, 2 pi)`.
+/// Turns a law and its start, rad, into `[0, 2 pi)`.
 fn within_turn((start, law): (f64, Law)) -> (f64, Law) {
     let inside = within_a_turn(start);
     match ((start - inside) / TAU).round() * TAU {
-        // What starts where the turn ends has no length; what starts a rounding below 0 starts at 0.
+        // A law that starts at the end of the turn has no length; one that starts a rounding error below 0 starts at 0.
         _ if start == TAU => (start, law),
         turns if turns == 0.0 || inside == 0.0 && start < 0.0 => (inside, law),
         turns => (inside, law.turned(-turns)),
     }
 }
 
-/// The angle between two angles, rad, the shorter way round.
+/// Returns the angle between two angles, rad, the shorter way round.
 #[doc(hidden)]
 pub fn apart(one: f64, two: f64) -> f64 {
     let turned = (one - two).rem_euclid(TAU);
     turned.min(TAU - turned)
 }
 
-/// The angle plus the whole turns that bring it nearest to another angle, rad.
+/// Returns the angle plus the whole turns that bring it nearest to another angle, rad.
 #[doc(hidden)]
 pub fn nearest_turn(angle: f64, other: f64) -> f64 {
     angle - ((angle - other) / TAU).round() * TAU
@@ -151,8 +152,8 @@ pub struct Cam {
 }
 
 impl Cam {
-    /// From laws with the angles where they start, in order; each ends where the next starts, the last goes on to the
-    /// first one's start.
+    /// Builds a cam from laws with the angles where they start, in order. Each ends where the next starts; the last continues to the start
+    /// of the first.
     fn from_laws(mut laws: Vec<(f64, Law)>, joint: Joint) -> Self {
         let first = laws.first().map_or(0.0, |(start, _)| *start);
         if let Some((_, last)) = laws.last().filter(|_| first > 0.0) {
@@ -165,15 +166,15 @@ impl Cam {
         Self::joined(segments, joint)
     }
 
-    /// From segments that cover `[0, 2 pi]`.
+    /// Builds a cam from segments that cover `[0, 2 pi]`.
     fn joined(segments: Vec<Segment>, joint: Joint) -> Self {
         let mut cam = Self { segments: std::sync::Arc::new(segments), joint, corners: std::sync::Arc::default() };
-        // Searches ask for them at each guess, and those of a table are many.
+        // Computed once: searches need the corners at each guess, and a table has many.
         cam.corners = std::sync::Arc::new(cam.meetings());
         cam
     }
 
-    /// The cam behind a lever: every lift times its ratio.
+    /// Returns the cam behind a lever: every lift is multiplied by the ratio.
     #[doc(hidden)]
     pub fn levered(&self, ratio: f64) -> Self {
         if ratio == 1.0 {
@@ -184,7 +185,7 @@ impl Cam {
         Self::joined(self.segments.iter().map(segment).collect(), self.joint.clone())
     }
 
-    /// Whether a corner is only where two pieces of a spline meet: a knot, which is no feature of the cam that was measured.
+    /// Whether a corner is a knot: a point where two pieces of a spline meet, which is not a feature of the measured cam.
     pub fn is_knot(&self, corner: &Corner) -> bool {
         matches!(self.joint, Joint::Spline { degree, .. } | Joint::Listed { degree, .. } if corner.jump_order >= degree)
     }
@@ -198,12 +199,12 @@ impl Cam {
         &self.joint
     }
 
-    /// The index of the segment that ends where another begins, once round.
+    /// Index of the segment before another, cyclically.
     pub fn before(&self, segment: usize) -> usize {
         (segment + self.segments.len() - 1) % self.segments.len()
     }
 
-    /// The cam, or a complaint where its lift jumps; `place` names the model and the field that begins a segment.
+    /// Returns the cam, or an error if its lift jumps; `place` names the model and the field that begins a segment.
     fn without_steps<'a>(self, place: impl Fn(usize) -> (&'a Model, String)) -> Result<Self, ModelError> {
         let largest =
             self.segments.iter().map(|segment| segment.bounds.lift[0].abs().max(segment.bounds.lift[1].abs()));
@@ -226,14 +227,14 @@ impl Cam {
         &self.segments
     }
 
-    /// A lift that no point of the cam is above, m.
+    /// Upper bound on the lift, m.
     pub fn top(&self) -> f64 {
         self.segments.iter().fold(f64::NEG_INFINITY, |top, segment| top.max(segment.bounds.lift[1]))
     }
 
     /// The index of the segment that contains `angle`, rad, in `[0, 2 pi)`.
     pub fn segment_at(&self, angle: f64) -> usize {
-        // Where all are as long, as those of a table.
+        // The guess is right if all segments are equally long, as in a table.
         let guess = (angle / TAU * self.segments.len() as f64) as usize;
         if self.segments.get(guess).is_some_and(|segment| segment.start <= angle && angle < segment.end) {
             return guess;
@@ -241,7 +242,7 @@ impl Cam {
         self.segments.partition_point(|segment| segment.end <= angle).min(self.segments.len() - 1)
     }
 
-    /// Lift and derivatives at `angle`, rad, in `[0, 2 pi)`; at a corner, those after it.
+    /// Lift and derivatives at `angle`, rad, in `[0, 2 pi)`; at a corner, of the segment after it.
     pub fn lift(&self, angle: f64) -> Lift {
         self.segments[self.segment_at(angle)].law.lift(angle)
     }

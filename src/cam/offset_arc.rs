@@ -1,4 +1,4 @@
-//! A circle met by a line of motion that does not pass through the cam's axis: the law of an offset roller follower.
+//! Circle met by a line of motion beside the cam's axis: the law of an offset roller follower.
 
 use super::jet::Jet;
 use super::lift::Lift;
@@ -6,8 +6,8 @@ use super::series::{product, square_root};
 use crate::elementary;
 use crate::interval::{Interval, Number};
 
-/// A circle of radius `rho` whose centre lies at polar `(distance, direction)` from the cam's axis, met by a line parallel to the ray at angle
-/// theta, at a distance `e` to the left of it:
+/// Circle of radius `rho` whose centre lies at polar `(distance, direction)` from the cam's axis, met by a line parallel to the ray at
+/// angle theta, at a distance `e` to the left of it:
 ///
 /// ```text
 /// c = kappa cos(phi) + w,   w^2 = rho^2 - s^2,   s = kappa sin(phi) + e,   phi = theta - direction
@@ -31,7 +31,7 @@ impl OffsetArc {
         (-s + self.radius) * (s + self.radius)
     }
 
-    /// `c` and its first four derivatives at `angle`, rad; not a number where the line misses the circle.
+    /// Lift `c` and its first four derivatives at `angle`, rad; NaN if the line misses the circle.
     fn derivatives<N: Number>(&self, angle: N) -> [N; 5] {
         let (sin, cos) = (angle - self.direction).sin_cos();
         let (p, q) = (cos * self.distance, sin * self.distance);
@@ -52,7 +52,7 @@ impl OffsetArc {
         [p + w, w1 - q, w2 - p, q + w3, p + w4]
     }
 
-    /// Lift and derivatives at `angle`, rad; not a number where the line misses the circle.
+    /// Lift and derivatives at `angle`, rad; NaN if the line misses the circle.
     pub fn lift<N: Number>(&self, angle: N) -> Lift<N> {
         let [value, slope, curvature, third, _] = self.derivatives(angle);
         Lift { value, slope, curvature, third }

@@ -1,6 +1,6 @@
-//! Shape of the cam seen along its axis at angle 0, with the follower straight above the axis.
+//! Shape of the cam, viewed along its axis at angle 0, with the follower straight above the axis.
 //!
-//! The outline is the contour that the follower touches; for a lift alone it is the lift as a radius. At cam angle `theta` the ray
+//! The outline is the contour that the follower touches; if only a lift is given, the lift as a radius. At cam angle `theta` the ray
 //! `(sin theta, cos theta)` is on top; the cam turns to the left.
 
 use std::f64::consts::TAU;
@@ -11,38 +11,38 @@ use super::{Cam, Lift, Segment};
 use crate::elementary;
 use crate::model::{FollowerContact, Model};
 
-/// Samples of a whole turn.
+/// Number of samples of a whole turn.
 const SAMPLES: f64 = 1440.0;
-/// The cam as a shape; lengths in m from the axis, with the follower's direction up.
+/// Outline of the cam; lengths in m from the axis, with the follower's direction up.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Outline {
-    /// Radius added to the lift, m; used where the lift is not a distance from the axis.
+    /// Radius added to the lift, m; not 0 if the lift is not a distance from the axis.
     pub added: f64,
-    /// The outline, segment by segment.
+    /// Outline, segment by segment.
     pub pieces: Vec<OutlinePiece>,
-    /// Cam angle, rad, and place of each corner.
+    /// Cam angle, rad, and position of each corner.
     pub corners: Vec<(f64, [f64; 2])>,
-    /// The end of the follower at cam angle 0, as a line.
+    /// Shape of the follower's end at cam angle 0, as a line.
     pub follower: Vec<[f64; 2]>,
     /// Path of the centre of a roller; empty for other followers.
     pub pitch: Vec<[f64; 2]>,
 }
 
-/// A segment of the outline.
+/// Outline of one segment.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct OutlinePiece {
-    /// Points `[x, y]` in order.
+    /// Points `[x, y]`, in order.
     pub points: Vec<[f64; 2]>,
-    /// Centre of the segment's circle; `None` unless it is on a circle that is not about the axis.
+    /// Centre of the segment's circle; `None` for other curves and for circles about the axis.
     pub centre: Option<[f64; 2]>,
 }
 
-/// The point at a radius and a cam angle, rad.
+/// Point at a radius and a cam angle, rad.
 fn place(angle: f64, radius: f64) -> [f64; 2] {
     [radius * elementary::sin(angle), radius * elementary::cos(angle)]
 }
 
-/// The point at a distance along the ray of a cam angle, rad, and at one across it.
+/// Point at a distance along the ray of a cam angle, rad, and at a distance across it.
 fn beside(angle: f64, [along, across]: [f64; 2]) -> [f64; 2] {
     let [[x, y], [right, down]] = [place(angle, along), place(angle, across)];
     [x + down, y - right]
@@ -54,12 +54,12 @@ impl Outline {
         Self::new(&cam.levered(model.cam.lever_ratio().recip()), model.cam.contact())
     }
 
-    /// Computes the outline of a cam and the follower that touches it; with a lift alone, that of a point.
+    /// Computes the outline of a cam for its follower; without a contact, for a point.
     pub fn new(cam: &Cam, contact: Option<FollowerContact>) -> Self {
         let [low, high] = extent(cam.segments().iter().flat_map(|segment| segment.bounds.lift));
         let stroke = high - low;
         let (has_contour, contact) = (contact.is_some(), contact.unwrap_or_default());
-        // If a lift alone would turn the outline inside out, or make it a needle, add a radius.
+        // If the lift alone would turn the outline inside out, or make it a needle, a radius is added.
         let added = if low >= stroke || has_contour { 0.0 } else { 2.0 * stroke - low };
         let at = |angle: f64, lift: &Lift| match contact {
             FollowerContact::Point => place(angle, added + lift.value),
@@ -105,7 +105,7 @@ impl Outline {
     }
 }
 
-/// Lowest and highest of some values.
+/// Lowest and highest of the values.
 fn extent(values: impl IntoIterator<Item = f64>) -> [f64; 2] {
     values.into_iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| [low.min(value), high.max(value)])
 }

@@ -15,13 +15,13 @@ pub struct Polynomial {
 }
 
 impl Polynomial {
-    /// Polynomial from the angle where `u` is 0, rad, and `a_k`, k from 0; powers past the 31st are cut off.
+    /// Polynomial from the angle where `u` is 0, rad, and `a_k`, k from 0; powers above the 31st are dropped.
     pub fn new(start: f64, coefficients: &[f64]) -> Self {
         let kept = coefficients.len().min(MOST_COEFFICIENTS);
         Self { start, coefficients: coefficients[..kept].into() }
     }
 
-    /// A copy with this value and these derivatives added where `u` is 0.
+    /// Returns a copy with these derivatives, from order 0 on, added where `u` is 0.
     pub(super) fn plus(&self, derivatives: &[f64]) -> Self {
         let mut coefficients = self.coefficients.to_vec();
         let mut factorial = 1.0;
@@ -74,13 +74,13 @@ impl Polynomial {
         turn * difference
     }
 
-    /// A bound on `|c'''|` over `[start, end]`: its Taylor sum about the middle, every term at its largest.
+    /// Bound on `|c'''|` over `[start, end]`: its Taylor sum about the middle, with every term at its largest.
     #[inline]
     pub fn third_bound(&self, start: f64, end: f64) -> f64 {
         self.high_bound::<3>(start, end)
     }
 
-    /// A bound on `|c''''|` over `[start, end]`, likewise.
+    /// Bound on `|c''''|` over `[start, end]`, by the same sum.
     pub fn fourth_bound(&self, start: f64, end: f64) -> f64 {
         self.high_bound::<4>(start, end)
     }
@@ -88,7 +88,7 @@ impl Polynomial {
     #[inline]
     fn high_bound<const ORDER: usize>(&self, start: f64, end: f64) -> f64 {
         let Some(above) = self.coefficients.get(ORDER..) else { return 0.0 };
-        // From the start first: the piece of a spline is short, and far from 0.
+        // Measured from the start of the polynomial first: the piece of a spline is short and far from 0.
         let (low, high) = (start - self.start, end - self.start);
         let (middle, reach) = (0.5 * (low + high), 0.5 * (high - low));
         // The n-th derivative is sum (k+1)(k+2)...(k+n) a_{k+n} u^k
@@ -98,7 +98,7 @@ impl Polynomial {
             *slot = (1..=ORDER).map(|next| (k + next) as f64).product::<f64>() * a;
         }
         let largest = |terms: &[f64], u: f64| terms.iter().rev().fold(0.0, |sum, term| sum * u + term.abs());
-        // Of what rounding may move the sum by: terms far from the start may cancel.
+        // Size of the terms, which sets the rounding of the sum: terms far from the start may cancel.
         let terms = largest(&derivative[..count], middle.abs() + reach);
         shift(&mut derivative[..count], middle);
         largest(&derivative[..count], reach) + tolerance::JET_ROUNDING.value * terms
@@ -109,7 +109,7 @@ impl Polynomial {
         self.shifted(angle - self.start, |a| a)
     }
 
-    /// The sizes of the terms that each derivative is the sum of: what its rounding is relative to.
+    /// Sizes of the terms whose sum is each derivative; its rounding is relative to them.
     pub(super) fn terms(&self, angle: f64) -> Jet {
         self.shifted((angle - self.start).abs(), f64::abs)
     }
@@ -129,7 +129,7 @@ impl Polynomial {
     }
 }
 
-/// Coefficients about 0 to coefficients about `u`, by repeated division by `x - u`.
+/// Converts coefficients about 0 to coefficients about `u`, by repeated division by `x - u`.
 fn shift(coefficients: &mut [f64], u: f64) {
     let count = coefficients.len();
     for low in 0..count.saturating_sub(1) {

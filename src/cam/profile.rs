@@ -1,4 +1,4 @@
-//! The cam of each profile that a model may have; those that take some geometry have files of their own.
+//! Cam of each profile that a model may have; profiles that need some geometry have separate files.
 
 use std::f64::consts::{PI, TAU};
 
@@ -13,7 +13,7 @@ use crate::model::{
 };
 
 impl Cam {
-    /// The cam of a model, or the complaint about the field that makes it impossible.
+    /// Builds the cam of a model; the error names the field that makes it impossible.
     pub fn new(model: &Model) -> Result<Self, ModelError> {
         let cam = Self::of(model, &model.cam)?;
         let sizes =
@@ -49,7 +49,7 @@ impl Cam {
     }
 }
 
-/// The lift of the follower on a contour, or why there is none.
+/// Lift of the follower on a contour; the error names the reason why it cannot follow it.
 fn contour(model: &Model, profile: &ContourProfile) -> Result<Cam, ModelError> {
     let table = &profile.table;
     let reject = |polar: f64, why: Unfollowed| {
@@ -112,7 +112,7 @@ fn harmonic(profile: &HarmonicProfile) -> Cam {
     Cam::from_laws(vec![(0.0, Law::Harmonics(Harmonics::new(profile)))], Joint::Free)
 }
 
-/// A hump on `[0, pi]`, and the same again.
+/// Two equal humps, on `[0, pi]` and `[pi, 2 pi]`.
 fn rectified_sine(profile: &RectifiedSineProfile) -> Cam {
     let RectifiedSineProfile { offset, amplitude } = *profile;
     // offset + a sin u = offset + a u - a (u - sin u)
@@ -127,7 +127,7 @@ fn polynomial(model: &Model, segments: &[PolynomialSegment]) -> Result<Cam, Mode
         (start, Polynomial::new(start, &segment.coefficients))
     };
     let typed: Vec<(f64, Polynomial)> = segments.iter().map(law).collect();
-    // Where the first one starts past 0, the last one comes first as well.
+    // If the first segment starts after 0, the last one also covers the angles before it.
     let moved = segments.first().is_some_and(|segment| segment.start_deg > 0.0);
     let cam = |laws: &[(f64, Polynomial)]| {
         let laws = laws.iter().map(|(start, law)| (*start, Law::Polynomial(law.clone()))).collect();
@@ -139,18 +139,18 @@ fn polynomial(model: &Model, segments: &[PolynomialSegment]) -> Result<Cam, Mode
     joined(&typed).map_or(Ok(as_typed), |joined| cam(&joined))
 }
 
-/// Derivatives that polynomials are joined in, from the lift on.
+/// Number of derivatives, from the lift on, that are made to agree where polynomials meet.
 const JOINED: usize = 4;
 
-/// Polynomials with numbers typed to ten digits miss each other by the tenth digit where they meet. Each side then sees another cam: no two
-/// routes to a map agree, and there are corners that nobody meant. A mismatch of the lift or a derivative, up to [`tolerance::CAM_CLOSURE`]
-/// of the terms, is therefore removed and spread over the turn. `None` where it is rounding.
+/// Removes small mismatches of the lift and its derivatives where polynomials meet, and spreads them over the turn. Numbers typed to ten
+/// digits leave a mismatch in the tenth digit. It would make corners that nobody meant, and no two routes to a map would agree. A mismatch
+/// of up to [`tolerance::CAM_CLOSURE`] of the terms is removed; `None` if all are rounding.
 ///
 /// ```text
 /// c_i(u) + sum_n e_{n,i} u^n/n!,    e_{n,i+1} = sum_{k >= n} e_{k,i} h_i^{k-n}/(k-n)! - (c_{i+1}^(n)(0) - c_i^(n)(h_i))
 /// ```
 ///
-/// over spans `h_i`, from the highest n down; the turn closes in the n-th derivative by as much more of the next one everywhere.
+/// over spans `h_i`, from the highest n down. An equal addition to the derivative n + 1 everywhere closes the turn in the derivative n.
 fn joined(typed: &[(f64, Polynomial)]) -> Option<Vec<(f64, Polynomial)>> {
     let next = |index: usize| (index + 1) % typed.len();
     let span = |index: usize| typed[next(index)].0 - typed[index].0 + if next(index) == 0 { TAU } else { 0.0 };
@@ -162,7 +162,7 @@ fn joined(typed: &[(f64, Polynomial)]) -> Option<Vec<(f64, Polynomial)>> {
         let terms: [f64; JOINED + 1] = std::array::from_fn(|n| law.terms(end).0[n].max(after.terms(*after_start).0[n]));
         std::array::from_fn(|n| {
             let missed = plus.0[n] - minus.0[n];
-            // More is a corner.
+            // A larger mismatch is a corner.
             let missed = if missed.abs() <= tolerance::CAM_CLOSURE.value * terms[n] { missed } else { 0.0 };
             is_rounding &= missed.abs() <= tolerance::JET_ROUNDING.value * (terms[n] + terms[n + 1]);
             missed

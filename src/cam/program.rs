@@ -1,7 +1,7 @@
-//! The standard motions of cam design, each from rest to rest: the `program` law.
+//! Standard motions of cam design, each from rest to rest: the `program` law.
 //!
-//! Formulas are for a rise of 1 over a span of 1, `x` from 0 to 1; every motion is antisymmetric about its middle,
-//! `s(1 - x) = 1 - s(x)`. Norton, Cam Design and Manufacturing Handbook, has them and their peak values.
+//! Formulas are for a rise of 1 over a span of 1, `x` from 0 to 1; every motion is antisymmetric about its middle, `s(1 - x) = 1 - s(x)`.
+//! Norton, Cam Design and Manufacturing Handbook, gives them and their peak values.
 
 use std::f64::consts::{PI, TAU};
 
@@ -12,7 +12,7 @@ use super::{Cam, Joint};
 use crate::model::{Model, ModelError, MotionSegment, ProgramProfile, StandardMotion};
 use crate::tolerance;
 
-/// One motion placed on the cam: its start, rad, its span, rad, and its lift at start and end, m.
+/// Motion placed on the cam: its start, rad, its span, rad, and its lift at start and end, m.
 #[derive(Clone, Copy)]
 struct Placed {
     start: f64,
@@ -26,7 +26,7 @@ impl Placed {
         self.to - self.from
     }
 
-    /// The angle at the part `x` of the span.
+    /// Angle at the part `x` of the span.
     fn angle(&self, x: f64) -> f64 {
         self.start + x * self.span
     }
@@ -67,13 +67,13 @@ struct Wave {
 }
 
 impl Wave {
-    /// With acceleration `peak sin(frequency y)` and velocity `velocity` at y = 0: the integral of the integral.
+    /// Wave with acceleration `peak sin(frequency y)` and velocity `velocity` at y = 0: the double integral.
     fn of_acceleration(peak: f64, frequency: f64, velocity: f64) -> Self {
         Self { velocity, sine: peak / (frequency * frequency), cosine: 0.0, frequency }
     }
 }
 
-/// The laws of a motion with the angles where they start.
+/// Laws of a motion with the angles where they start.
 fn laws(motion: StandardMotion, placed: &Placed) -> Vec<(f64, Law)> {
     let start = placed.start;
     match motion {
@@ -102,7 +102,7 @@ fn laws(motion: StandardMotion, placed: &Placed) -> Vec<(f64, Law)> {
     }
 }
 
-/// `s = sum a_k x^k`, k from 3 to 7, and about the end, `s = 1 - sum a_k (1 - x)^k`: at rest to the last bit at both.
+/// Two halves, `s = sum a_k x^k`, k from 3 to 7, and about the end, `s = 1 - sum a_k (1 - x)^k`: at rest to the last bit at both ends.
 fn halves(placed: &Placed, [a3, a4, a5, a6, a7]: [f64; 5]) -> Vec<(f64, Law)> {
     vec![
         (placed.start, placed.polynomial(0.0, placed.from, &[0.0, 0.0, 0.0, a3, a4, a5, a6, a7])),
@@ -154,7 +154,7 @@ fn modified_sine(placed: &Placed) -> Vec<(f64, Law)> {
     ]
 }
 
-/// The cam of a `program` profile.
+/// Builds the cam of a `program` profile.
 pub(super) fn build(model: &Model, profile: &ProgramProfile) -> Result<Cam, ModelError> {
     let segments = &profile.segments;
     let last = format!("cam.segment[{}]", segments.len() - 1);
@@ -177,7 +177,7 @@ pub(super) fn build(model: &Model, profile: &ProgramProfile) -> Result<Cam, Mode
     for (index, segment) in segments.iter().enumerate() {
         turned += segment.span_deg;
         lifted += segment.rise;
-        // The last motion ends where the first began, to the last bit; a dwell stays where it is.
+        // The last motion ends exactly where the first began; a dwell keeps its lift.
         placed.to = match segment.motion {
             StandardMotion::Dwell => placed.from,
             _ if Some(index) == last_motion => profile.base,

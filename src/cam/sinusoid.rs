@@ -1,4 +1,4 @@
-//! A sine on a straight line: harmonic, cycloidal and modified motions, and the rectified sine.
+//! Sine on a straight line: harmonic, cycloidal and modified motions, and the rectified sine.
 
 use super::jet::Jet;
 use super::lift::Lift;
@@ -8,15 +8,15 @@ use crate::tolerance;
 
 /// `c = value + tilt u + sine (phi - sin phi) + cosine (1 - cos phi)`, `phi = frequency u`, `u = theta - start`.
 ///
-/// Written with the remainders of sine and cosine near phi = 0, so that motions that start there at rest keep their digits.
+/// Remainders of sine and cosine near phi = 0 keep the digits of motions that start there at rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[doc(hidden)]
 pub struct Sinusoid {
-    /// Where `u` is 0, rad; need not lie on the segment.
+    /// Angle where `u` is 0, rad; may lie outside the segment.
     pub start: f64,
-    /// Lift there, m.
+    /// Lift at `start`, m.
     pub value: f64,
-    /// Slope there, m/rad.
+    /// Slope at `start`, m/rad.
     pub tilt: f64,
     /// Coefficient of `phi - sin phi`, m.
     pub sine: f64,
@@ -69,7 +69,7 @@ impl Sinusoid {
         tilt * turn + sine * of_sine + cosine * of_cosine
     }
 
-    /// A bound on `|c'''|` over `[start, end]`: `w^3 |(A, B)|`, or from the middle by `w^4 |(A, B)|` where that is less.
+    /// Bound on `|c'''|` over `[start, end]`: `w^3 |(A, B)|`, or from the middle by `w^4 |(A, B)|` if that is less.
     #[inline]
     pub fn third_bound(&self, start: f64, end: f64) -> f64 {
         let frequency = self.frequency.abs();
@@ -89,7 +89,7 @@ impl Sinusoid {
     pub fn jet(&self, angle: f64) -> Jet {
         let Self { sine, cosine, frequency, .. } = *self;
         let (sin, cos, _) = Self::circular(frequency * (angle - self.start));
-        // -A sin phi - B cos phi; order 0 and 1 have the straight line besides, which `lift` adds without cancellation.
+        // -A sin phi - B cos phi. Orders 0 and 1 also include the straight line, which `lift` adds without cancellation.
         let mut jet = Jet::of_sinusoid(cosine * sin - sine * cos, -(sine * sin + cosine * cos), frequency);
         let lift = self.lift(angle);
         (jet.0[0], jet.0[1]) = (lift.value, lift.slope);
@@ -97,7 +97,7 @@ impl Sinusoid {
     }
 }
 
-/// `d - sin d`: by its series where the difference would cancel.
+/// Returns `d - sin d`, by its series where the difference would cancel.
 #[inline]
 fn sine_deficit(delta: f64, sin: f64) -> f64 {
     if delta.abs() > 1.0 {

@@ -1,13 +1,13 @@
-//! Periodic quintic smoothing splines: near the rows of a table, and as smooth as that allows.
+//! Periodic quintic smoothing splines, which pass near the rows of a table and are as smooth as that allows.
 //!
-//! Among all periodic curves the spline minimises `integral of c'''^2 + weight sum of (c(row) - lift)^2`. Its unknowns are lift f,
-//! slope s and curvature k at every knot. The integral over a piece is a quadratic form in those at its ends, and setting the derivatives
-//! to zero gives a positive definite system of neighbours. No other condition is set at a knot: derivatives up to the fourth are
-//! continuous there by themselves, unless a row lies between it and the next knot.
+//! Among all periodic curves the spline minimises `integral of c'''^2 + weight sum of (c(row) - lift)^2`. Its unknowns are lift f, slope s
+//! and curvature k at every knot. The integral over a piece is a quadratic form in the values at its ends. Setting the derivatives to zero
+//! gives a positive definite system that couples neighbours. No other condition is set at a knot: derivatives up to the fourth are
+//! continuous there, unless a row lies between it and the next knot.
 //!
-//! A corner is a knot with a separate curvature on either side, for which the integral is least: there the third derivative is
-//! 0 on both sides. A dwell is one knot with a width, where only the lift is unknown. Its slope is 0, and so is its curvature,
-//! except at an end that is a corner.
+//! A corner is a knot with a separate curvature on either side, for which the integral is least: there the third derivative is 0 on both
+//! sides. A dwell is a knot with a width, where only the lift is unknown. Its slope is 0, and so is its curvature, except at an end that is
+//! a corner.
 
 use std::f64::consts::TAU;
 
@@ -23,14 +23,14 @@ use crate::tolerance;
 /// Corners and dwells of a cam, rad.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Features {
-    /// Where the second derivative may jump, in `[0, 2 pi)`.
+    /// Angles where the second derivative may jump, in `[0, 2 pi)`.
     pub corners: Vec<f64>,
-    /// Intervals of constant lift, from and to; they begin in `[0, 2 pi)`, by rising angle.
+    /// Ranges of constant lift, start and end; they begin in `[0, 2 pi)`, by rising angle.
     pub dwells: Vec<[f64; 2]>,
 }
 
 impl Features {
-    /// A copy with one corner turned by an angle, rad, and the dwells that end there.
+    /// Returns a copy with one corner turned by an angle, rad, together with dwell ends at that corner.
     pub fn moved(&self, corner: usize, by: f64) -> Self {
         let mut moved = self.clone();
         let from = self.corners[corner];
@@ -51,13 +51,13 @@ impl Features {
     }
 }
 
-/// A knot, or a dwell.
+/// Knot or dwell.
 #[derive(Clone, Copy, Debug)]
 struct Knot {
     start: f64,
-    /// Above `start` for a dwell.
+    /// End, rad; above `start` for a dwell.
     end: f64,
-    /// Whether the curvature is free on the side before, and after.
+    /// Whether the curvature is free on the side before, and on the side after.
     corner: [bool; 2],
 }
 
@@ -71,57 +71,57 @@ impl Knot {
     }
 }
 
-/// Place of a row: the knot before it, and the part of the piece behind that knot at which it lies; none for a row at the knot.
+/// Place of a row: the knot before it, and its position in the piece after that knot, from 0 to 1; `None` for a row at the knot.
 type Place = (usize, Option<f64>);
 
-/// Knots and rows, before any lifts.
+/// Knots and places of rows, independent of the lifts.
 #[derive(Clone, Debug)]
 pub(super) struct Layout {
     knots: Vec<Knot>,
     places: Vec<Place>,
-    /// The mean gap between two knots, rad: widths are in units of it, so that their powers stay in range.
+    /// Mean gap between two knots, rad. Widths are in this unit, so that their powers stay in range.
     unit: f64,
 }
 
 /// Functional that a smoothing spline minimises, in radians, for programs that compute it by other means.
 #[derive(Clone, Debug, Default, Serialize)]
 pub(crate) struct Fitted {
-    /// Weight of the sum of squares beside the integral, 1/rad^5.
+    /// Weight of the sum of squares relative to the integral, 1/rad^5.
     weight: f64,
-    /// Where pieces meet, but for dwells.
+    /// Angles where pieces meet, without dwells.
     knots_rad: Vec<f64>,
     corners_rad: Vec<f64>,
     /// Ends of each dwell.
     dwells_rad: Vec<[f64; 2]>,
 }
 
-/// A smoothing spline.
+/// Smoothing spline.
 #[derive(Clone, Debug)]
 pub(super) struct Smoothed {
     /// Lift, slope and curvature at both ends of each piece, by powers of the unit.
     ends: Vec<Vector6<f64>>,
-    /// Lift from which theirs are measured.
+    /// Lift that was subtracted from all lifts.
     base: f64,
-    /// At each row, the lift there less that of the spline.
+    /// Lift of each row less the lift of the spline there.
     pub residuals: Vec<f64>,
     /// Minimum of the integral plus the weighted sum.
     pub least: f64,
-    /// The sum of squared residuals, of rows outside of dwells.
+    /// Sum of squared residuals of rows outside dwells.
     pub squares: f64,
-    /// Number of these rows.
+    /// Number of rows outside dwells.
     pub moving: f64,
-    /// Degrees of freedom taken from these rows: the trace of the matrix that makes spline lifts of lifts. It equals the number of rows
-    /// where the spline goes through them.
+    /// Degrees of freedom taken from these rows: the trace of the matrix that maps lifts to spline lifts. It equals the number of rows if
+    /// the spline passes through them.
     pub freedom: f64,
 }
 
-/// Eliminated curvatures of a piece, at its start and at its end: the column of each over its pivot, and the pivot.
+/// Eliminated curvatures of a piece at its start and its end: for each, its column divided by its pivot, and the pivot.
 type Freed = [Option<(Vector6<f64>, f64)>; 2];
 
 /// Laws with the angles where they start.
 pub(super) type Laws = Vec<(f64, Law)>;
 
-/// `integral of c'''^2` over a piece of width 1 as a form in f, s, k at its start and at its end.
+/// Quadratic form of `integral of c'''^2` over a piece of width 1, in f, s, k at its start and at its end.
 #[rustfmt::skip]
 const ENERGY: [[f64; 6]; 6] = [
     [720.0, 360.0, 60.0, -720.0, 360.0, -60.0],
@@ -132,7 +132,7 @@ const ENERGY: [[f64; 6]; 6] = [
     [-60.0, -24.0, -3.0, 60.0, -36.0, 9.0],
 ];
 
-/// The quintic with f, s, k at the ends of a piece of width 1, in powers of what is covered of it: one column each.
+/// Quintic with f, s, k at the ends of a piece of width 1, as powers of the position in the piece: one column for each value.
 #[rustfmt::skip]
 const HERMITE: [[f64; 6]; 6] = [
     [1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
@@ -143,14 +143,14 @@ const HERMITE: [[f64; 6]; 6] = [
     [-6.0, -3.0, -0.5, 6.0, -3.0, 0.5],
 ];
 
-/// The curvature among the numbers at a piece's start, and at its end.
+/// Indices of the curvature at a piece's start and at its end.
 const CURVATURES: [usize; 2] = [2, 5];
 
 impl Layout {
-    /// More knots would be closer than any feature of a motion, and cost the digits of its slow parts.
+    /// Largest number of knots: more would be closer than any feature of a motion, and lose digits in its slow parts.
     const MOST_KNOTS: usize = 1000;
 
-    /// Layout for rows at rising angles in `[0, 2 pi)`, rad; none where fewer than three knots are left.
+    /// Builds the layout for rows at rising angles in `[0, 2 pi)`, rad; `None` if fewer than three knots remain.
     pub fn new(angles: &[f64], features: &Features) -> Option<Self> {
         let every = angles.len().div_ceil(Self::MOST_KNOTS);
         let gap = TAU * every as f64 / angles.len() as f64;
@@ -167,7 +167,7 @@ impl Layout {
                 knots.push(Knot { start: *corner, end: *corner, corner: [true; 2] });
             }
         }
-        // A knot close to another would make a piece too short for its powers.
+        // A knot close to another one would make a piece too short for its powers.
         let features = knots.clone();
         let is_free = |angle: &&f64| !features.iter().any(|knot| holds(knot, **angle, 0.5 * gap));
         knots.extend(angles.iter().step_by(every).filter(is_free).map(|angle| Knot {
@@ -193,7 +193,7 @@ impl Layout {
         Some(layout)
     }
 
-    /// The functional in radians, for a weight in units of the mean gap.
+    /// Returns the functional in radians, for a weight in units of the mean gap.
     pub fn fitted(&self, weight: f64) -> Fitted {
         let mut fitted = Fitted { weight: weight / self.unit.powi(5), ..Fitted::default() };
         for knot in &self.knots {
@@ -212,19 +212,19 @@ impl Layout {
         (knot + 1) % self.knots.len()
     }
 
-    /// The width of the piece behind a knot, rad.
+    /// Width of the piece after a knot, rad.
     fn width(&self, knot: usize) -> f64 {
         let turn = if knot + 1 == self.knots.len() { TAU } else { 0.0 };
         self.knots[self.after(knot)].start + turn - self.knots[knot].end
     }
 
-    /// The spline with this weight, in units of the mean gap, near lifts; none where rounding leaves none.
+    /// Computes the spline near the lifts for a weight in units of the mean gap; `None` if rounding destroys the solution.
     pub fn smoothed(&self, lifts: &[f64], weight: f64) -> Option<Smoothed> {
         let count = self.knots.len();
         let base = lifts.iter().sum::<f64>() / lifts.len() as f64;
         let mut forms: Vec<(Matrix6<f64>, Vector6<f64>)> =
             (0..count).map(|knot| (self.energy(knot), Vector6::zeros())).collect();
-        // Rows at a knot are counted with the piece behind it.
+        // Rows at a knot are counted with the piece after it.
         let seen = |(knot, part): &Place| {
             let width = self.width(*knot) / self.unit;
             (*knot, basis(width, part.unwrap_or(0.0)))
@@ -234,7 +234,7 @@ impl Layout {
             forms[knot].0 += weight * basis * basis.transpose();
             forms[knot].1 += weight * (lift - base) * basis;
         }
-        // What takes a free curvature out of each form, for the other way later.
+        // Factors by which free curvatures are eliminated, kept for the back substitution.
         let mut freed: Vec<Freed> = vec![[None; 2]; count];
         let mut system = Cyclic::<3>::new(count);
         for (knot, (form, right)) in forms.iter_mut().enumerate() {
@@ -244,7 +244,7 @@ impl Layout {
                     *form -= row * row.transpose() / pivot;
                     *right -= row * known / pivot;
                     freed[knot][side] = Some((row / pivot, pivot));
-                    // The rest of what the curvature is, which depends on lifts, is kept where it stood.
+                    // The part of the curvature that depends on the lifts is kept in its place.
                     right[index] = known / pivot;
                 }
             }
@@ -269,7 +269,7 @@ impl Layout {
         for knot in 0..count {
             let (one, two) = (solution[knot], solution[self.after(knot)]);
             let mut end = Vector6::new(one[0], one[1], one[2], two[0], two[1], two[2]);
-            // In the reverse order of taking out.
+            // Back substitution, in the reverse order of elimination.
             for side in [1, 0] {
                 if let Some((row, _)) = freed[knot][side] {
                     let index = CURVATURES[side];
@@ -285,9 +285,9 @@ impl Layout {
             let (knot, basis) = seen(place);
             let residual = lift - base - basis.dot(&ends[knot]);
             residuals.push(residual);
-            // Where its derivatives are 0 the integral is weight sum of residuals times lifts of the spline.
+            // At the minimum the functional equals weight times the sum of residual times lift, relative to the base.
             least += weight * residual * (lift - base);
-            // A dwell is one number to all of its rows, whatever the weight.
+            // A dwell has one lift for all of its rows, whatever the weight.
             if place.1.is_none() && self.knots[knot].is_dwell() {
                 continue;
             }
@@ -305,7 +305,8 @@ impl Layout {
         })
     }
 
-    /// Shift of the spline at the place of a lift of weight 1: `b^T M^-1 b`, plus the contribution of the eliminated curvatures.
+    /// Shift of the spline at a row per unit shift of its lift, divided by the weight: `b^T M^-1 b`, plus the contribution of the
+    /// eliminated curvatures.
     fn influence(&self, knot: usize, basis: &Vector6<f64>, freed: &Freed, inverse: &[[Matrix3<f64>; 2]]) -> f64 {
         let [here, beyond] = inverse[knot];
         let there = inverse[self.after(knot)][0];
@@ -322,19 +323,19 @@ impl Layout {
         of_freed + one.dot(&(here * one)) + 2.0 * one.dot(&(beyond * two)) + two.dot(&(there * two))
     }
 
-    /// Whether a piece has a curvature of its own at its start (side 0) or its end (side 1).
+    /// Whether a piece has a separate curvature at its start (side 0) or its end (side 1).
     fn is_free(&self, piece: usize, side: usize) -> bool {
         if side == 0 { self.knots[piece].corner[1] } else { self.knots[self.after(piece)].corner[0] }
     }
 
-    /// The form of a piece, in units of the mean gap.
+    /// Quadratic form of a piece, in units of the mean gap.
     fn energy(&self, piece: usize) -> Matrix6<f64> {
         let width = self.width(piece) / self.unit;
         let powers: [f64; 6] = std::array::from_fn(|index| width.powi(index as i32 % 3));
         Matrix6::from_fn(|row, column| ENERGY[row][column] * powers[row] * powers[column] / width.powi(5))
     }
 
-    /// Sets the equations of the values that are not unknown: they are 0.
+    /// Sets the equations of values that are fixed at 0.
     fn hold(&self, system: &mut Cyclic<3>) {
         for (index, knot) in self.knots.iter().enumerate() {
             for unknown in 1..3 {
@@ -353,7 +354,7 @@ impl Layout {
         }
     }
 
-    /// The laws of a spline with the angles where they start, by rising angle in `[0, 2 pi)`; and where a derivative below the fifth
+    /// Laws of a spline with the angles where they start, by rising angle in `[0, 2 pi)`; and the angles where a derivative below the fifth
     /// jumps, with its order.
     pub fn laws(&self, spline: &Smoothed) -> (Laws, Vec<(f64, usize)>) {
         let (mut laws, mut breaks) = (Vec::new(), Vec::new());
@@ -368,7 +369,7 @@ impl Layout {
             }
             let start = within(knot.end);
             let (width, next) = (self.width(index), self.knots[self.after(index)]);
-            // About where it meets a dwell, so that it comes to rest there to the last bit.
+            // Expanded about the start of a dwell that follows, so that the lift is constant there to the last bit.
             let (from, sign, ends) = match next.is_dwell() {
                 true => (if next.start > start { next.start } else { next.start + TAU }, -1.0, mirrored(ends)),
                 false => (start, 1.0, *ends),
@@ -380,10 +381,10 @@ impl Layout {
         (laws, breaks)
     }
 
-    /// The coefficients of a piece in powers of the angle from its start; of its mirror image, of negative width, from its end.
+    /// Coefficients of a piece in powers of the angle from its start; with a negative width, those of its mirror image from its end.
     fn powers(&self, ends: &Vector6<f64>, width: f64, base: f64) -> [f64; 6] {
         let scale = width.abs() / self.unit;
-        // Lifts as they differ, so that nothing cancels that is large: the columns of f in HERMITE are each other's negative.
+        // Uses the difference of the lifts, so that no large terms cancel: the columns of f in HERMITE are each other's negative.
         let parts = [
             0.0,
             ends[1] * scale,
@@ -404,7 +405,7 @@ fn mirrored(ends: &Vector6<f64>) -> Vector6<f64> {
     Vector6::new(ends[3], -ends[4], ends[5], ends[0], -ends[1], ends[2])
 }
 
-/// Coefficients of f, s, k at the ends of a piece in the lift at a part of it.
+/// Coefficients of f, s, k at the ends of a piece in the lift at a position in the piece.
 fn basis(width: f64, part: f64) -> Vector6<f64> {
     Vector6::from_fn(|column, _| {
         let polynomial = (0..6).rev().fold(0.0, |sum, power| sum * part + HERMITE[power][column]);

@@ -1,8 +1,8 @@
 //! Periodic interpolating splines through a table of lifts.
 //!
-//! Among all periodic curves through the rows the cubic spline minimises `integral of c''^2`, the quintic
-//! `integral of c'''^2`. The unknowns are the values that a piece needs at its ends besides the lifts: slopes s, and for the quintic
-//! curvatures k. Setting the integral's derivatives to zero gives a positive definite system of neighbours.
+//! Among all periodic curves through the rows the cubic spline minimises `integral of c''^2`, the quintic spline `integral of c'''^2`. The
+//! unknowns are the slopes s at the rows and, for the quintic, the curvatures k. Setting the integral's derivatives to zero gives a
+//! positive definite system that couples neighbours.
 
 use std::f64::consts::TAU;
 
@@ -14,17 +14,17 @@ use super::polynomial::Polynomial;
 use super::{Cam, Joint, fit};
 use crate::model::{Model, ModelError, Spline, TableProfile};
 
-/// The stretch from one row to the next.
+/// Range from one row to the next.
 #[derive(Clone, Copy)]
 struct Gap {
     start: f64,
     value: f64,
-    /// In units of the mean gap, so that its powers stay in range.
+    /// Width in units of the mean gap, so that its powers stay in range.
     width: f64,
     slope: f64,
 }
 
-/// The spline through the rows of a table, or near them.
+/// Builds the spline through the rows of a table, or near them.
 pub(crate) fn build(model: &Model, profile: &TableProfile) -> Result<Cam, ModelError> {
     let rows = &profile.rows;
     let unit = TAU / rows.len() as f64;
@@ -76,7 +76,7 @@ fn cubic(gaps: &[Gap]) -> Option<Vec<[f64; 6]>> {
     let slopes = system.solve()?;
     let piece = |(index, gap): (usize, &Gap)| {
         let (s0, s1) = (slopes[index].x, slopes[(index + 1) % count].x);
-        // Slopes as they differ from the mean one: nothing cancels where the lift is steep.
+        // Differences from the mean slope: no cancellation where the lift is steep.
         let (e0, e1) = (s0 - gap.slope, s1 - gap.slope);
         [gap.value, s0, -(2.0 * e0 + e1) / gap.width, (e0 + e1) / gap.width.powi(2), 0.0, 0.0]
     };
@@ -91,8 +91,8 @@ fn quintic(gaps: &[Gap]) -> Option<Vec<[f64; 6]>> {
         let after = (index + 1) % count;
         let (h, h2, h3) = (*width, width.powi(2), width.powi(3));
         // At a piece's start c''' = (60 d - 36 s0 - 24 s1)/h^2 + (3 k1 - 9 k0)/h,
-        // c'''' = (-360 d + 192 s0 + 168 s1)/h^3 + (36 k0 - 24 k1)/h^2; at its end the mirror image, d and s with the
-        // sign that the order gives them. The rows for s ask c'''' to agree, those for k ask c''' to.
+        // c'''' = (-360 d + 192 s0 + 168 s1)/h^3 + (36 k0 - 24 k1)/h^2. At its end the mirror image applies, with the signs of d and s that
+        // the order gives. The equations for s make c'''' continuous, those for k make c''' continuous.
         system.diagonal[index] += Matrix2::new(192.0 / h3, 36.0 / h2, 36.0 / h2, 9.0 / h);
         system.diagonal[after] += Matrix2::new(192.0 / h3, -36.0 / h2, -36.0 / h2, 9.0 / h);
         system.next[index] = Matrix2::new(168.0 / h3, -24.0 / h2, 24.0 / h2, -3.0 / h);
@@ -103,7 +103,7 @@ fn quintic(gaps: &[Gap]) -> Option<Vec<[f64; 6]>> {
     let piece = |(index, gap): (usize, &Gap)| {
         let (left, right) = (ends[index], ends[(index + 1) % count]);
         let h = gap.width;
-        // Slopes as they differ from the mean one, over h; curvatures.
+        // Differences from the mean slope, divided by h; curvatures.
         let (e0, e1) = ((left.x - gap.slope) / h, (right.x - gap.slope) / h);
         let (k0, k1) = (left.y, right.y);
         [

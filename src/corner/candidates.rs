@@ -1,4 +1,4 @@
-//! Corner impacts of orbits with several impacts: where the branches of a range of speeds pass a corner.
+//! Corner impacts of orbits with several impacts, found where branches of orbits pass a corner.
 //!
 //! Branches are found by searches at the speeds of a grid. These may miss orbits, so the list may be incomplete.
 //! The list does not depend on the range: a part of a range gives that part of the list.
@@ -15,10 +15,10 @@ use crate::orbit::{Course, Impact, Search};
 use crate::progress::Watch;
 use crate::tolerance;
 
-/// Most impacts in a revolution of the orbits examined: with more a follower is about to chatter.
+/// Largest number of impacts per revolution of the orbits examined; with more, a follower is about to chatter.
 pub const MOST_IMPACTS: usize = 12;
-/// How near on the cam to the impact on the corner another one may be, rad: the estimators continue the cam past the corner by
-/// less than half of that, and try reaches down to twice the least by halving.
+/// Smallest distance of another impact from the impact on the corner, rad. The estimators continue the cam past the corner by less than
+/// half of it, and halve that reach down to twice the least.
 pub const NEAREST_OTHER: f64 = 4.0 * tolerance::LEAST_REACH.value;
 
 /// Record of the search: its speeds, branches and first failure.
@@ -28,11 +28,11 @@ pub struct SearchedBranches {
     pub speeds: Vec<f64>,
     /// Branches of orbits that were found there.
     pub branches: usize,
-    /// The first search or branch that ended with an error, if any did.
+    /// First search or branch that ended with an error, if any did.
     pub failed: Option<String>,
 }
 
-/// The corner impacts over a range of speeds of orbits of several impacts in `revolutions`.
+/// Finds corner impacts of orbits with several impacts in `revolutions`, over a range of speeds.
 pub fn candidates(
     model: &Model,
     cam: &Cam,
@@ -52,12 +52,12 @@ pub fn candidates(
     }
 }
 
-/// The corner impact that a branch passes, if it is one of several impacts.
+/// Corner impact that a branch passes; `None` for an orbit with one impact.
 fn candidate(cam: &Cam, point: &BranchPoint) -> Option<Candidate> {
     on_branch(cam, point).filter(|candidate| candidate.cycle.impacts.len() > 1)
 }
 
-/// The corner impact that a branch passes, if its follower is not about to chatter.
+/// Corner impact that a branch passes; `None` if its follower is about to chatter.
 pub(crate) fn on_branch(cam: &Cam, point: &BranchPoint) -> Option<Candidate> {
     let special = point.special?;
     let (SpecialKind::Corner { impact, segment, jump_order }, Course::Impacts(cycle)) =
@@ -72,13 +72,13 @@ pub(crate) fn on_branch(cam: &Cam, point: &BranchPoint) -> Option<Candidate> {
     }
     let corner = *cam.corners().iter().find(|corner| corner.segment == segment)?;
     let old = &cycle.impacts[impact];
-    // Where the velocity jumps, both sides have an orbit on the corner, at speeds of their own: on the segment that ends there, and on the
-    // one that begins.
+    // At a corner of velocity each side has an orbit with an impact on the corner, at its own speed: one on the segment before it, one on
+    // the segment after it.
     let on = &cam.segments()[old.segment];
     let is_before = old.cam_angle > on.start.midpoint(on.end);
     let side = if jump_order == 1 && is_before { Side::Minus } else { Side::Plus };
     let on_corner = at_corner(cam, &corner, side, 0, old.velocity_before);
-    // The angle may be named by the revolution before or after.
+    // The angle may belong to the revolution before or after.
     let turns = ((old.cam_angle - on_corner.cam_angle) / TAU).round() as i64;
     let revolution = old.revolution + turns;
     let mut cycle = cycle.clone();

@@ -1,4 +1,4 @@
-//! Whether a cycle that closes with an impact on a corner is an orbit of the cam as it is.
+//! Test whether a closed cycle with an impact on a corner is an orbit of the actual cam.
 
 use std::f64::consts::TAU;
 
@@ -11,7 +11,7 @@ use crate::orbit::{Cycle, Departure};
 use crate::simulate::Machine;
 use crate::tolerance;
 
-/// A cycle that closes with an impact on a corner, of the cam with its laws continued.
+/// Closed cycle with an impact on a corner, of the cam with its laws continued.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Candidate {
     pub cycle: Cycle,
@@ -24,14 +24,14 @@ pub struct Candidate {
     pub period: f64,
     /// Bracket of T*, s.
     pub bracket: [f64; 2],
-    /// Residual of the equation that it is a root of: see [`CornerImpact::residual`].
+    /// Residual of the equation for T*: see [`CornerImpact::residual`].
     pub residual: f64,
-    /// How it was found.
+    /// Method that found it.
     pub way: Way,
 }
 
 impl Candidate {
-    /// Returns the corner impact if the cycle is an orbit of the cam as it is; otherwise the reason why not.
+    /// Returns the corner impact if the cycle is an orbit of the actual cam, or the reason why it is none.
     pub fn confirmed(self, model: &Model, cam: &Cam) -> Result<CornerImpact, String> {
         let Self { cycle, impact, corner, side, period, bracket, residual, way } = self;
         let angular_velocity = TAU / period;
@@ -51,7 +51,7 @@ impl Candidate {
                 ));
             }
         }
-        // Where the velocity jumps, an impact on one side may press the follower into the other.
+        // At a corner of velocity, an impact on one side may press the follower into the other side.
         let [before, after] = [corner.minus, corner.plus].map(|lift| angular_velocity * lift.slope);
         if corner.jump_order == 1 && !(velocity_before < before.min(after)) {
             return Err("the flight would reach the corner from inside the cam on its other side".into());
@@ -96,7 +96,7 @@ impl Candidate {
     }
 }
 
-/// How the motion of the cam as it is leaves a cycle, in words.
+/// Describes how the motion of the actual cam leaves a cycle.
 fn words(cycle: &Cycle, departure: Departure) -> String {
     let angle = |impact: usize| cycle.impacts[impact].cam_angle.to_degrees();
     match departure {

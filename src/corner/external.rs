@@ -1,6 +1,6 @@
-//! The orbit and its map by programs outside this one: `symbolic` (the derived expressions, to 30 digits) and `scipy` (an
-//! integration of its own). Both read only the numbers of the model file and locate the corner impact themselves. For a smoothing
-//! spline they compute a spline of their own, with the weight and the knots chosen here.
+//! Orbit and map by programs outside this one: `symbolic` (the derived expressions, to 30 digits) and `scipy` (its own integration). Both
+//! read only the numbers of the model file and locate the corner impact themselves. For a smoothing spline they compute their own spline,
+//! with the weight and the knots chosen here.
 
 use nalgebra::{Matrix2, RowVector2, Vector2};
 use serde::Deserialize;
@@ -11,14 +11,14 @@ use crate::cam;
 use crate::model::{Model, ModelError, Study};
 use crate::python::{self, PythonError};
 
-/// A route outside this program: its name, and its script in `derivations/`.
+/// Route outside this program: its name, and its script in `derivations/`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Program {
     pub name: RouteName,
     pub script: &'static str,
 }
 
-/// Every route outside this program.
+/// All routes outside this program.
 pub const PROGRAMS: [Program; 2] = [
     Program { name: RouteName::Symbolic, script: "evaluate.py" },
     Program { name: RouteName::Scipy, script: "simulate_scipy.py" },
@@ -34,7 +34,7 @@ pub struct Outside {
     pub period: f64,
 }
 
-/// Input of the outside routes for a model with study range `study`: its numbers, and for a smoothing spline what was fitted to its rows.
+/// Input of the outside routes for a model with study range `study`: its numbers, and for a smoothing spline the choices of its fit.
 #[doc(hidden)]
 pub fn told(model: &Model, study: Study) -> Result<Value, ModelError> {
     let mut numbers = json!({ "follower": model.follower, "cam": model.cam, "study": study });
@@ -60,7 +60,7 @@ pub fn run(program: Program, told: &Value) -> Result<Outside, PythonError> {
     })
 }
 
-/// A number, or one with more digits than a double holds, as text.
+/// Number: a double, or text with more digits than a double has.
 #[derive(Deserialize)]
 #[serde(untagged)]
 enum Number {
@@ -69,7 +69,7 @@ enum Number {
 }
 
 impl Number {
-    /// The nearest double; not a number where the text is none, which no comparison lets pass.
+    /// Nearest double; NaN for text that is not a number, which fails every comparison.
     fn value(&self) -> f64 {
         match self {
             Self::Double(value) => *value,
@@ -108,7 +108,7 @@ impl Answer {
     }
 }
 
-/// An eigenvalue, in two parts.
+/// Eigenvalue, by its real and imaginary parts.
 #[derive(Deserialize)]
 struct Parts {
     re: Number,

@@ -1,24 +1,24 @@
-//! A limit for step to 0 from a few steps (Richardson), with an estimate of its error.
+//! Richardson extrapolation: a limit for step to 0 from a few steps, with an estimate of its error.
 //!
-//! Where the error of a quantity is a series of known powers of the step, each halving of the step removes one power,
-//! until rounding, which grows as the step shrinks, takes over. The error of a table entry is estimated by the last
-//! correction that was made to it plus its rounding. The entry with the smallest estimate is the limit.
+//! If the error of a quantity is a series of known powers of the step, each halving of the step removes one power. Rounding, which grows as
+//! the step shrinks, ends this. The error of a table entry is estimated by the last correction made to it plus its rounding. The entry with
+//! the smallest estimate is the limit.
 
 use nalgebra::SVector;
 
-/// Halvings of the step: enough to bring a cam with sharp arcs to rounding.
+/// Number of halvings of the step: enough to reach rounding on a cam with sharp arcs.
 const HALVINGS: usize = 7;
 
 /// Powers of the step in a quantity's error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Powers {
-    /// 2, 4, 6: for a quantity that is the same for a step and its opposite.
+    /// Powers 2, 4, 6: for a quantity that is equal for a step and its opposite.
     Even,
-    /// 1, 2, 3.
+    /// Powers 1, 2, 3.
     Every,
 }
 
-/// The limit of `quantity(step)` for step to 0 from `step` down, and the size of its error. `rounding(step)` is the rounding error
+/// Returns the limit of `quantity(step)` for step to 0, from `step` down, and the size of its error. `rounding(step)` is the rounding error
 /// of the quantity itself.
 pub fn extrapolate<E, const N: usize>(
     step: f64,
@@ -26,7 +26,7 @@ pub fn extrapolate<E, const N: usize>(
     rounding: impl Fn(f64) -> SVector<f64, N>,
     quantity: impl Fn(f64) -> Result<SVector<f64, N>, E>,
 ) -> Result<(SVector<f64, N>, SVector<f64, N>), E> {
-    // What the error of the lowest power shrinks by when the step is halved.
+    // Factor by which halving the step reduces the error of the lowest power.
     let shrinks = match powers {
         Powers::Even => 4_u32,
         Powers::Every => 2,

@@ -2,11 +2,11 @@
 //!
 //! The error of a central difference is a series of even powers of the step; its rounding grows as the step shrinks.
 //!
-//! Over a period of several impacts rounding grows as deviations do. Such an orbit is also differenced from the middle of
-//! each flight to the middle of the next, and the parts multiplied; each entry is taken from the better way.
+//! Over a period of several impacts rounding grows as deviations do. Therefore such an orbit is also differenced from the middle of each
+//! flight to the middle of the next, and the parts are multiplied. Each entry is taken from the more accurate of the two results.
 //!
-//! Near a graze an impact amplifies rounding by the inverse of its relative velocity. The error estimate counts this at
-//! every impact, and the first steps are as wide as they can be without changing which impacts there are.
+//! Near a graze an impact amplifies rounding by the inverse of its relative velocity. The error estimate includes this at every impact. The
+//! first steps are as wide as possible without changing the sequence of impacts.
 
 use nalgebra::{Matrix2, RowVector2, RowVector3, Vector2, Vector3};
 
@@ -18,12 +18,12 @@ use super::varied::Varied;
 use crate::cam::{Cam, Side};
 use crate::model::Model;
 
-/// The map by extrapolated central differences, with the last correction of each entry.
+/// Computes the map by extrapolated central differences, with the last correction of each entry.
 pub fn route(model: &Model, cam: &Cam, at: &CornerImpact) -> Result<Route, SampleError> {
     route_by(model, cam, at, &Varied::Period)
 }
 
-/// The map by extrapolated central differences, with B by any number of the model.
+/// Computes the map by extrapolated central differences, with B for any number of the model.
 pub fn route_by(model: &Model, cam: &Cam, at: &CornerImpact, varied: &Varied) -> Result<Route, SampleError> {
     let found = Sides::try_of_each(|side| side_map(model, cam, at, side, varied))?;
     let uncertainty = Some(Uncertainty::Extrapolation(found.map(|(_, error)| error.map)));
@@ -31,8 +31,8 @@ pub fn route_by(model: &Model, cam: &Cam, at: &CornerImpact, varied: &Varied) ->
     Ok(Route { name: RouteName::FiniteDifference, map, own, uncertainty })
 }
 
-/// One side's map, and the error of each entry. With several impacts it is differenced both over the whole period and impact by
-/// impact; each entry is taken from the more accurate of the two.
+/// Computes one side's map and the error of each entry. With several impacts it is differenced both over the whole period and impact by
+/// impact; each entry is taken from the more accurate result.
 pub fn side_map(
     model: &Model,
     cam: &Cam,
@@ -65,8 +65,7 @@ pub fn side_map(
     })
 }
 
-/// Result of the differences, or its error: the map, and the derivatives of the gap at the corner by the start's deviation and the
-/// period's.
+/// Result of the differences, or its error: the map, and the derivatives of the gap at the corner with respect to the start and the period.
 #[derive(Clone, Copy)]
 pub struct Differenced {
     /// The map.
@@ -78,16 +77,16 @@ pub struct Differenced {
 /// The value and the error of each entry.
 type Evidence = (Differenced, Differenced);
 
-/// The border, on which the gap is 0.
+/// Returns the border, on which the gap is 0.
 pub(crate) fn own((found, error): &Evidence) -> Own {
     let border = (RowVector2::new(found.gap[0], found.gap[1]), found.gap[2]);
     Own { border_error: Some(error.gap.max()), ..Own::border(border) }
 }
 
-/// A period as the product of its parts, each with one impact.
+/// Period as the product of its parts, each with one impact.
 struct Parts {
     parts: Vec<Evidence>,
-    /// Product of the A after each part; the identity for the last part.
+    /// Product of the matrices A after each part; the identity for the last part.
     after: Vec<Matrix2<f64>>,
 }
 
@@ -103,15 +102,15 @@ fn by_impacts(model: &Model, cam: &Cam, at: &CornerImpact, side: Side, varied: &
 }
 
 impl Parts {
-    /// The map of the period, and its error from those of the parts, to first order.
+    /// Map of the period, and its error from the errors of the parts, to first order.
     fn product(&self) -> Evidence {
         let (mut all, mut off) = (SideMap::IDENTITY, SideMap::ZERO);
         let (mut gap, mut gap_off) = (RowVector3::zeros(), RowVector3::zeros());
         for ((next, error), after) in self.parts.iter().zip(&self.after) {
-            // The corner is in one part alone: in others there is no gap, nor an error of it.
+            // Only one part contains the corner: the others have no gap and no error of it.
             gap += by_start(&next.gap, &all);
             gap_off += by_start(&error.gap, &SideMap { a: all.a.abs(), b: all.b.abs() });
-            // What is not known of the parts before it, which move where it starts.
+            // Error of the parts before it, which shift its start.
             gap_off += by_start(&next.gap.abs().component_mul(&RowVector3::new(1.0, 1.0, 0.0)), &off);
             off.a += after.abs() * error.map.a * all.a.abs();
             off.b += after.abs() * (error.map.a * all.b.abs() + error.map.b);
@@ -120,13 +119,13 @@ impl Parts {
         (Differenced { map: all, gap }, Differenced { map: off, gap: gap_off })
     }
 
-    /// Shift of the period's end and of the gap that a rounding in every flight causes.
+    /// Shift of the period's end and of the gap caused by a rounding in every flight.
     fn amplify(&self, rounding: Vector3<f64>) -> Vector3<f64> {
         let flights = rounding.xy();
         let first = self.after.first().zip(self.parts.first()).map(|(after, (part, _))| after * part.map.a);
         let end: Vector2<f64> = first.iter().chain(&self.after).map(|matrix| matrix.abs() * flights).sum();
         let (mut by_state, mut gap) = (RowVector2::zeros(), rounding[2]);
-        // From the part that the corner is in back to the start.
+        // Backwards from the part that contains the corner to the start.
         for (part, _) in self.parts.iter().rev() {
             by_state = by_state * part.map.a + RowVector2::new(part.gap[0], part.gap[1]);
             gap += (by_state.abs() * flights)[0];
@@ -135,15 +134,15 @@ impl Parts {
     }
 }
 
-/// Derivatives of a gap by deviations at the start of all parts, from those by deviations at the start of its part; `before` maps the
-/// former to the latter.
+/// Converts derivatives of a gap with respect to the start of its part into derivatives with respect to the start of all parts; `before`
+/// maps the latter start to the former.
 fn by_start(gap: &RowVector3<f64>, before: &SideMap) -> RowVector3<f64> {
     let (e, f) = (RowVector2::new(gap[0], gap[1]), gap[2]);
     let state = e * before.a;
     RowVector3::new(state[0], state[1], (e * before.b)[0] + f)
 }
 
-/// Takes each entry from the side with the smaller error.
+/// Takes each entry from the result with the smaller error.
 fn better<'a>(
     best: &mut [f64],
     error: &mut [f64],
@@ -158,12 +157,12 @@ fn better<'a>(
     }
 }
 
-/// Rounding error of the end of a stretch, and of the gap.
+/// Rounding error of the end of a part, and of the gap.
 fn rounding(map: &OneSidedMap<'_>) -> Vector3<f64> {
     map.rounding().push(map.gap_rounding())
 }
 
-/// Error of the end and of the gap from a rounding at the start and one at the end.
+/// Error of the end and of the gap from one rounding at the start and one at the end.
 fn amplified_once(map: &OneSidedMap<'_>) -> Result<Vector3<f64>, SampleError> {
     let (scales, rounding) = (map.scales(), rounding(map));
     (0..2).try_fold(rounding, |sum, direction| {
@@ -171,7 +170,7 @@ fn amplified_once(map: &OneSidedMap<'_>) -> Result<Vector3<f64>, SampleError> {
     })
 }
 
-/// The map by extrapolated differences; `rounding` is the rounding error of ends and gaps.
+/// Computes the map by extrapolated differences; `rounding` is the rounding error of ends and gaps.
 fn differences(map: &OneSidedMap<'_>, rounding: Vector3<f64>) -> Result<Evidence, SampleError> {
     let mut columns = [(Vector3::zeros(), Vector3::zeros()); 3];
     for (direction, column) in columns.iter_mut().enumerate() {
@@ -185,9 +184,9 @@ fn differences(map: &OneSidedMap<'_>, rounding: Vector3<f64>) -> Result<Evidence
     Ok((differenced(columns.map(|(value, _)| value)), differenced(columns.map(|(_, error)| error))))
 }
 
-/// The impacts' own scale in one direction, doubled while they remain the orbit's.
+/// Widest step in one direction: the impacts' scale, doubled while the impacts remain those of the orbit.
 fn widest(map: &OneSidedMap<'_>, direction: usize) -> f64 {
-    /// Doublings that are tried: a unit is about a thousandth of the velocity that an impact cannot lose.
+    /// Largest number of doublings: a unit is about a thousandth of the velocity that an impact cannot lose.
     const DOUBLINGS: usize = 8;
     let steps = std::iter::successors(Some(map.scales()[direction]), |step| Some(2.0 * step)).take(1 + DOUBLINGS);
     let inside = steps.take_while(|step| difference(map, direction, *step).is_ok());

@@ -1,9 +1,9 @@
 //! A and B as the paper estimates them: a least-squares fit to simulated revolutions from perturbed starts.
 //!
-//! The paper fits a linear map, so the curvature of the real map biases its coefficients. Here the perturbations are scaled by the
-//! impact's own scales, spread over a cube, and fitted with all monomials up to the fourth degree. The bias of the
-//! linear coefficients is then of the fifth degree. Standard errors come from the residual. The bias, which no residual shows in
-//! full, comes from a cube twice as wide.
+//! The paper fits a linear map, so the curvature of the real map biases its coefficients. Here the perturbations are measured in the
+//! impact's scales, spread over a cube, and fitted with all monomials up to the fourth degree. The bias of the linear coefficients is then
+//! of the fifth degree. Standard errors come from the residual. The residual does not show the bias in full, so a cube twice as wide gives
+//! it.
 
 use faer::Conj;
 pub use faer::Mat;
@@ -21,20 +21,19 @@ use crate::tolerance;
 
 /// Highest total degree of the fitted monomials.
 const DEGREE: u32 = 4;
-/// Revolutions in a fit: four for each of the 35 monomials.
+/// Number of revolutions in a fit: four for each of the 35 monomials.
 const POINTS: usize = 140;
 
-/// Halvings of the cube that are tried, from the impact's own scales down. What the missing degrees put into the linear
-/// coefficients falls with the fourth power of the width, and rounding rises with its inverse: the fit that is kept has the
-/// smallest sum of standard error and bias.
+/// Number of halvings of the cube, from the impact's scales down. The bias from missing degrees falls with the fourth power of the width,
+/// and rounding rises with its inverse. The fit with the smallest sum of standard error and bias is used.
 const WIDTHS: u32 = 8;
 
-/// The map by least squares, with a standard error for each entry and the condition number of the design.
+/// Computes the map by least squares, with a standard error for each entry and the condition number of the design.
 pub fn route(model: &Model, cam: &Cam, at: &CornerImpact) -> Result<Route, SampleError> {
     route_by(model, cam, at, &Varied::Period)
 }
 
-/// The map by least squares, with B by any number of the model.
+/// Computes the map by least squares, with B for any number of the model.
 pub fn route_by(model: &Model, cam: &Cam, at: &CornerImpact, varied: &Varied) -> Result<Route, SampleError> {
     let fits = Sides::try_of_each(|side| side_map(&OneSidedMap::by(model, cam, at, side, varied)?))?;
     let uncertainty = Uncertainty::Fit {
@@ -67,7 +66,7 @@ fn side_map(map: &OneSidedMap<'_>) -> Result<SideFit, SampleError> {
         let samples = points.iter().map(|z| map.sample(z.component_mul(&width))).collect::<Result<Vec<_>, _>>();
         let samples = match samples {
             Ok(samples) => samples,
-            // Too wide for one impact near the corner: a narrower cube may do.
+            // Too wide for one impact near the corner: a narrower cube may succeed.
             Err(error) => {
                 failure = Some(error);
                 continue;
@@ -76,7 +75,7 @@ fn side_map(map: &OneSidedMap<'_>) -> Result<SideFit, SampleError> {
         let design = Mat::from_fn(points.len(), monomials.len(), |row, column| {
             power(samples[row].perturbation.component_div(&width), monomials[column])
         });
-        // The end of the revolution, and the gap when the corner passes, which gives the side on which the impact falls.
+        // The end of the revolution, and the gap when the corner passes, whose sign gives the side on which the impact falls.
         let response = Mat::from_fn(points.len(), 3, |row, component| match component {
             2 => map.gap(&samples[row]),
             _ => samples[row].end[component],
@@ -94,7 +93,7 @@ fn side_map(map: &OneSidedMap<'_>) -> Result<SideFit, SampleError> {
         let gap = |of: &Mat<f64>| [0, 1, 2].map(|direction| entry(of, 2, direction));
         let border = gap(&fit.coefficients);
         if let Some((wider, wider_border)) = wider {
-            // The bias falls with the fourth power of the width, so this fit keeps a fifteenth of what halving changed.
+            // The bias falls with the fourth power of the width, so this fit has a fifteenth of the change by halving.
             let bias = |wide: f64, here: f64| (wide - here).abs() / 15.0;
             let systematic_error = SideMap { a: wider.a.zip_map(&value.a, bias), b: wider.b.zip_map(&value.b, bias) };
             let size = in_scales(&standard_error, &scales) + in_scales(&systematic_error, &scales);
@@ -115,16 +114,16 @@ fn side_map(map: &OneSidedMap<'_>) -> Result<SideFit, SampleError> {
     best.map(|(_, fit)| fit).ok_or(failure.unwrap_or(singular))
 }
 
-/// The sum of a map's entries in units of the impact's scales, where they can be added.
+/// Sum of a map's entries in units of the impact's scales, which makes them comparable.
 fn in_scales(map: &SideMap, scales: &Vector3<f64>) -> f64 {
     let row = |row: usize| map.a[(row, 0)] * scales[0] + map.a[(row, 1)] * scales[1] + map.b[row] * scales[2];
     row(0) / scales[0] + row(1) / scales[1]
 }
 
-/// The design points in units of the scales: an additive recurrence, bent towards the faces like Chebyshev nodes.
+/// Design points in units of the scales: an additive recurrence, denser towards the faces like Chebyshev nodes.
 ///
-/// No two points share a coordinate, unlike those of a grid. So the rounding that a perturbation of the period brings into a
-/// revolution differs from point to point, and the standard errors are valid.
+/// No two points share a coordinate, unlike points of a grid. So the rounding from a perturbed period differs from point to point, and the
+/// standard errors are valid.
 fn design_points() -> Vec<Vector3<f64>> {
     // Fractional parts of n/g, n/g^2, n/g^3 with g^4 = g + 1 fill the cube evenly.
     const G: f64 = 1.2207440846057596;
@@ -133,7 +132,7 @@ fn design_points() -> Vec<Vector3<f64>> {
     (0..POINTS).map(|n| Vector3::new(coordinate(n, 1), coordinate(n, 2), coordinate(n, 3))).collect()
 }
 
-/// Exponents of all monomials in three variables up to the degree, by degree; within one, first variable first.
+/// Exponents of all monomials in three variables up to the degree, by degree; within a degree, by falling power of the first variable.
 fn monomials() -> Vec<[u32; 3]> {
     let of_degree =
         |degree: u32| (0..=degree).rev().flat_map(move |i| (0..=degree - i).rev().map(move |j| [i, j, degree - i - j]));
@@ -151,7 +150,7 @@ pub struct Fit {
     pub standard_errors: Mat<f64>,
 }
 
-/// Ordinary least squares by QR: `min |X beta - Y|`, with `se_j^2 = sigma^2 [(X'X)^{-1}]_jj`, `sigma^2 = |residual|^2/(n - p)`.
+/// Solver for ordinary least squares by QR: `min |X beta - Y|`, with `se_j^2 = sigma^2 [(X'X)^{-1}]_jj`, `sigma^2 = |residual|^2/(n - p)`.
 pub struct Solver<'a> {
     design: &'a Mat<f64>,
     factors: Qr<f64>,

@@ -1,4 +1,4 @@
-//! Where a one-impact, one-revolution orbit hits a corner of the cam's acceleration: (x*, T*), from the model alone.
+//! Location (x*, T*) of the orbit with one impact in one revolution that hits a corner of the cam's acceleration, from the model alone.
 
 use std::fmt;
 
@@ -8,16 +8,16 @@ use super::range::{RangeError, Rejected, one_impact};
 use crate::cam::{Cam, Corner};
 use crate::model::{Model, ModelError};
 
-/// Why there is no corner impact to study.
+/// Reason why there is no corner impact to study.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[expect(missing_docs, reason = "the message says what each number is")]
 pub enum LocateError {
-    /// The model does not say where to look, or says something impossible.
+    /// Model without a range of speeds, or with an impossible one.
     #[error("{0}")]
     Model(#[from] ModelError),
     #[error("{}", .0)]
     NotFound(#[source] Box<NotFound>),
-    /// The only candidate touches the corner without relative velocity.
+    /// Only candidate that touches the corner without relative velocity.
     #[error(
         "{file}: grazing impact at {speed_rpm:.6} rpm: the follower touches the corner at {:.6} deg with v = c' = {velocity} in the model's units; \
          there the map has no linear part, so there is no A and B to check",
@@ -26,7 +26,7 @@ pub enum LocateError {
     Grazing { file: String, cam_angle: f64, speed_rpm: f64, velocity: f64 },
 }
 
-/// The complaint that `[study]` contains no corner impact.
+/// Error: `[study]` contains no corner impact.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NotFound {
     study: ModelError,
@@ -60,7 +60,7 @@ impl fmt::Display for NotFound {
     }
 }
 
-/// The slowest corner impact in `[study]`, and the others by rising speed.
+/// Returns the slowest corner impact in `[study]`, and the others by rising speed.
 #[doc(hidden)]
 pub fn locate(model: &Model, cam: &Cam) -> Result<(CornerImpact, Vec<CornerImpact>), LocateError> {
     let study = model.study()?;

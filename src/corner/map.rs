@@ -1,4 +1,4 @@
-//! The piecewise-linear map at a corner impact, and the results of a route for it.
+//! Piecewise-linear map at a corner impact, and the results of a route for it.
 
 use nalgebra::{Matrix2, RowVector2, Vector2};
 use serde::{Deserialize, Serialize};
@@ -17,24 +17,24 @@ pub struct SideMap {
 }
 
 impl SideMap {
-    /// The map that moves nothing and adds nothing; a sum begins with it.
+    /// Identity map, the first factor of a product.
     pub(crate) const IDENTITY: Self = Self { a: Matrix2::new(1.0, 0.0, 0.0, 1.0), ..Self::ZERO };
-    /// The map to 0.
+    /// Map to 0.
     pub(crate) const ZERO: Self = Self { a: Matrix2::new(0.0, 0.0, 0.0, 0.0), b: Vector2::new(0.0, 0.0) };
 
-    /// This map after another one, with the same number: `x -> A (A' x + B' p) + B p`.
+    /// Composition of this map after another one, for the same varied number: `x -> A (A' x + B' p) + B p`.
     pub(crate) fn after(&self, first: &Self) -> Self {
         Self { a: self.a * first.a, b: self.a * first.b + self.b }
     }
 
-    /// A by rows, then B.
+    /// Entries of A by rows, then of B.
     pub fn entries(&self) -> [f64; 6] {
         [self.a[(0, 0)], self.a[(0, 1)], self.a[(1, 0)], self.a[(1, 1)], self.b[0], self.b[1]]
     }
 
-    /// Both eigenvalues of A, the one with the larger real part first, of a pair the one with positive imaginary part.
+    /// Both eigenvalues of A: the one with the larger real part first; of a complex pair, the one with positive imaginary part.
     ///
-    /// Not a number where A is not finite.
+    /// NaN if A is not finite.
     pub fn eigenvalues(&self) -> [Eigenvalue; 2] {
         eigenvalues(&self.a)
     }
@@ -42,28 +42,28 @@ impl SideMap {
 
 document!(SideMap as side { A: rows(&side.a), B: side.b.as_slice() });
 
-/// A matrix as documents have it, by rows.
+/// Rows of a matrix, as written to documents.
 pub(crate) fn rows(matrix: &Matrix2<f64>) -> [[f64; 2]; 2] {
     matrix.transpose().into()
 }
 
-/// A pair of values, one per side: `minus` for impacts before the corner, `plus` for impacts after it.
+/// Pair of values, one per side: `minus` for impacts before the corner, `plus` for impacts after it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[doc(hidden)]
 pub struct Sides<T> {
-    /// With c'' before the corner.
+    /// Value with c'' before the corner.
     pub minus: T,
-    /// With c'' after the corner.
+    /// Value with c'' after the corner.
     pub plus: T,
 }
 
 impl<T> Sides<T> {
-    /// Both sides from one function of the side.
+    /// Computes both sides by a function of the side.
     pub fn of_each(of: impl Fn(Side) -> T) -> Self {
         Self { minus: of(Side::Minus), plus: of(Side::Plus) }
     }
 
-    /// Both sides from a function that may fail.
+    /// Computes both sides by a function that may fail.
     pub fn try_of_each<E>(mut of: impl FnMut(Side) -> Result<T, E>) -> Result<Self, E> {
         Ok(Self { minus: of(Side::Minus)?, plus: of(Side::Plus)? })
     }
@@ -104,34 +104,34 @@ impl CornerMap {
 pub enum RouteName {
     /// Midpoints of balls in which the result is proved to lie.
     Certificate,
-    /// The formulas of the paper.
+    /// Formulas of the paper.
     ClosedForm,
     /// Differences of simulated periods.
     FiniteDifference,
-    /// A polynomial fitted to simulated periods.
+    /// Polynomial fitted to simulated periods.
     LeastSquares,
-    /// The equation for the period.
+    /// Equation for the period.
     Located,
-    /// The digits in print.
+    /// Digits in print.
     Published,
-    /// An integration in Python.
+    /// Integration in Python.
     Scipy,
     /// One simulated period.
     Simulation,
-    /// The derived expressions in Python, to 30 digits.
+    /// Derived expressions in Python, to 30 digits.
     Symbolic,
-    /// The product of propagators and saltation matrices.
+    /// Product of propagators and saltation matrices.
     Variational,
 }
 
 named!(RouteName);
 
-/// A method for the map, with its results.
+/// Method for the map, with its results.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Route {
     /// Method.
     pub name: RouteName,
-    /// The map.
+    /// Map.
     pub map: CornerMap,
     /// Further results, by the route's own method.
     pub own: Own,
@@ -139,26 +139,26 @@ pub struct Route {
     pub uncertainty: Option<Uncertainty>,
 }
 
-/// A line in the space of deviations of state and period: the coefficients of (dx1, dx2), and that of dT.
+/// Linear form of a deviation of state and period: the coefficients of (dx1, dx2), and the coefficient of dT.
 #[doc(hidden)]
 pub type LinearForm = (RowVector2<f64>, f64);
 
-/// Results besides A and B that a route computes itself, not from A and B by the function that all routes share.
+/// Results besides A and B that a route computes by its own method, not from A and B by the functions that all routes share.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[doc(hidden)]
 pub struct Own {
-    /// `(C, D)`, by another method than the difference of the two sides.
+    /// Line `(C, D)`, by another method than the difference of the two sides.
     pub jump: Option<LinearForm>,
-    /// The eigenvalues of both sides, by another method than [`SideMap::eigenvalues`].
+    /// Eigenvalues of both sides, by another method than [`SideMap::eigenvalues`].
     pub eigenvalues: Option<Sides<[Eigenvalue; 2]>>,
-    /// `(e, f)`: the impact comes before the corner where `e dx + f dT < 0`.
+    /// Border `(e, f)`: the impact comes before the corner if `e dx + f dT < 0`.
     pub border: Option<LinearForm>,
-    /// Largest estimated error of a border entry, where there is an estimate.
+    /// Largest estimated error of a border entry, if there is an estimate.
     pub border_error: Option<f64>,
 }
 
 impl Own {
-    /// A border alone.
+    /// Results with a border alone.
     pub(crate) fn border(border: LinearForm) -> Self {
         Self { border: Some(border), ..Self::default() }
     }
@@ -171,12 +171,12 @@ pub enum Uncertainty {
     Fit {
         /// Standard error of each entry.
         standard: CornerMap,
-        /// Estimated bias of each entry, where there is an estimate.
+        /// Estimated bias of each entry, if there is an estimate.
         systematic: Option<CornerMap>,
-        /// Largest over smallest singular value.
+        /// Ratio of the largest to the smallest singular value.
         condition_number: f64,
     },
-    /// Extrapolation: the last correction to each entry and the rounding in it.
+    /// Extrapolation: the last correction of each entry plus its rounding.
     Extrapolation(CornerMap),
 }
 
@@ -197,22 +197,22 @@ document!(Route as route {
 });
 
 impl Route {
-    /// C, by the route's own method where it has one.
+    /// C, by the route's own method if it has one.
     pub fn c(&self) -> RowVector2<f64> {
         self.own.jump.map_or_else(|| self.map.c(), |(c, _)| c)
     }
 
-    /// D, m/s, likewise.
+    /// D, m/s, by the route's own method if it has one.
     pub fn d(&self) -> f64 {
         self.own.jump.map_or_else(|| self.map.d(), |(_, d)| d)
     }
 
-    /// The eigenvalues of both sides, likewise.
+    /// Eigenvalues of both sides, by the route's own method if it has one.
     pub fn eigenvalues(&self) -> Sides<[Eigenvalue; 2]> {
         self.own.eigenvalues.unwrap_or_else(|| self.map.map(SideMap::eigenvalues))
     }
 
-    /// Standard errors, bias and condition number, where it is a fit.
+    /// Standard errors, bias and condition number of a fit.
     fn fit(&self) -> Option<(CornerMap, Option<CornerMap>, f64)> {
         match self.uncertainty {
             Some(Uncertainty::Fit { standard, systematic, condition_number }) => {

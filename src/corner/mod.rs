@@ -1,28 +1,28 @@
-//! The corner impact: where it happens, and its local map {A-, A+, B-, B+, C, D} by several routes.
+//! Corner impacts: their position, and the local map {A-, A+, B-, B+, C, D} by several routes.
 //!
-//! Near a periodic orbit with an impact on a corner of the cam, one period maps a deviation of the state `dx` and of the
-//! cam's period `dT`, or of any number of the model, to `A dx + B dT`, with matrices that depend on the side of the corner the
-//! impact falls on. The orbit is the paper's, one impact in one revolution, or has any number of both. It is found by
+//! Consider a periodic orbit with an impact on a corner of the cam. One period maps a deviation of the state `dx` and of the cam's period
+//! `dT`, or of any number of the model, to `A dx + B dT`. The matrices depend on the side of the corner on which the impact falls. The
+//! paper's orbit has one impact in one revolution; others may have any number of both. Orbits are found by
 //!
 //! | module | finds |
 //! |---|---|
-//! | `period_equation` | the speeds at which the one impact of an orbit is on a corner: all roots of one equation |
-//! | `candidates` | corner impacts of several impacts, where branches of orbits pass a corner |
-//! | `shots` | corner impacts of several impacts again, by shots from the corner; independent of orbits and branches |
-//! | `confirm` | whether a corner impact of the equations is an orbit of the cam as it is |
+//! | `period_equation` | the speeds at which the only impact of an orbit is on a corner: all roots of one equation |
+//! | `candidates` | corner impacts of orbits with several impacts, where branches of orbits pass a corner |
+//! | `shots` | the same kind by shots from the corner, independent of orbits and branches |
+//! | `confirm` | whether a corner impact of the equations is an orbit of the actual cam |
 //! | [`mod@locate`] | the paper's kind, for `verify`; [`range`] all kinds |
 //!
-//! Each route then computes the matrices by means of its own:
+//! Each route then computes the matrices by its own means:
 //!
 //! | module | shares with the simulator |
 //! |---|---|
-//! | [`closed_form`] | the place: T*, v and the cam's lift there; the formulas and their propagator are its own. The paper's orbits only |
-//! | [`variational`] | the laws of flight and impact; it multiplies their derivatives once around and simulates nothing |
-//! | [`finite_difference`] | is built on it: differences of simulated periods |
-//! | [`least_squares`] | is built on it: a polynomial fitted to simulated periods |
-//! | `external` | nothing: Python programs that get the model file's numbers and find the place themselves. The paper's orbits only |
+//! | [`closed_form`] | the position: T*, v and the cam's lift there; formulas and propagator are its own. The paper's orbits only |
+//! | [`variational`] | the laws of flight and impact; it multiplies their derivatives over one period and simulates nothing |
+//! | [`finite_difference`] | the simulation itself: differences of simulated periods |
+//! | [`least_squares`] | the simulation itself: a polynomial fitted to simulated periods |
+//! | `external` | nothing: Python programs read the model file's numbers and locate the impact themselves. The paper's orbits only |
 //!
-//! [`mod@second_order`] has the terms of second order, which these matrices leave out.
+//! [`mod@second_order`] computes the terms of second order, which these matrices leave out.
 //!
 //! [`jump_order`] predicts and measures the effect of a corner of any order on the map.
 //!

@@ -1,8 +1,8 @@
-//! One period of the simulator over a cam with one segment continued past the corner: the estimators sample it.
+//! Samples of one simulated period over a cam with one law continued past the corner, for the estimators.
 //!
-//! The cam's law on a side is continued past the corner, as in the paper. This makes the map of that side smooth through the corner.
-//! A period counts only if its impacts match the orbit's one by one and the corner's impact is on the continued stretch.
-//! Any other period is an error, never a sample.
+//! The cam's law on one side is continued past the corner, as in the paper. This makes the map of that side smooth through the corner. A
+//! period counts only if its impacts match the orbit's one by one and the corner's impact is on the continued part. Any other period is an
+//! error, never a sample.
 
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
@@ -18,40 +18,39 @@ use crate::orbit::{Family, Parameter};
 use crate::simulate::{Event, EventKind, Goal, Machine, SimulateError};
 use crate::tolerance;
 
-/// Why a side of the map could not be sampled.
+/// Reason why a side of the map could not be sampled.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[expect(missing_docs, reason = "the message says what each number is")]
 pub enum SampleError {
-    /// The neighbour of the corner is too short, or the law ends too soon.
+    /// Corner whose neighbouring segment is too short, or whose law ends too soon.
     #[error("the {side:?} law cannot be continued past the corner at {cam_angle} rad by {least} rad")]
     NotContinued { side: Side, cam_angle: f64, least: f64 },
-    /// A period perturbed in position (m), velocity (m/s), and period (s) or number did something else than hit the cam where
-    /// the orbit does.
+    /// Period perturbed in position (m), velocity (m/s), and period (s) or number, whose impacts do not match the orbit's.
     #[error(
         "{side:?} side: a period perturbed by {perturbation:?} has {impacts} impacts near the corner or elsewhere{} instead of {}",
         if *sticks { ", and sticks to the cam," } else { "" },
         if *expected == 1 { "one near it".to_owned() } else { format!("the orbit's {expected}, one near it") }
     )]
     OtherImpacts { side: Side, perturbation: [f64; 3], impacts: usize, expected: usize, sticks: bool },
-    /// The simulator gave up.
+    /// Failure of the simulator.
     #[error("{side:?} side: {error}")]
     Simulate { side: Side, error: SimulateError },
-    /// The number cannot be varied.
+    /// Number that cannot be varied.
     #[error("{side:?} side: {error}")]
     Varied { side: Side, error: NoChange },
-    /// A linear system that does not determine its unknowns.
+    /// Linear system that does not determine its unknowns.
     #[error("the samples do not determine the {what}")]
     Singular { what: &'static str },
 }
 
-/// Smooth map of one side: from a deviation of state and period, or of another number, to the deviation of the state one period
+/// Smooth map of one side: from a deviation of the state and of the period, or of another number, to the deviation of the state one period
 /// of the orbit later.
 pub struct OneSidedMap<'a> {
     model: &'a Model,
     at: &'a CornerImpact,
     side: Side,
     cam: Cam,
-    /// The cam without continuation.
+    /// Cam without continuation.
     whole: Cam,
     reach: f64,
     varied: Turned,
@@ -60,17 +59,17 @@ pub struct OneSidedMap<'a> {
     stretch: SampledArc,
 }
 
-/// A stretch of the orbit from one section to another.
+/// Part of the orbit from one section to another.
 #[derive(Clone, Debug)]
 struct SampledArc {
-    /// The first section, rad, and the follower there.
+    /// First section, rad, and the follower's state there.
     section: f64,
     start: State,
-    /// The angle turned by each flight, rad, and the impact that it ends at.
+    /// Angle of each flight, rad, and the impact at its end.
     flights: Vec<(f64, usize)>,
     goal: Goal,
     end: State,
-    /// `c' - v-` and `v-` of the impact that the perturbations are measured by, m/s.
+    /// Relative velocity `c' - v-` and velocity `v-` of the impact that sets the scales of the perturbations, m/s.
     approach: f64,
     velocity_before: f64,
 }
@@ -89,11 +88,11 @@ impl SampledArc {
         }
     }
 
-    /// One stretch for each impact, from the middle of the flight before it to that of the flight after.
+    /// One part for each impact, from the middle of the flight before it to the middle of the flight after.
     fn pieces(at: &CornerImpact, machine: &Machine) -> Vec<Self> {
         let flights = at.course().0;
         let count = flights.len();
-        // The middle of the flight that ends at each impact: its angle, the follower, and the angle from there to either impact.
+        // Middle of the flight to each impact: its angle, the follower's state, and the angle from there to either impact.
         let middle = |index: usize| {
             if index.is_multiple_of(count) {
                 return (at.section_angle(), at.state, flights[0].0);
@@ -116,39 +115,39 @@ impl SampledArc {
     }
 }
 
-/// Effect of a third perturbation on the machine.
+/// Effect of the third perturbation on the machine.
 enum Turned {
     /// Another period of the same cam.
     Slower,
-    /// A machine made with another number.
+    /// Machine built with another number.
     Remade { family: Box<Family>, value: f64 },
 }
 
-/// A sampled period.
+/// Sampled period.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PeriodSample {
-    /// Deviation of position (m), velocity (m/s), and period (s) or number that it started with.
+    /// Deviation of position (m), velocity (m/s), and period (s) or number at the start.
     pub perturbation: Vector3<f64>,
-    /// Deviation from the orbit at its end: m, m/s.
+    /// Deviation from the orbit at the end: m, m/s.
     pub end: Vector2<f64>,
-    /// Cam angle of the impact past the corner, rad; 0 on a stretch without it.
+    /// Cam angle of the impact past the corner, rad; 0 on a part without this impact.
     pub past_corner: f64,
 }
 
 impl<'a> OneSidedMap<'a> {
-    /// Furthest continuation, rad: a few degrees, well inside any segment that a cam is made of.
+    /// Largest continuation, rad: a few degrees, well inside any segment of a cam.
     const REACH: f64 = 0.05;
-    /// A unit perturbation over the reach: the impact moves by at most about 2 pi per unit, and stays inside with room.
+    /// Unit perturbation relative to the reach: the impact moves by at most about 2 pi per unit, so it stays well inside.
     const PERTURBATION: f64 = 0.02;
-    /// Halvings of the perturbations that are tried where impacts that come after one another carry them too far.
+    /// Number of halvings of the perturbations that are tried if successive impacts amplify them too much.
     const HALVINGS: u32 = 16;
 
-    /// The map of `side` by state and period, with its law continued as far as the neighbouring segment allows.
+    /// Builds the map of `side` by state and period, with its law continued as far as the neighbouring segment allows.
     pub fn new(model: &'a Model, cam: &Cam, at: &'a CornerImpact, side: Side) -> Result<Self, SampleError> {
         Self::by(model, cam, at, side, &Varied::Period)
     }
 
-    /// The map of `side` by state and any number.
+    /// Builds the map of `side` by state and any number.
     pub fn by(
         model: &'a Model,
         whole: &Cam,
@@ -159,8 +158,8 @@ impl<'a> OneSidedMap<'a> {
         Self::over(model, whole, at, side, varied, SampledArc::whole(at))
     }
 
-    /// The maps from the middle of each flight to that of the next, whose product is the map of a period. Successive impacts amplify
-    /// rounding with every deviation; a single impact does not.
+    /// Builds the maps from the middle of each flight to the middle of the next, whose product is the map of a period. Successive impacts
+    /// amplify rounding together with every deviation; a single impact does not.
     pub fn pieces(
         model: &'a Model,
         whole: &Cam,
@@ -229,22 +228,22 @@ impl<'a> OneSidedMap<'a> {
 
     /// Perturbations of position, velocity and period or number that move the impact by comparable parts of the reach.
     ///
-    /// The impact's own scales: its relative velocity u, the length u/omega, and the period, less where the follower is faster
-    /// than u. For a number, a part of itself.
+    /// They are the impact's own scales: its relative velocity u, the length u/omega, and the period, reduced if the follower is faster
+    /// than u. For another number, a part of its value.
     pub fn scales(&self) -> Vector3<f64> {
         let (approach, period) = (self.stretch.approach, self.at.period);
         let third = match &self.varied {
             Turned::Slower => period * approach / (approach + self.stretch.velocity_before.abs()),
             Turned::Remade { value, .. } => {
-                // One of its unit at first where it is 0: what that is too much for is halved.
+                // A number at 0 starts with one of its units; `shrink` halves it if that is too much.
                 if *value == 0.0 { 1.0 / (Self::PERTURBATION * self.reach) } else { value.abs() }
             }
         };
         Vector3::new(approach * period / TAU, approach, third) * (Self::PERTURBATION * self.reach * self.shrunk)
     }
 
-    /// Distance of the follower from the cam when the corner passed, to first order. It shrinks by `c' - v-` per unit of the time
-    /// from the corner to the impact.
+    /// Distance of the follower from the cam when the corner passed, to first order. It shrinks by `c' - v-` per unit of the time from the
+    /// corner to the impact.
     pub fn gap(&self, sample: &PeriodSample) -> f64 {
         sample.past_corner * self.per_angle()
     }
@@ -254,12 +253,12 @@ impl<'a> OneSidedMap<'a> {
         (self.at.cam_velocity - self.at.velocity_before) / self.at.angular_velocity()
     }
 
-    /// Rounding error of the gap, m: from a position, and from the angle in a full turn.
+    /// Rounding error of the gap, m: from a position, and from the angle of a full turn.
     pub fn gap_rounding(&self) -> f64 {
         self.rounding()[0] + tolerance::RUN_ROUNDING.value * TAU * self.per_angle()
     }
 
-    /// Rounding error of the end of a stretch: a few ulps of the largest position and velocity on the way.
+    /// Rounding error of the end of a part: a few ulps of the largest position and velocity in it.
     pub fn rounding(&self) -> Vector2<f64> {
         let CornerImpact { state, velocity_before, velocity_after, .. } = *self.at;
         let position = state.position.abs().max(self.at.corner.plus.value.abs());
@@ -267,8 +266,8 @@ impl<'a> OneSidedMap<'a> {
         Vector2::new(position, velocity) * tolerance::RUN_ROUNDING.value
     }
 
-    /// The machine of a third perturbation, with the law continued; its cam without continuation; the corner on that cam, rad; and the
-    /// perturbation as rounded to doubles.
+    /// Returns the machine of a third perturbation, with the law continued; its cam without continuation; the corner on that cam, rad; and
+    /// the perturbation as rounded to doubles.
     fn machine(&self, perturbation: f64) -> Result<(Machine, Cam, f64, f64), SampleError> {
         let CornerImpact { period, corner, .. } = *self.at;
         match &self.varied {
@@ -296,14 +295,14 @@ impl<'a> OneSidedMap<'a> {
         }
     }
 
-    /// Simulates one period from about `x* + (dx1, dx2)` at a period of about `T* + dT`, or another number. The sample records the
+    /// Simulates one period from about `x* + (dx1, dx2)` at a period of about `T* + dT`, or with another number. The sample records the
     /// exact start.
     pub fn sample(&self, perturbation: Vector3<f64>) -> Result<PeriodSample, SampleError> {
         let SampledArc { section, start, goal, end, .. } = self.stretch;
         let state = State { position: start.position + perturbation[0], velocity: start.velocity + perturbation[1] };
         let (machine, whole, corner, third) = self.machine(perturbation[2])?;
-        // A perturbation of a ten-thousandth keeps twelve digits when it is added to x* and T*. What is left of it is known
-        // exactly, the differences of close numbers being exact.
+        // A perturbation of a ten-thousandth keeps twelve digits when it is added to x* and T*. The rounded perturbation is known exactly,
+        // because differences of close numbers are exact.
         let exact = Vector3::new(state.position - start.position, state.velocity - start.velocity, third);
         let failed = |error| SampleError::Simulate { side: self.side, error };
         let mut motion = machine.start(section, state).map_err(failed)?;
@@ -330,8 +329,8 @@ impl<'a> OneSidedMap<'a> {
         }
     }
 
-    /// Angle from the corner's original place to the corner's impact, rad; 0 where that impact is not among the events. `None` unless
-    /// the events are the orbit's impacts, each on its own segment.
+    /// Angle from the corner's original position to the corner's impact, rad; 0 if that impact is not among the events. `None` unless the
+    /// events are the orbit's impacts, each on its own segment.
     #[doc(hidden)]
     pub fn past_corner(&self, whole: &Cam, section: f64, events: &[Event]) -> Option<f64> {
         let flights = &self.stretch.flights;

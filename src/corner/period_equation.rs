@@ -1,15 +1,15 @@
-//! All speeds of a range at which an orbit with one impact in n revolutions has it on a given corner.
+//! Equation for the speeds at which an orbit with one impact in n revolutions has it on a given corner, with all its roots in a range.
 //!
-//! The orbit leaves the corner (position c, velocity v+) and is back after `t = n T` (velocity v-), so with the follower's
-//! responses s(t), p(t) and the force f at c
+//! The orbit leaves the corner (position c, velocity v+) and returns after `t = n T` (velocity v-), so with the follower's responses s(t),
+//! p(t) and the force f at c
 //!
 //! ```text
 //! 0  = v+ s + f p            v- = v+ s' + f s            v+ = (1 + r) c' - r v-,   c' = (2 pi/T) dc/dtheta
 //! ```
 //!
 //! Eliminating v+ and v- gives the equation of [`OneImpact`] for T alone. All its roots are isolated; none is missed. Each root is
-//! simulated for one period on the cam as it is. It counts only if the orbit has this one impact, on this corner, and returns to
-//! its start. Where enclosures suffice, they also prove that the root is an orbit, or that it is none.
+//! simulated for one period on the actual cam. It counts only if the orbit has this one impact, on this corner, and returns to its start.
+//! Where enclosures suffice, they also prove whether the root is an orbit.
 
 use std::f64::consts::{PI, TAU};
 use std::ops::ControlFlow;
@@ -26,7 +26,7 @@ use crate::orbit::{Cycle, Impact};
 use crate::simulate::{Event, EventKind, Machine};
 use crate::tolerance;
 
-/// The equation for T at one corner.
+/// Equation for T at one corner.
 pub struct PeriodEquation<'a> {
     cam: &'a Cam,
     flight: Flight,
@@ -34,63 +34,63 @@ pub struct PeriodEquation<'a> {
     side: Side,
     revolutions: u64,
     restitution: f64,
-    /// Lift and slope on the corner, of its side; of both where they agree but for rounding.
+    /// Lift and slope at the corner on its side; the hull of both sides if they agree up to rounding.
     lift: Lift<Interval>,
     /// w0 + zeta, 1/s.
     fastest_rate: f64,
 }
 
-/// A period that solves the equation.
+/// Period that solves the equation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Root {
-    /// T, s.
+    /// Period T, s.
     pub period: f64,
     /// Bracket of T, s, with no other root in it.
     pub bracket: [f64; 2],
-    /// Left side over the sum of its terms' sizes.
+    /// Left side of the equation, relative to the sum of its terms' sizes.
     pub residual: f64,
-    /// Orbit or not, as far as enclosures prove it.
+    /// Proved classification of the root, as orbit or not, if enclosures decide it.
     pub standing: Standing,
 }
 
-/// The roots in range.
+/// Roots of the equation in a range of speeds.
 pub enum Roots {
-    /// All of them, but for some between these periods, s.
+    /// All roots, except between these periods, s, where the search is undecided.
     Some(Vec<Root>, Vec<[f64; 2]>),
-    /// The equation holds at every speed.
+    /// Equation that holds at every speed.
     All {
-        /// The longest period, s.
+        /// Longest period, s.
         slowest: f64,
     },
-    /// More oscillations between the shortest period and the longest than can be searched.
+    /// Range with more oscillations between the shortest and the longest period than can be searched.
     TooMany {
-        /// How many, rad.
+        /// Growth of the follower's phase over the range, rad.
         radians: f64,
     },
-    /// The numbers of the model overflow in the equation.
+    /// Overflow of the model's numbers in the equation.
     NotFinite,
 }
 
-/// Why a period in which the follower comes back however it leaves is refused.
+/// Reason for refusing a period at which the follower returns with any initial velocity, or with none.
 pub const RESONANCE: &str = "the flight would need an unbounded velocity: the period is in resonance";
 
 /// Verdict on a root.
 pub enum RootVerdict {
-    /// An orbit of the cam as it is.
+    /// Orbit of the actual cam.
     Orbit(Box<CornerImpact>),
-    /// An orbit that touches the corner at this velocity, m/s, and does not hit it.
+    /// Orbit that touches the corner at this velocity, m/s, and does not hit it.
     Grazing(f64),
-    /// No orbit, and why.
+    /// Root that is not an orbit, with the reason.
     Rejected(String),
 }
 
 impl<'a> PeriodEquation<'a> {
-    /// Boxes after which the rest of a range is left undecided: so many, and as many for each radian of the follower's motion.
+    /// Number of boxes after which the rest of a range is left undecided: a fixed part, and a part per radian of the follower's motion.
     const MOST_BOXES: [usize; 2] = [1024, 64];
-    /// The most radians of the follower's motion, between the shortest period and the longest, that are searched.
+    /// Largest growth of the follower's phase over a range that is searched, rad.
     pub const MOST_RADIANS: f64 = 15_625.0;
 
-    /// One impact in `revolutions`, on `corner` with the velocity of `side`.
+    /// Builds the equation for one impact in `revolutions`, on `corner` with the velocity of `side`.
     pub fn new(follower: &Follower, cam: &'a Cam, corner: &'a Corner, side: Side, revolutions: u64) -> Self {
         let fastest_rate = (follower.stiffness / follower.mass).sqrt() + follower.damping / (2.0 * follower.mass);
         let (flight, restitution) = (Flight::new(follower), follower.restitution);
@@ -118,7 +118,7 @@ impl<'a> PeriodEquation<'a> {
         self.revolutions as f64 * period
     }
 
-    /// Whether a follower that rests at the corner stays there: no force, and a cam that does not move.
+    /// Whether a follower at rest on the corner stays there: no force, and a cam that does not move.
     pub fn rests(&self) -> bool {
         self.force() == 0.0 && self.slope() == 0.0
     }
@@ -132,7 +132,7 @@ impl<'a> PeriodEquation<'a> {
         TAU / period * self.slope()
     }
 
-    /// Every root over a range of speeds.
+    /// Finds every root over a range of speeds.
     pub fn roots(&self, range: Study) -> Roots {
         let (first, last) = (60.0 / range.rpm_max, 60.0 / range.rpm_min);
         let radians = self.fastest_rate * self.flight_time(last - first);
@@ -178,7 +178,7 @@ impl<'a> PeriodEquation<'a> {
         self.one_impact().standing([from, to], &self.lift, time)
     }
 
-    /// Whether a flight that leaves the corner with the cam's own velocity is free of the cam until it is back.
+    /// Tests whether a flight that leaves the corner with the cam's velocity is free of the cam until it returns.
     pub fn graze(&self, model: &Model, cam: &Cam, period: f64) -> RootVerdict {
         let velocity = self.cam_velocity(period);
         let machine = Machine::new(cam.clone(), &model.follower, TAU / period);
@@ -186,19 +186,19 @@ impl<'a> PeriodEquation<'a> {
         let whole = self.revolutions as f64;
         let from_corner = |turned: f64| if turned > whole * PI { turned - whole * TAU } else { turned };
         match self.one_period(&machine, self.corner.angle, state, from_corner) {
-            // Adding 0 takes the sign off a zero.
+            // Adding 0 turns -0 into 0.
             Ok(_) => RootVerdict::Grazing(velocity + 0.0),
             Err(why) => RootVerdict::Rejected(format!("a graze, v = c', and no orbit: {why}")),
         }
     }
 
-    /// Whether a root is an orbit of the cam as it is.
+    /// Tests whether a root is an orbit of the actual cam.
     pub fn orbit(&self, model: &Model, cam: &Cam, root: Root) -> RootVerdict {
         let Root { period, bracket, residual, .. } = root;
         let time = self.flight_time(period);
         let response = self.flight.response(time);
         let cam_velocity = self.cam_velocity(period);
-        // Half-period and full-period resonance (s = 0): any v+ or none brings the flight back.
+        // Resonance (s = 0): the flight returns for any v+ or for none.
         if response.impulse.abs() <= tolerance::GRAZING.value * time * response.impulse_rate.abs() {
             if response.step.abs() <= tolerance::GRAZING.value * time * time {
                 // v+ is free, so only v+ = v- = c' obeys the restitution law.
@@ -225,11 +225,11 @@ impl<'a> PeriodEquation<'a> {
             Ok(result) => result,
             Err(why) => return RootVerdict::Rejected(why),
         };
-        // What is simulated has met the cam too slowly to hit it.
+        // The simulated follower has met the cam too slowly to hit it.
         if !is_hit {
             return self.graze(model, cam, period);
         }
-        // Half a period later it may be as high as the corner, on its way past it.
+        // Half a period later the follower may be at the corner's height, moving past it.
         let size = (state.position - position).abs() + time * (approach + state.velocity.abs());
         let closure = ((end.position - state.position).abs() + time * (end.velocity - state.velocity).abs()) / size;
         if closure > tolerance::ORBIT_CLOSURE.value {
@@ -253,19 +253,19 @@ impl<'a> PeriodEquation<'a> {
         }))
     }
 
-    /// v- and v+, m/s; none in resonance.
+    /// Velocities v- and v+, m/s; `None` in resonance.
     fn velocities(&self, period: f64) -> Option<[f64; 2]> {
         let velocities = self.one_impact().velocities(self.lift.value, self.flight_time(period).into());
         velocities.map(|velocities| velocities.map(Interval::middle))
     }
 
-    /// The orbit's one impact, on its side of the corner.
+    /// Cycle of the orbit's one impact, on its side of the corner.
     fn cycle(&self, cam: &Cam, velocity_before: f64) -> Cycle {
         let impact = at_corner(cam, self.corner, self.side, 0, velocity_before);
         Cycle { revolutions: self.revolutions, impacts: vec![impact] }
     }
 
-    /// A root as its impact and period, whether or not it is an orbit of the cam; `None` in resonance.
+    /// Returns the impact and period of a root, whether or not it is an orbit of the cam; `None` in resonance.
     pub fn candidate(&self, cam: &Cam, root: Root) -> Option<Candidate> {
         let [velocity_before, _] = self.velocities(root.period)?;
         let cycle = self.cycle(cam, velocity_before);
@@ -273,7 +273,8 @@ impl<'a> PeriodEquation<'a> {
         Some(Candidate { cycle, impact: 0, corner, side, period, bracket, residual, way: Way::Equation })
     }
 
-    /// Whether the cam is hit in one period, and its end, or why it is no orbit with impacts only where `from_corner(turned)` is 0.
+    /// Simulates one period: returns whether the cam is hit, and the final state. The error is the reason why it is no orbit with impacts
+    /// only where `from_corner(turned)` is 0.
     fn one_period(
         &self,
         machine: &Machine,
@@ -291,7 +292,7 @@ impl<'a> PeriodEquation<'a> {
         let end = machine.advance(&mut motion, goal, &mut |event: &Event| {
             let approach = event.cam_velocity - event.velocity_before;
             let scale = event.cam_velocity.abs() + event.velocity_before.abs();
-            // Where a graze is found is known to the root of rounding only; it changes nothing.
+            // The angle of a graze is accurate only to the root of rounding; the graze changes nothing.
             if event.kind == EventKind::Impact && approach <= tolerance::GRAZE_FOUND.value * scale {
                 return ControlFlow::Continue(());
             }
@@ -312,7 +313,7 @@ impl<'a> PeriodEquation<'a> {
     }
 }
 
-/// An impact on a corner, by the law of one side; at angle 0 the side before ends the revolution before.
+/// Impact on a corner, by the law of one side. At angle 0 the side before belongs to the end of the previous revolution.
 pub fn at_corner(cam: &Cam, corner: &Corner, side: Side, revolution: i64, velocity_before: f64) -> Impact {
     match (side, corner.segment) {
         (Side::Plus, segment) => Impact { revolution, segment, cam_angle: corner.angle, velocity_before },

@@ -1,5 +1,5 @@
-//! Every corner impact of a range of speeds that can be found. Those of one impact are the roots of one equation. Those of several
-//! impacts are searched for.
+//! Search for all corner impacts in a range of speeds. Those of one impact are the roots of one equation; those of several impacts are
+//! found by two searches.
 
 use std::collections::BTreeMap;
 
@@ -18,7 +18,7 @@ use crate::progress::Watch;
 use crate::simulate::angular_velocity;
 use crate::tolerance;
 
-/// A root of the equation for T at some corner that is no orbit, and why not.
+/// Root of the equation for T at a corner that is not an orbit, with the reason.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Rejected {
     /// Speed, rpm.
@@ -36,24 +36,24 @@ pub struct UndecidedSpeeds {
     /// Cam angle of the corner, rad.
     #[serde(rename = "cam_angle_rad")]
     pub cam_angle: f64,
-    /// From the lowest to the highest, rpm.
+    /// Lowest and highest speed, rpm.
     pub speeds_rpm: [f64; 2],
 }
 
 /// Corner impacts in a range of speeds, with the record of the search.
 #[derive(Clone, Debug)]
 pub struct FoundCornerImpacts {
-    /// By rising speed.
+    /// Corner impacts, by rising speed.
     pub found: Vec<CornerImpact>,
-    /// Speeds at which the equations hold and the cam has no such orbit, by rising speed.
+    /// Speeds at which the equations hold without an orbit of the cam, by rising speed.
     pub rejected: Vec<Rejected>,
-    /// The corners of the cam, in order of angle.
+    /// Corners of the cam, in order of angle.
     pub corners: Vec<Corner>,
     /// Number of corners of a smoothing spline that were not examined: knots, and ends of dwells found in the rows.
     pub left_out: usize,
     /// Numbers of impacts for which the list is complete.
     pub complete: Vec<Complete>,
-    /// Speeds at which a corner impact of one impact may be missing, or is refused without a proof.
+    /// Speeds at which a corner impact of one impact may be missing, or is rejected without a proof.
     pub undecided: Vec<UndecidedSpeeds>,
     /// Record of the search for orbits of several impacts.
     pub searched: SearchedBranches,
@@ -62,11 +62,11 @@ pub struct FoundCornerImpacts {
 /// Counts of corner impacts found by two independent searches.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Recaptured {
-    /// On branches.
+    /// Number found on branches.
     pub branches: usize,
-    /// By shots.
+    /// Number found by shots.
     pub shots: usize,
-    /// By both.
+    /// Number found by both.
     pub both: usize,
 }
 
@@ -77,7 +77,7 @@ impl Recaptured {
     /// easy to find. If some are harder to find, more are missing.
     ///
     /// ```text
-    /// N = (n_1 + 1) (n_2 + 1) / (m + 1) - 1        m caught both times, of n_1 and n_2
+    /// N = (n_1 + 1) (n_2 + 1) / (m + 1) - 1        m found by both searches, of n_1 and n_2
     /// N - (n_1 + n_2 - m) = (n_1 - m) (n_2 - m) / (m + 1)
     /// ```
     pub fn missing(&self) -> f64 {
@@ -90,10 +90,10 @@ impl Recaptured {
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[expect(missing_docs, reason = "the message says what each number is")]
 pub enum RangeError {
-    /// Ends that are no range.
+    /// Ends that do not form a range.
     #[error("{low}:{high} rpm: a range goes from a speed above 0 to a higher one")]
     NoRange { low: f64, high: f64 },
-    /// Too many oscillations of the follower.
+    /// Range with too many oscillations of the follower.
     #[error(
         "{low}:{high} rpm spans too much: from end to end the flight grows by {radians:.3e} radians of the follower's motion, \
          and at most {:.3e} are searched",
@@ -104,7 +104,7 @@ pub enum RangeError {
     NotFinite { low: f64, high: f64 },
 }
 
-/// Looks through a range of speeds for orbits that repeat after `revolutions`, with an impact on any corner.
+/// Searches a range of speeds for orbits that repeat after `revolutions`, with an impact on any corner.
 pub fn find_corner_impacts(
     model: &Model,
     cam: &Cam,
@@ -143,8 +143,8 @@ pub fn find_corner_impacts(
     Ok(all)
 }
 
-/// Corners at which impacts are looked for. On a smoothing spline it leaves out knots, which are no part of the measurement, and the ends
-/// of dwells found in the rows, which lie somewhat inside of where the cam leaves them.
+/// Corners at which impacts are searched. On a smoothing spline, knots are left out because they are not part of the measurement. Ends of
+/// dwells found in the rows are left out because they lie somewhat inside the true ends.
 fn worth_looking_at(model: &Model, cam: &Cam) -> Vec<Corner> {
     let smoothing = model.table().and_then(|table| table.spline.smoothing());
     let is_laid = |corner: &Corner| {
@@ -153,7 +153,7 @@ fn worth_looking_at(model: &Model, cam: &Cam) -> Vec<Corner> {
     cam.corners().iter().filter(|corner| !is_laid(corner)).copied().collect()
 }
 
-/// Verdict on each root of the equation for one impact, with its corner and its period, s; and the speeds that stay undecided.
+/// Verdict on each root of the equation for one impact, with its corner and its period, s; and the undecided speeds.
 #[expect(clippy::type_complexity, reason = "two lists, each of which is told")]
 pub(super) fn one_impact(
     model: &Model,
@@ -168,7 +168,7 @@ pub(super) fn one_impact(
         let mut leave = |[shortest, longest]: [f64; 2]| {
             undecided.push(UndecidedSpeeds { cam_angle: corner.angle, speeds_rpm: [60.0 / longest, 60.0 / shortest] });
         };
-        // Where the velocity jumps, each side throws its own way.
+        // At a corner of velocity, each side throws the follower differently.
         let throws = corner.jump_order == 1;
         for side in if throws { &[Side::Minus, Side::Plus][..] } else { &[Side::Plus] } {
             let equation = PeriodEquation::new(&model.follower, cam, corner, *side, revolutions);
@@ -205,8 +205,7 @@ pub(super) fn one_impact(
     Ok((all, undecided))
 }
 
-/// Verdict on a root at a corner of velocity. A simulation in doubles cannot decide there which side is hit, so only
-/// its flight is simulated.
+/// Verdict on a root at a corner of velocity. A simulation in doubles cannot decide which side is hit, so only the flight is simulated.
 fn one_side(model: &Model, cam: &Cam, equation: &PeriodEquation<'_>, root: Root) -> RootVerdict {
     match equation.candidate(cam, root) {
         Some(candidate) => verdict(candidate, model, cam),
@@ -219,7 +218,7 @@ fn verdict(candidate: Candidate, model: &Model, cam: &Cam) -> RootVerdict {
 }
 
 impl FoundCornerImpacts {
-    /// Returns the orbit of a verdict; records any other verdict among the rejected.
+    /// Returns the orbit of a verdict; records any other verdict as rejected.
     fn orbit(&mut self, corner: &Corner, speed_rpm: f64, verdict: RootVerdict) -> Option<CornerImpact> {
         let cam_angle = corner.angle;
         let why = match verdict {
@@ -236,7 +235,7 @@ impl FoundCornerImpacts {
         None
     }
 
-    /// Keeps the orbits among candidates in a range, each once, with every way that leads to it.
+    /// Adds the orbits among candidates in a range, each once, with every method that found it.
     fn confirm(&mut self, model: &Model, cam: &Cam, range: Study, candidates: Vec<Candidate>) {
         for candidate in candidates {
             let (corner, rpm, way) = (candidate.corner, 60.0 / candidate.period, candidate.way);
@@ -254,7 +253,7 @@ impl FoundCornerImpacts {
         }
     }
 
-    /// Counts of the corner impacts of several impacts that each of the two searches found, by their number of impacts.
+    /// Counts the corner impacts with several impacts that each of the two searches found, by their number of impacts.
     pub fn recaptured(&self) -> BTreeMap<usize, Recaptured> {
         let mut all = BTreeMap::<usize, Recaptured>::new();
         for at in self.found.iter().filter(|at| at.cycle.impacts.len() > 1) {
@@ -270,7 +269,7 @@ impl FoundCornerImpacts {
 
 /// Whether a candidate is a corner impact already found, by another method or on another branch.
 fn is_same(known: &CornerImpact, at: &Candidate) -> bool {
-    // At another speed it has other velocities.
+    // Cycles at different speeds have different velocities.
     known.corner.segment == at.corner.segment && known.side == at.side && known.cycle.is_same(&at.cycle)
 }
 

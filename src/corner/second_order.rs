@@ -1,18 +1,18 @@
-//! The map of one side to second order: the terms that the piecewise-linear map leaves out next to a corner impact.
+//! Map of one side to second order: the terms near a corner impact that the piecewise-linear map leaves out.
 //!
-//! Once around the orbit with the state and the time of each impact as polynomials of second degree in the deviation
-//! `z = (dx1, dx2, dT)`, everything of third degree dropped. Each flight lasts its part of T, each impact is flown back to the
-//! moment when the cam is at the angle of the orbit's impact:
+//! The state and the time of each impact are followed over one period as polynomials of second degree in the deviation
+//! `z = (dx1, dx2, dT)`, without terms of third degree. Each flight lasts its part of T. Each impact is carried back to the moment when the
+//! cam is at the angle of the orbit's impact:
 //!
 //! ```text
 //! flight of t + h   eta -> F eta + h (f + G F eta) + h^2/2 f',   f = (v, a), f' = (a, j) at the end, G = [[0, 1], [-w0^2, -2 zeta]]
 //! contact at s      delta_1 + (v + delta_2 - rho c') s + (a - rho^2 c'') s^2/2 = 0,   rho = T*/T
 //! kick at s         kappa = (1 + r) (rho c' + rho^2 c'' s + c''' s^2/2 - v - delta_2 - (a - 2 zeta delta_2 - w0^2 delta_1) s - j s^2/2)
-//! flown back        delta + kappa (e2 - s G e2 + s^2/2 G^2 e2) - (0, v+ - v)
+//! carried back      delta + kappa (e2 - s G e2 + s^2/2 G^2 e2) - (0, v+ - v)
 //! ```
 //!
-//! v, a and j are the velocity before the impact with its derivatives in flight, c', c'', c''' those of the lift in time. The first
-//! degree is A and B once more. Nothing is simulated.
+//! v, a and j are the velocity before the impact with its derivatives in flight, c', c'', c''' the derivatives of the lift in time. The
+//! terms of first degree equal A and B. Nothing is simulated.
 
 use std::f64::consts::TAU;
 use std::ops::{Add, Mul, Sub};
@@ -29,9 +29,9 @@ use crate::simulate::Machine;
 /// One side of the map to second order: `dx' = A dx + B dT + 1/2 (z' H_1 z, z' H_2 z)`, z = (dx, dT).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CurvedMap {
-    /// A and B.
+    /// Matrices A and B.
     pub linear: SideMap,
-    /// The second derivatives of the new position and of the new velocity by dx1 (m), dx2 (m/s) and dT (s); symmetric, 3x3.
+    /// Second derivatives of the new position and of the new velocity with respect to dx1 (m), dx2 (m/s) and dT (s); symmetric, 3x3.
     pub second: [Matrix3<f64>; 2],
 }
 
@@ -42,19 +42,19 @@ document!(CurvedMap as map {
 });
 
 impl CurvedMap {
-    /// The terms of second degree at a deviation.
+    /// Terms of second degree at a deviation.
     fn curve(&self, dx: Vector2<f64>, dt: f64) -> Vector2<f64> {
         let z = Vector3::new(dx[0], dx[1], dt);
         let [position, velocity] = self.second.map(|second| 0.5 * z.dot(&(second * z)));
         Vector2::new(position, velocity)
     }
 
-    /// The image of x* at dT = 1 s: terms of first and of second degree in dT, m and m/s per s and per s^2.
+    /// Image of x* at dT = 1 s: terms of first and of second degree in dT, m and m/s per s and per s^2.
     pub fn image(&self) -> [Vector2<f64>; 2] {
         [self.linear.b, self.curve(Vector2::zeros(), 1.0)]
     }
 
-    /// The fixed point on this side, likewise; `None` where `I - A` is singular.
+    /// Fixed point on this side: terms of first and of second degree in dT; `None` if `I - A` is singular.
     pub fn fixed_point(&self) -> Option<[Vector2<f64>; 2]> {
         // x = x1 dT + x2 dT^2 + O(dT^3):   (I - A) x1 = B,   (I - A) x2 = 1/2 (z' H z) at z = (x1, 1)
         let inverse = (Matrix2::identity() - self.linear.a).try_inverse()?;
@@ -63,7 +63,7 @@ impl CurvedMap {
     }
 }
 
-/// Both sides' maps to second order, of an orbit of any number of impacts.
+/// Computes both sides' maps to second order, for an orbit with any number of impacts.
 pub fn second_order(model: &Model, cam: &Cam, at: &CornerImpact) -> Sides<CurvedMap> {
     let machine = Machine::new(cam.clone(), &model.follower, at.angular_velocity());
     Sides::of_each(|side| once_around(&machine, at, side))
@@ -88,7 +88,7 @@ fn once_around(machine: &Machine, at: &CornerImpact, side: Side) -> CurvedMap {
     }
 }
 
-/// A flight of the part `turn/(2 pi)` of T from `start`.
+/// Flight of the part `turn/(2 pi)` of T from `start`.
 fn fly(machine: &Machine, period: f64, start: State, turn: f64, eta: [Polynomial; 2]) -> [Polynomial; 2] {
     let (flight, part) = (machine.flight(), turn / TAU);
     let time = part * period;
@@ -102,7 +102,7 @@ fn fly(machine: &Machine, period: f64, start: State, turn: f64, eta: [Polynomial
         .map(|row| flown[row] + later * (turned[row] + Polynomial::from(rate[row])) + later * later * (0.5 * bend[row]))
 }
 
-/// An impact, as a jump at the moment when the cam is at its angle.
+/// Impact, as a jump at the moment when the cam is at the orbit's angle.
 fn hit(machine: &Machine, at: &CornerImpact, impact: usize, side: Side, delta: [Polynomial; 2]) -> [Polynomial; 2] {
     let (flight, omega) = (machine.flight(), machine.angular_velocity());
     let lift = at.lift(machine, impact, side);
@@ -115,7 +115,7 @@ fn hit(machine: &Machine, at: &CornerImpact, impact: usize, side: Side, delta: [
     // rho = T*/T = 1 - dT/T* + (dT/T*)^2
     let longer = Polynomial::unknown(2) * (1.0 / at.period);
     let rho = Polynomial::from(1.0) - longer + longer * longer;
-    // u s = delta_1 + (delta_2 + (1 - rho) c') s + (a - c'') s^2/2: each round is right to one degree more.
+    // u s = delta_1 + (delta_2 + (1 - rho) c') s + (a - c'') s^2/2: each round is correct to one more degree.
     let mut s = Polynomial::default();
     for _ in 0..2 {
         let faster = velocity + (Polynomial::from(1.0) - rho) * c1;
@@ -133,7 +133,7 @@ fn hit(machine: &Machine, at: &CornerImpact, impact: usize, side: Side, delta: [
     [position + kappa * back(0), velocity + kappa * (back(1) + Polynomial::from(1.0)) - jump]
 }
 
-/// G.
+/// Matrix G.
 fn field(machine: &Machine) -> Matrix2<f64> {
     let flight = machine.flight();
     Matrix2::new(0.0, 1.0, -flight.omega0_squared(), -2.0 * flight.zeta())
@@ -143,7 +143,7 @@ fn times(matrix: Matrix2<f64>, [x, y]: [Polynomial; 2]) -> [Polynomial; 2] {
     [0, 1].map(|row| x * matrix[(row, 0)] + y * matrix[(row, 1)])
 }
 
-/// A polynomial of second degree in z, by its value and derivatives at z = 0.
+/// Polynomial of second degree in z, by its value and derivatives at z = 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Polynomial {
     value: f64,
@@ -152,7 +152,7 @@ struct Polynomial {
 }
 
 impl Polynomial {
-    /// One component of z.
+    /// Polynomial of one component of z.
     fn unknown(index: usize) -> Self {
         Self { first: Vector3::ith(index, 1.0), ..Self::default() }
     }

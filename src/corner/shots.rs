@@ -1,11 +1,10 @@
-//! Corner impacts by shots: a follower that leaves a corner and is back there a whole number of turns later, with the velocity
-//! that it left with.
+//! Corner impacts by shots: a follower leaves a corner and returns to it a whole number of turns later, with the velocity with which it
+//! left.
 //!
-//! There are two unknowns, the speed of the cam and the velocity that the corner is left with, however many impacts come
-//! between. At each speed of a grid the follower leaves the corner with velocities of a grid; where the impact that comes
-//! nearest to the corner is off by less than at the velocities next to it, the shot is a guess for Newton's method on the
-//! equations of the whole orbit, with the speed free. No orbits are searched for and no branch is followed. So each method can find
-//! what the other one misses.
+//! There are two unknowns, the speed of the cam and the leaving velocity, however many impacts come between. At each speed of a grid the
+//! follower leaves the corner with the velocities of a grid. A shot whose last impact is closer to the corner than at neighbouring
+//! velocities is a guess for Newton's method on the equations of the whole orbit, with the speed free. The method searches no orbits and
+//! follows no branches, so it can find what the branches miss, and vice versa.
 
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
@@ -28,17 +27,17 @@ use crate::progress::{Pieces, Watch};
 use crate::simulate::{Event, EventKind, Machine, angular_velocity};
 use crate::tolerance;
 
-/// How much faster each speed of the grid is than the one before it.
+/// Ratio of successive speeds of the grid.
 pub const SHOT_RATIO: f64 = 1.004;
-/// Leaving velocities at each speed of the grid.
+/// Number of leaving velocities at each speed of the grid.
 pub const VELOCITIES: usize = 400;
-/// Largest factor by which Newton's method may change the speed. Shots are made as far beyond a range, so that the results for a
-/// part of a range are the same as for the whole.
+/// Largest factor by which Newton's method may change the speed. Shots extend beyond a range by this factor, so that the results for a part
+/// of a range are the same as for the whole.
 const REACH: f64 = 1.02;
 /// Largest distance of the last impact of a guess from the corner, rad.
 const NEAR: f64 = 0.3;
 
-/// The corner impacts of several impacts in `revolutions` that shots lead to, over a range of speeds and a little beyond.
+/// Finds corner impacts of orbits with several impacts in `revolutions` by shots, over a range of speeds and a little beyond.
 pub fn shots(
     model: &Model,
     cam: &Cam,
@@ -77,18 +76,18 @@ struct Shooter<'a> {
     corner: Corner,
     side: Side,
     revolutions: u64,
-    /// Largest velocity with which a corner is left, over omega, m/rad.
+    /// Largest leaving velocity, over omega, m/rad.
     fastest: f64,
     /// Size of the cam's lift, m.
     size: f64,
 }
 
-/// An impact that may close a shot into an orbit.
+/// Impact that may close a shot into an orbit.
 #[derive(Clone, Copy)]
 struct Closing {
-    /// Impacts of the orbit that it would close.
+    /// Number of impacts of the orbit that it would close.
     impacts: usize,
-    /// Angle to the corner, rad, plus the difference of its velocity from that of the start, over omega and the cam's size.
+    /// Miss: the angle to the corner, rad, plus the difference of its velocity from the leaving velocity, over omega and the cam's size.
     off: f64,
 }
 
@@ -106,7 +105,7 @@ impl Shooter<'_> {
         part * part * self.fastest
     }
 
-    /// The impacts after the start, up to the first one that is a period later; fewer where the follower sticks or chatters.
+    /// Impacts after the start, up to the first one after a period; fewer if the follower sticks or chatters.
     fn impacts(&self, leaving: f64) -> Vec<Event> {
         let mut impacts = Vec::new();
         let velocity = self.machine.angular_velocity() * (self.slope() + leaving);
@@ -114,7 +113,7 @@ impl Shooter<'_> {
         let Ok(mut motion) = self.machine.start(self.corner.angle, state) else { return impacts };
         let (most, end) = (MOST_IMPACTS * self.revolutions as usize, self.revolutions as f64 * TAU);
         let goal = motion.after(self.revolutions + 1);
-        // A run that cannot go on has not come back.
+        // A run that fails has not returned.
         let _ = self.machine.advance(&mut motion, goal, &mut |event: &Event| {
             if event.kind != EventKind::Impact || impacts.len() > most {
                 return ControlFlow::Break(());
@@ -125,7 +124,7 @@ impl Shooter<'_> {
         impacts
     }
 
-    /// Closings by the last impact before the corner comes round, and by the first one after.
+    /// Closings by the last impact before the corner returns, and by the first one after.
     fn closings(&self, leaving: f64) -> [Option<Closing>; 2] {
         let impacts = self.impacts(leaving);
         let omega = self.machine.angular_velocity();

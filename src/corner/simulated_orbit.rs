@@ -1,4 +1,5 @@
-//! (x*, T*) once more, from the simulator alone: Newton on "returns to its start, with the impact on the corner".
+//! Computes (x*, T*) from the simulator alone, by Newton's method on the condition that a run returns to its start with the impact on the
+//! corner.
 
 use nalgebra::{Matrix3, Vector2, Vector3};
 
@@ -7,11 +8,11 @@ use super::one_sided::{OneSidedMap, SampleError};
 use crate::cam::{Cam, Side};
 use crate::model::Model;
 
-/// x* (m from the equilibrium, m/s) and T* (s), by Newton from a start that is off by a whole unit of each scale.
+/// Returns x* (m from the equilibrium, m/s) and T* (s), by Newton's method from a start that is off by half a unit of each scale.
 pub fn orbit(model: &Model, cam: &Cam, at: &CornerImpact) -> Result<(Vector2<f64>, f64), SampleError> {
     let map = OneSidedMap::new(model, cam, at, Side::Minus)?;
     let scales = map.scales();
-    // Unknowns and equations in units of the scales: deviation of state and period in, miss of the start and of the corner.
+    // Unknowns and equations in units of the scales: the deviation of state and period, and the miss of the start and of the corner.
     let miss = |z: Vector3<f64>| {
         let perturbation = z.component_mul(&scales);
         let sample = map.sample(perturbation)?;
@@ -19,7 +20,7 @@ pub fn orbit(model: &Model, cam: &Cam, at: &CornerImpact) -> Result<(Vector2<f64
         Ok(Vector3::new(state[0], state[1], sample.past_corner))
     };
     let mut z = Vector3::repeat(0.5);
-    // Differences over a small part of a scale give the slope to five digits, so that each step gains as many.
+    // Differences over a small part of a scale give the slope to five digits, so that each step gains five digits.
     const STEP: f64 = 1e-3;
     for _ in 0..8 {
         let mut jacobian = Matrix3::zeros();

@@ -1,15 +1,15 @@
-//! A and B as a product once around the orbit: propagators of flights, saltation matrices of impacts.
+//! Computes A and B as a product over one period of the orbit: propagators of flights, saltation matrices of impacts.
 //!
-//! A deviation `xi` of the state, at one cam angle, goes through a flight from y over an angle `turn` and an impact as
+//! A deviation `xi` of the state at one cam angle changes in a flight from y over an angle `turn`, and in an impact, as
 //!
 //! ```text
 //! flight   xi -> Phi xi + f(end) turn/(2 pi) dT + dy_p dp          dy' = M dy + M_p y + f_p,   dy(0) = 0
 //! impact   xi -> S (xi - (c_p, 0) dp) + (c_p, (1 + r) dc'_p + r_p (c' - v)) dp
 //! ```
 //!
-//! with `y' = f(y) = M y + f`, the propagator `Phi` of [`crate::flight`] and the saltation matrix S of [`crate::impact`]. The
-//! speed enters at an impact by `c' = w dc/dtheta` alone: `dc' = -c' dT/T`. At the corner S and c' have the side's lift; the sides
-//! differ in nothing else. Nothing is simulated.
+//! with `y' = f(y) = M y + f`, the propagator `Phi` of [`crate::flight`] and the saltation matrix S of [`crate::impact`]. At an impact the
+//! speed enters only by `c' = w dc/dtheta`: `dc' = -c' dT/T`. At the corner S and c' use the side's lift, which is the only difference of
+//! the sides. Nothing is simulated.
 
 use nalgebra::{Matrix2, Matrix2x3, RowVector2, SMatrix, Vector2};
 
@@ -22,7 +22,7 @@ use crate::impact::ImpactRates;
 use crate::model::{Follower, Model};
 use crate::simulate::Machine;
 
-/// The map with B by the period.
+/// Computes the map with B for the period.
 pub fn route(model: &Model, cam: &Cam, at: &CornerImpact) -> Route {
     let around = Around::new(model, cam, at);
     let map = CornerMap::of_each(|side| around.side_map(side, &Change::of_period(at.cycle.impacts.len())));
@@ -30,8 +30,8 @@ pub fn route(model: &Model, cam: &Cam, at: &CornerImpact) -> Route {
     Route { name: RouteName::Variational, map, own, uncertainty: None }
 }
 
-/// The map with B by any number. Where the cam's shape depends on it, the error is that of the differences by which the lift
-/// was differentiated.
+/// Computes the map with B for any number. If the cam's shape depends on the number, the error is that of the differences that give the
+/// derivative of the lift.
 pub fn route_by(model: &Model, cam: &Cam, at: &CornerImpact, varied: &Varied) -> Result<Route, NoChange> {
     let around = Around::new(model, cam, at);
     let found = Sides::try_of_each(|side| {
@@ -53,13 +53,13 @@ pub fn route_by(model: &Model, cam: &Cam, at: &CornerImpact, varied: &Varied) ->
     Ok(Route { name: RouteName::Variational, map, own: Own::default(), uncertainty })
 }
 
-/// `(e, f)`: to first order `e dx + f dT` is the distance of the follower from the cam when the corner passes, without the impact
-/// on it. Where it is negative, the impact comes before the corner.
+/// Returns `(e, f)`: to first order `e dx + f dT` is the distance of the follower from the cam when the corner passes, without the impact
+/// on it. If it is negative, the impact comes before the corner.
 pub fn border(model: &Model, cam: &Cam, at: &CornerImpact) -> LinearForm {
     Around::new(model, cam, at).border()
 }
 
-/// The orbit, with its follower and its machine.
+/// Orbit, with its follower and its machine.
 struct Around<'a> {
     follower: &'a Follower,
     at: &'a CornerImpact,
@@ -82,7 +82,8 @@ impl<'a> Around<'a> {
         (RowVector2::new(gap[(0, 0)], gap[(0, 1)]), gap[(0, 2)])
     }
 
-    /// Derivatives of the deviation by both components of the start and by the number varied: once around, or up to just before the corner.
+    /// Derivatives of the deviation with respect to both components of the start and the varied number: over one period, or up to just
+    /// before the corner.
     fn go(&self, side: Side, change: &Change, to_corner: bool) -> Matrix2x3<f64> {
         let (flights, last) = self.at.course();
         let mut deviation = Matrix2x3::identity();
@@ -112,7 +113,7 @@ impl<'a> Around<'a> {
         after
     }
 
-    /// `dy` at the end of a flight: `exp` of `[[M, M_p, f_p], [0, M, f], [0, 0, 0]] t`, applied to `(0, y, 1)`.
+    /// Derivative `dy` at the end of a flight: `exp` of `[[M, M_p, f_p], [0, M, f], [0, 0, 0]] t`, applied to `(0, y, 1)`.
     fn differ(&self, start: State, time: f64, change: &Change) -> Vector2<f64> {
         let Follower { mass, damping, stiffness, gravity, rest_position, .. } = *self.follower;
         let matrix = Matrix2::new(0.0, 1.0, -stiffness / mass, -damping / mass);
@@ -137,11 +138,11 @@ impl<'a> Around<'a> {
         };
         let (r, v, velocity) = (rates.restitution, rates.velocity_before, rates.cam_velocity);
         let LiftChange { value, slope } = change.lifts[impact];
-        // From a cam that has risen by c_p, as from one at rest.
+        // A cam that has risen by c_p acts like a gap reduced by c_p.
         let mut gap = deviation;
         gap[(0, 2)] -= value;
         let mut after = rates.saltation() * gap;
-        // eq:ftaylormapcornerT, what the impact adds where T varies: -R dy/dT, dy/dT = (0, -c'/T) at the corner
+        // eq:ftaylormapcornerT, contribution of the impact if T varies: -R dy/dT, dy/dT = (0, -c'/T) at the corner
         let faster = omega * slope - velocity * change.period / self.at.period;
         after[(0, 2)] += value;
         after[(1, 2)] += (1.0 + r) * faster + change.restitution * (velocity - v);

@@ -1,4 +1,4 @@
-//! The quantity that B is the derivative by: the period, or any number of the model; and the derivatives of the laws by it.
+//! Quantity with respect to which B is the derivative: the period, or any number of the model; and the derivatives of the laws.
 
 use nalgebra::{Matrix2, Vector2};
 
@@ -9,29 +9,29 @@ use crate::model::{Follower, Model, ModelNumber};
 use crate::orbit::{Family, FamilyError, Parameter};
 use crate::tolerance;
 
-/// The quantity that B is the derivative by.
+/// Quantity with respect to which B is the derivative.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Varied {
-    /// T, s.
+    /// Period T, s.
     Period,
-    /// A number of the model file, by dotted path, in its own units.
+    /// Number of the model file, by dotted path, in its own units.
     Number(String),
 }
 
-/// Why a law has no derivative by a number.
+/// Reason why a law has no derivative with respect to a number.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[expect(missing_docs, reason = "the message says what each number is")]
 pub enum NoChange {
-    /// The model does not allow numbers close by.
+    /// Model that does not allow neighbouring numbers.
     #[error(transparent)]
     Family(#[from] FamilyError),
-    /// No number of that name.
+    /// Name that is not a number of the model.
     #[error("the model has no number \"{name}\" to vary")]
     Unknown { name: String },
-    /// The derivatives of the laws of flight and impact by this number are not written down.
+    /// Number with respect to which the laws of flight and impact have no derivative here.
     #[error("the laws of flight and impact have no derivative by {name}")]
     OfNoLaw { name: String },
-    /// The cam has other segments with every number close by.
+    /// Number that changes the segments of the cam as soon as it varies.
     #[error("the segments of the cam change as soon as {name} moves from {value}")]
     OtherSegments { name: String, value: f64 },
 }
@@ -39,13 +39,13 @@ pub enum NoChange {
 /// Change of the lift under an impact, at the same angle.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct LiftChange {
-    /// `c_p`, m per unit.
+    /// Derivative `c_p`, m per unit.
     pub value: f64,
-    /// `dc/dtheta` by p, m/rad per unit.
+    /// Derivative of `dc/dtheta` with respect to p, m/rad per unit.
     pub slope: f64,
 }
 
-/// The derivatives of the physical laws by the number.
+/// Derivatives of the physical laws with respect to the number.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Change {
     /// Derivative of T: 1 or 0.
@@ -67,17 +67,17 @@ impl Change {
         Self { period: 0.0, matrix, force, restitution: 0.0, lifts: still.clone(), lift_errors: still }
     }
 
-    /// Derivatives by T, for an orbit with this many impacts.
+    /// Derivatives with respect to T, for an orbit with this many impacts.
     pub fn of_period(impacts: usize) -> Self {
         Self { period: 1.0, ..Self::none(impacts) }
     }
 
-    /// Derivatives by any number, with the lift of one side at the corner.
+    /// Derivatives with respect to any number, with the lift of one side at the corner.
     pub fn new(model: &Model, at: &CornerImpact, varied: &Varied, side: Side) -> Result<Self, NoChange> {
         let impacts = at.cycle.impacts.len();
         let Varied::Number(name) = varied else { return Ok(Self::of_period(impacts)) };
         let Follower { mass, damping, stiffness, rest_position, .. } = model.follower;
-        // By the number in the unit of its field.
+        // The number is in the unit of its field.
         let unit = name.strip_prefix("follower.").and_then(|name| model.units.of_follower(name));
         let scale = unit.map_or(1.0, |unit| unit.inside(1.0));
         // M = [[0, 1], [-k/m, -b/m]],  f = (0, k rest/m - g)
@@ -103,7 +103,7 @@ impl Change {
             }
             _ => {
                 let (mut lifts, mut lift_errors) = lift_changes(model, at, name, side)?;
-                // The last one is that of the lowest lift, which a preload goes with.
+                // The last entry is for the lowest lift, from which a preload is measured.
                 let (lowest, _) = (lifts.pop().unwrap_or_default(), lift_errors.pop());
                 let moved = if model.preload.is_some() { lowest.value } else { 0.0 };
                 let force = Vector2::new(0.0, stiffness / mass * moved);
@@ -118,27 +118,27 @@ impl Change {
     }
 }
 
-/// The value of a number of the model.
+/// Value of a number of the model.
 pub(super) fn value_of(model: &Model, name: &str) -> Result<f64, NoChange> {
     let value = Parameter::Field(name.into()).value(model, f64::NAN);
     value.ok_or_else(|| NoChange::Unknown { name: name.into() })
 }
 
-/// Derivatives of the lift under every impact, and of the lowest lift, by a number of the cam; then their errors. A
-/// difference over six cams,
+/// Derivatives of the lift under every impact, and of the lowest lift, with respect to a number of the cam; then their errors. They are
+/// differences over six cams,
 ///
 /// ```text
 /// h df/dp = (45 (f_1 - f_-1) - 9 (f_2 - f_-2) + (f_3 - f_-3))/60 + O(h^7)
 /// ```
 ///
-/// at the step where halving it changes the least.
+/// at the step where halving changes them least.
 fn lift_changes(
     model: &Model,
     at: &CornerImpact,
     name: &str,
     side: Side,
 ) -> Result<(Vec<LiftChange>, Vec<LiftChange>), NoChange> {
-    /// Steps tried, each half the one before; from a part of the number down.
+    /// Number of steps tried, each half of the one before; and the largest step, as a part of the number.
     const STEPS: i32 = 16;
     const LARGEST: f64 = 1.0 / 64.0;
     const WEIGHTS: [f64; 3] = [45.0, -9.0, 1.0];

@@ -8,7 +8,7 @@ use crate::simulate::{Machine, SimulateError};
 
 /// Longest period of the saddles, turns of the cam.
 const MOST_REVOLUTIONS: u64 = 3;
-/// Most impacts of a saddle.
+/// Largest number of impacts of a saddle.
 const MOST_IMPACTS: usize = 4;
 
 /// Returns every impact of every saddle of few impacts, as an h-set of size 0 at a speed, rpm.
@@ -58,7 +58,7 @@ fn directions([[a, b], [c, d]]: [[f64; 2]; 2]) -> Option<[[f64; 2]; 2]> {
     }
     let large = half + root.copysign(half);
     Some([large, determinant / large].map(|value| {
-        // (A - lambda) v = 0 by the row that says more of it.
+        // The row of (A - lambda) v = 0 with larger entries is used.
         let vector =
             if b.abs() + (value - a).abs() > c.abs() + (value - d).abs() { [b, value - a] } else { [value - d, c] };
         let size = if vector[0].abs() > vector[1].abs() { vector[0] } else { vector[1] };

@@ -1,8 +1,8 @@
-//! Finds h-sets of a machine at a speed, or over a range of speeds: first by simulation, then by proof.
+//! Search for h-sets of a machine at a speed, or over a range of speeds: first by simulation, then by proof.
 //!
-//! Around each impact of a saddle of few impacts, N is tried with sides of many lengths along the stretched direction. Its height is that
-//! of the images of the stretches that cross it. The h-set with the most motions is prepared for a proof: its strips are widened until they
-//! cover at every height and at both ends of the range of speeds, with a margin.
+//! Around each impact of a saddle of few impacts, N is tried with sides of many lengths along the stretched direction. Its height is the
+//! height of the images of the parts that cross it. The h-set with the most motions is prepared for a proof: its strips are widened until
+//! they cover at every height and at both ends of the range of speeds, with a margin.
 
 use std::cmp::Ordering;
 
@@ -18,14 +18,14 @@ use crate::elementary;
 use crate::progress::Watch;
 use crate::simulate::{Machine, SimulateError, angular_velocity};
 
-/// An h-set with the proofs of its strips.
+/// Proved h-set, with the proofs of its strips.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Proved {
-    /// The h-set, with its proved strips only.
+    /// Set with its proved strips only.
     pub set: HSet,
     /// Proved properties of each strip.
     pub strips: Vec<Covered>,
-    /// The h-set without cones, with all strips that cover, where these are more than the strips that keep cones.
+    /// Set without cones, with all strips that cover; `None` unless these are more than the strips that keep cones.
     pub without_cones: Option<(HSet, Vec<Covered>)>,
     /// Strips whose proof failed.
     pub refused: Vec<Refused>,
@@ -42,15 +42,15 @@ pub struct Short {
     pub refused: Vec<Refused>,
 }
 
-/// Farthest distance along x that N is tried to, in the unit of x: degrees or m/s.
+/// Largest length of N along x that is tried, in the unit of x: degrees or m/s.
 const FARTHEST: f64 = 32.0;
-/// Sample points on a line.
+/// Number of sample points on a line.
 const POINTS: usize = 12_000;
-/// Ratio of each tried length of a side of N to the one before, and the shortest length.
+/// Ratio of successive lengths of a side of N, and the shortest length.
 const SHORTER: f64 = 0.8;
 const SHORTEST: f64 = 0.06;
 
-/// Boxes after which the proof of a strip is given up, which takes some seconds. Strips that cover with a margin take some hundreds.
+/// Number of boxes after which the proof of a strip fails, which takes some seconds. Strips that cover with a margin need some hundreds.
 const MOST_BOXES: usize = 1536;
 
 /// Extent of the proof.
@@ -58,7 +58,7 @@ const MOST_BOXES: usize = 1536;
 pub struct ProofScope {
     /// Largest number of strips; those with the fewest revolutions come first.
     pub strips: usize,
-    /// Whether cones are looked for.
+    /// Whether cones are searched.
     pub cones: bool,
 }
 
@@ -69,8 +69,8 @@ pub fn find(
     wanted: ProofScope,
     watch: &dyn Watch,
 ) -> Result<Result<Proved, Short>, SimulateError> {
-    /// Number of h-sets for each impact of a saddle that are sampled at all heights, and number of h-sets over all saddles whose proof is
-    /// tried. The most promising come first.
+    /// Number of h-sets per impact of a saddle that are sampled at all heights, and number of h-sets over all saddles whose proof is tried.
+    /// The most promising come first.
     const SAMPLED: usize = 12;
     const TRIES: usize = 3;
     let middle = 0.5 * (rpm[0] + rpm[1]);
@@ -88,7 +88,7 @@ pub fn find(
     watch.at("strips that return across h-sets about saddles", 0, 0);
     let everywhere = [lengths(SHORTER), lengths(SHORTER)];
     let mut sets: Vec<HSet> = bases.par_iter().filter_map(|base| made_ready(base, &everywhere)).collect();
-    // One strip more may lie between an end of the best and the next.
+    // One more strip may lie between an end of the best set and the next.
     if let Some(best) = sets.iter_mut().min_by(|one, two| promising(one, two))
         && let Some(near) = made_ready(best, &[near(-best.x[0]), near(best.x[1])])
         && promising(&near, best).is_lt()
@@ -100,14 +100,14 @@ pub fn find(
     let mut short = Short { saddles: bases.len(), strips, refused: Vec::new() };
     let coned = |set| if wanted.cones { with_cones(&machine, set) } else { (0.0, set) };
     let mut candidates: Vec<(f64, HSet)> = sets.into_par_iter().map(coned).collect();
-    // Those whose strips keep cones come first, as far as points tell.
+    // Sets whose strips keep cones at sample points come first.
     candidates.sort_by(|one, two| two.0.total_cmp(&one.0).then_with(|| promising(&one.1, &two.1)));
     let mut best: Option<Proved> = None;
     for (tried, (_, set)) in candidates.into_iter().take(TRIES).enumerate() {
         watch.at("strips, which are proved", tried as u64, TRIES as u64);
         let is_coned = set.cone_slope.is_some();
         let found = proved(&machine, set.clone());
-        // Without the strips whose flights may touch the cam N need not be as high, and the others keep farther from that.
+        // Without strips whose flights may touch the cam, N need not be as high, and the other strips are farther from a touch.
         let refused = match &found {
             Ok(proved) => &proved.refused,
             Err(refused) => refused,
@@ -182,7 +182,7 @@ fn sizes(machine: &Machine, base: &HSet, [lefts, rights]: &[Vec<f64>; 2], strips
 }
 
 impl HSet {
-    /// Sets the range of x, and its crossings as strips. `None` for less than two strips, or where a follower would not leave the cam.
+    /// Sets the range of x, and its crossings as strips. `None` for fewer than two strips, or if a follower would not leave the cam.
     fn sized(&self, x: [f64; 2], crossings: &[Crossing], room: f64) -> Option<Self> {
         let strip = |crossing: &Crossing| Strip {
             impacts: crossing.impacts as u64,
@@ -220,8 +220,8 @@ fn height(crossings: &[Crossing], room: f64) -> Option<[f64; 2]> {
     Some([low - room * (high - low), high + room * (high - low)])
 }
 
-/// Room above and below N, as a part of its height: where only images of the middle line count, and where those of the lowest and highest
-/// points count too.
+/// Room above and below N, as a part of its height: if only images of the middle line count, and if the images of the lowest and highest
+/// points count, too.
 const ROOM: f64 = 0.12;
 const LESS_ROOM: f64 = 0.1;
 /// Room at each edge of a strip, as a part of its width.
@@ -240,7 +240,7 @@ fn ready(machine: &Machine, mut set: HSet) -> Option<HSet> {
     let machines: Vec<Machine> = parts.into_iter().map(speed).collect();
     for _ in 0..ROUNDS {
         let heights = [0.0, 0.5, 1.0].map(|part| set.y[0] + part * (set.y[1] - set.y[0]));
-        // A strip is there at each speed and height, next to where it is at the others.
+        // A strip exists at each speed and height, near its position at the others.
         let everywhere = |strip: &Strip| {
             let width = strip.x[1] - strip.x[0];
             let [low, high] = [strip.x[0] - BEYOND * width, strip.x[1] + BEYOND * width];
@@ -250,7 +250,7 @@ fn ready(machine: &Machine, mut set: HSet) -> Option<HSet> {
             let same = |crossing: &Crossing| {
                 (crossing.impacts as u64, crossing.revolutions) == (strip.impacts, strip.revolutions)
             };
-            // Of two that come back alike the one that is nearer to where the strip is.
+            // Of two equal returns, the one nearer to the strip is used.
             let off = |crossing: &Crossing| (crossing.x[0] + crossing.x[1] - strip.x[0] - strip.x[1]).abs();
             let mut crossings = lines.map(|(machine, height)| {
                 let line = Line::new(machine, &set, height, points.clone(), strip.impacts as usize);
@@ -269,7 +269,7 @@ fn ready(machine: &Machine, mut set: HSet) -> Option<HSet> {
     Some(set)
 }
 
-/// Proves an h-set with the strips that cover it. Where two or more keep cones, the set has only these, and `without_cones` has all.
+/// Proves an h-set with the strips that cover it. If two or more keep cones, the set has only these, and `without_cones` has all.
 fn proved(machine: &Machine, set: HSet) -> Result<Proved, Vec<Refused>> {
     let without = HSet { cone_slope: None, ..set.clone() };
     stands(&set).map_err(|why| vec![why])?;
@@ -310,8 +310,8 @@ fn proved(machine: &Machine, set: HSet) -> Result<Proved, Vec<Refused>> {
     Ok(Proved { set, strips, without_cones, refused })
 }
 
-/// Chooses the slope of the cones: the strips that keep them, at sample points, have the highest entropy, then the largest least growth.
-/// Returns that entropy and the h-set.
+/// Chooses the slope of the cones for which the strips that keep them, at sample points, have the highest entropy, then the largest least
+/// growth. Returns that entropy and the h-set.
 fn with_cones(machine: &Machine, set: HSet) -> (f64, HSet) {
     let map = ImpactMap::new(machine);
     let frame = HSetFrame::new(&set);

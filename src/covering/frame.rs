@@ -1,14 +1,14 @@
-//! The coordinates of an h-set, and the images of boxes in them.
+//! Coordinates of an h-set, and the images of boxes in them.
 
 use super::map::{Impact, ImpactMap, Over, UnprovedFlight};
 use super::{HSet, Strip};
 use crate::interval::mean_value_form::MeanValueForm;
 use crate::interval::{Interval, Number};
 
-/// x, y and the speed of the cam, rad/s.
+/// Box of x, y and the speed of the cam, rad/s.
 pub type SectionBox = [Interval; 3];
 
-/// The coordinates of an h-set.
+/// Coordinates of an h-set.
 #[derive(Debug)]
 pub struct HSetFrame {
     centre: [Interval; 2],
@@ -19,15 +19,15 @@ pub struct HSetFrame {
 /// Image of a box of a strip.
 #[derive(Clone, Copy, Debug)]
 pub struct Image {
-    /// x and y at the box's centre.
+    /// Coordinates x and y at the box's centre.
     pub centre: [Interval; 2],
-    /// x and y over the whole box.
+    /// Coordinates x and y over the whole box.
     pub value: [Interval; 2],
-    /// Their derivatives by x, y and the speed.
+    /// Derivatives of these with respect to x, y and the speed.
     pub by: [[Interval; 3]; 2],
 }
 
-/// Radians in a degree.
+/// Returns the radians in a degree.
 fn degree() -> Interval {
     Interval::TURN / 360.0
 }
@@ -38,13 +38,13 @@ pub(super) fn angular_velocities([low, high]: [f64; 2]) -> Interval {
 }
 
 impl HSetFrame {
-    /// The coordinates of an h-set.
+    /// Builds the coordinates of an h-set.
     pub fn new(set: &HSet) -> Self {
         let number = |pair: [f64; 2]| pair.map(Interval::from);
         Self { centre: number(set.centre), unstable: number(set.unstable), stable: number(set.stable) }
     }
 
-    /// The impact at x and y.
+    /// Impact at x and y.
     fn impact<'a>(&self, [x, y]: [Over<'a>; 2]) -> Impact<'a> {
         let along = |side: usize| x * self.unstable[side] + y * self.stable[side] + self.centre[side];
         Impact { angle: along(0) * degree(), velocity: along(1), turns: 0 }
@@ -52,7 +52,7 @@ impl HSetFrame {
 
     /// Rectangles that together contain a strip of an h-set: the cam's angle, rad, and the velocity, m/s.
     pub fn rectangles(&self, set: &HSet, strip: &Strip) -> Vec<[Interval; 2]> {
-        /// Parts of either side. The rectangles reach beyond the strip by one part at most.
+        /// Number of parts of either side. The rectangles reach beyond the strip by at most one part.
         const PARTS: usize = 64;
         let part = |[low, high]: [f64; 2], part: usize| {
             let at = |part: usize| low + (high - low) * part as f64 / PARTS as f64;
@@ -67,7 +67,7 @@ impl HSetFrame {
         parts.map(rectangle).collect()
     }
 
-    /// x and y of an impact, less so many turns of the cam.
+    /// Coordinates x and y of an impact, less this number of turns of the cam.
     fn coordinates<'a>(&self, impact: &Impact<'a>, revolutions: u64) -> [Over<'a>; 2] {
         let turns = (impact.turns - revolutions as i64) as f64;
         let angle = (impact.angle + Interval::TURN * turns) * (Interval::from(1.0) / degree()) + -self.centre[0];
@@ -108,7 +108,7 @@ impl HSetFrame {
         self.image(map, strip, &[x.into(), y.into(), angular_velocities(rpm).middle().into()])
     }
 
-    /// Derivative by x and y at the centre after so many impacts, in doubles.
+    /// Derivative with respect to x and y at the centre after this number of impacts, in doubles.
     pub(super) fn derivative(&self, map: &ImpactMap<'_>, impacts: u64, rpm: [f64; 2]) -> Option<[[f64; 2]; 2]> {
         let strip = Strip { impacts, revolutions: 0, x: [0.0; 2] };
         let image = self.at_point(map, &strip, [0.0; 2], rpm).ok()?;
@@ -117,7 +117,8 @@ impl HSetFrame {
 }
 
 impl Image {
-    /// Least factor that stretches differences within the cone `|dy| <= L |dx|`, L the slope. `None` where the cone may not be kept.
+    /// Least factor by which differences within the cone `|dy| <= L |dx|` are stretched, with the slope L; `None` if the cone may not be
+    /// kept.
     pub fn stretched(&self, slope: f64) -> Option<f64> {
         stretched(self.by.map(|[x, y, _]| [x, y]), slope)
     }
@@ -132,14 +133,14 @@ impl Image {
     }
 }
 
-/// Least factor by which a derivative, by rows, stretches differences within the cone `|dy| <= L |dx|`, L the slope. `None` where it may
+/// Least factor by which a derivative, by rows, stretches differences within the cone `|dy| <= L |dx|`, with the slope L. `None` if it may
 /// not keep the cone.
 pub(super) fn stretched([[a, b], [c, d]]: [[Interval; 2]; 2], slope: f64) -> Option<f64> {
     if !(slope > 0.0) {
         return None;
     }
     let size = |number: Interval| Interval::from(number.magnitude());
-    // Not above 0 where a may be 0.
+    // Not above 0 if a may be 0.
     let least = if a.is_positive() { a.low() } else { -a.high() };
     // |a| - L |b| > 1 and |c| + L |d| <= L (|a| - L |b|)
     let growth = Interval::from(least) - size(b) * slope;

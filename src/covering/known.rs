@@ -1,10 +1,10 @@
-//! Stored h-sets, by model, which spare a program the search for them. They are no proof.
+//! Stored h-sets, by model, which spare a program the search. They are not a proof.
 
 use serde::Deserialize;
 
 use super::HSet;
 
-/// A file of `golden/chaos`.
+/// Contents of a file of `golden/chaos`.
 #[derive(Debug, Deserialize)]
 struct Golden {
     model: String,

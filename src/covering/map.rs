@@ -1,6 +1,6 @@
-//! The impact map over a box of impacts and speeds: the next impact is enclosed with its derivatives, and proved to be the first.
+//! Impact map over a box of impacts and speeds: the next impact is enclosed with its derivatives, and proved to be the first.
 //!
-//! An impact is the cam's angle theta and the velocity u after it relative to the cam, above 0. For a flight from there,
+//! An impact is given by the cam angle theta and the velocity u after it relative to the cam, above 0. For a flight from there,
 //!
 //! ```text
 //! g(t)  = c(theta) + v s(t) + f p(t) - c(theta + omega t)        v = omega c'(theta) + u, f the force at c(theta)
@@ -8,9 +8,9 @@
 //! ```
 //!
 //! the next impact is at the first t > 0 with g = 0, and leaves with `u = -r g'(t)`. Newton's method on intervals finds it over the whole
-//! box at once, with g' < 0. So it is transversal, and its time is a Lipschitz function on the box. That no impact comes earlier is shown
-//! for each stretch of the flight: next to the launch by u, next to the landing by g' < 0, between the two by the Taylor sum about the
-//! middle of the stretch. Corners cost nothing: c'' is the hull of both sides' there.
+//! box at once, with g' < 0. So it is transversal, and its time is a Lipschitz function on the box. A proof for each part of the flight
+//! excludes earlier impacts: near the launch by u, near the landing by g' < 0, between them by the Taylor sum about the middle of the part.
+//! At corners c'' is the hull of both sides.
 
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
@@ -23,18 +23,18 @@ use crate::interval::mean_value_form::MeanValueForm;
 use crate::interval::roots::falls_to_zero;
 use crate::simulate::{Event, EventKind, Machine};
 
-/// A number over a box of two coordinates and the speed.
+/// Number over a box of two coordinates and the speed.
 pub(super) type Over<'a> = MeanValueForm<'a, 3>;
 
 /// Reason why nothing is proved about a flight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum UnprovedFlight {
-    /// The follower may stay on the cam, or not return to it within the limit.
+    /// Follower that may stay on the cam, or may not return to it within the limit.
     NoImpact,
-    /// The next impact may be a graze, or not the same one all over the box.
+    /// Next impact that may be a graze, or may not be the same one over the whole box.
     NotTransversal,
-    /// The follower may meet the cam earlier.
+    /// Follower that may meet the cam earlier.
     NotFirst,
 }
 
@@ -43,12 +43,12 @@ named!(UnprovedFlight);
 /// Longest flight, turns of the cam.
 const MOST_TURNS: u64 = 20;
 
-/// An impact, over a box.
+/// Impact, over a box.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Impact<'a> {
-    /// theta, rad, less the turns.
+    /// Angle theta, rad, less the turns.
     pub angle: Over<'a>,
-    /// u, m/s.
+    /// Velocity u, m/s.
     pub velocity: Over<'a>,
     /// Turns of the cam.
     pub turns: i64,
@@ -63,27 +63,27 @@ fn lift_of<'a>(angle: Over<'a>, over: impl Fn(Interval) -> Lift<Interval>) -> ([
 
 /// Follower and cam at some time of a flight.
 struct Gap<'a> {
-    /// theta + omega t.
+    /// Angle theta + omega t.
     angle: Over<'a>,
-    /// g.
+    /// Gap g.
     value: Over<'a>,
-    /// g'.
+    /// Rate g' of the gap.
     rate: Over<'a>,
-    /// The follower's own velocity.
+    /// Velocity of the follower.
     velocity: Over<'a>,
     /// Enclosure of g''.
     bend: Interval,
 }
 
-/// The impact map of a machine over a range of speeds.
+/// Impact map of a machine over a range of speeds.
 #[derive(Debug)]
 pub struct ImpactMap<'a> {
     machine: &'a Machine,
-    /// Segments of the cam that begin where its velocity jumps.
+    /// Segments of the cam that begin at a corner of velocity.
     sharp: Vec<usize>,
 }
 
-/// A flight from an impact.
+/// Flight from an impact.
 struct Launch<'a, 'b> {
     map: &'b ImpactMap<'b>,
     angle: Over<'a>,
@@ -94,7 +94,7 @@ struct Launch<'a, 'b> {
 }
 
 impl<'a> ImpactMap<'a> {
-    /// The impact map of a machine, at any speed.
+    /// Builds the impact map of a machine, at any speed.
     pub fn new(machine: &'a Machine) -> Self {
         let corners = machine.cam().corners();
         let sharp = corners.iter().filter(|corner| corner.jump_order == 1).map(|corner| corner.segment).collect();
@@ -122,9 +122,9 @@ impl<'a> ImpactMap<'a> {
         })
     }
 
-    /// Derivative of the impact map by the angle and the follower's own velocity before an impact, in the same coordinates of the next
-    /// impact, by rows. It is taken over a rectangle of angles, rad, on one segment of the cam, and velocities after the impact relative to
-    /// the cam, m/s.
+    /// Derivative of the impact map with respect to the angle and the follower's velocity before an impact, in the same coordinates of the
+    /// next impact, by rows. It is enclosed over a rectangle of angles, rad, on one segment of the cam, and velocities after the impact
+    /// relative to the cam, m/s.
     ///
     /// The next impact is where g = 0, and neither its angle nor the follower's velocity there depends on c''. So at a corner this
     /// derivative jumps only with the angle at which the flight begins, and each segment has its own.
@@ -179,19 +179,20 @@ impl<'a> ImpactMap<'a> {
         }
     }
 
-    /// Encloses every angle and velocity of the next impact where flights of the box may graze the cam. Each rectangle belongs to a stretch
-    /// of time in which the gap may reach 0. A graze takes nothing from the motion, so both the touch and the impact after it are included.
+    /// Encloses every angle and velocity of the next impact if flights of the box may graze the cam. Each rectangle belongs to a part of
+    /// time in which the gap may reach 0. A graze does not change the motion, so both the touch and the impact after it are included.
     ///
-    /// `shortest`, s: no stretch is halved below it. A velocity of 0 in the box must be one with which the follower leaves the cam.
+    /// `shortest`, s, is the limit below which no part is halved. A velocity of 0 in the box must be one with which the follower leaves the
+    /// cam.
     pub(super) fn contacts<'b>(
         &self,
         from: &Impact<'b>,
         omega: Over<'b>,
         shortest: f64,
     ) -> Result<Vec<[Interval; 2]>, UnprovedFlight> {
-        /// First step of a flight, in units of the shortest.
+        /// First step of a flight, in units of the shortest step.
         const STEPS: f64 = 64.0;
-        // What is below 0 came of rounding: cells have none.
+        // Values below 0 result from rounding: cells have none.
         let velocity = from.velocity.value();
         let velocity = Interval::new(velocity.low().max(0.0), velocity.high());
         let launch = self.launch(from, omega);
@@ -201,7 +202,7 @@ impl<'a> ImpactMap<'a> {
         while time < most {
             let times = Interval::new(time, time + step);
             let whole = launch.over(times);
-            // g = t (u + t/2 g''(...)) is above 0 for u = 0 as well where g'' is.
+            // g = t (u + t/2 g''(...)) is above 0 for u = 0 as well, if g'' is.
             let is_clear = if time == 0.0 {
                 whole.bend.is_positive() || Launch::leaves(times, &whole, velocity)
             } else {
@@ -221,7 +222,7 @@ impl<'a> ImpactMap<'a> {
             let away = times - times.middle();
             let middle = launch.over(times.middle().into());
             let rate = (middle.rate.value() + away * whole.bend).and(whole.rate.value());
-            // The gap comes down to 0 from above.
+            // The gap falls to 0 from above.
             if rate.low() <= 0.0 {
                 // u = -r g'
                 let after = rate * Interval::from(-self.machine.restitution());
@@ -235,7 +236,7 @@ impl<'a> ImpactMap<'a> {
         Err(UnprovedFlight::NoImpact)
     }
 
-    /// Simulated time to the next impact from the box's centre, s: the guess that the proof starts from.
+    /// Simulated time to the next impact from the box's centre, s: the guess from which the proof starts.
     fn guess(&self, from: &Impact<'_>, omega: Over<'_>) -> Option<f64> {
         let omega = omega.centre.middle();
         let machine = self.machine.at_speed(omega);
@@ -300,13 +301,13 @@ impl<'a> Launch<'a, '_> {
         Ok(gap.value.solved(centre, whole, by))
     }
 
-    /// Whether the gap is above 0 after the launch, with a velocity, over a stretch that begins there.
+    /// Whether the gap is above 0 after the launch, with a velocity, over a part of the flight that begins there.
     fn leaves(times: Interval, whole: &Gap<'_>, velocity: Interval) -> bool {
         // g = t (u + t/2 g''(...))
         (velocity + times * whole.bend.half()).is_positive()
     }
 
-    /// Whether the gap is above 0 all over a stretch.
+    /// Whether the gap is above 0 over a whole part.
     fn is_clear(&self, times: Interval, whole: &Gap<'_>) -> bool {
         // g(m + x) = g(m) + x g'(m) + x^2/2 g''(...)
         whole.value.value().is_positive() || {
@@ -318,7 +319,7 @@ impl<'a> Launch<'a, '_> {
 
     /// Whether the gap is above 0 between the launch, with a velocity, and the landing at a time.
     fn is_first(&self, landing: Interval, velocity: Interval) -> bool {
-        /// Parts of the flight: the first step, and the length below which the proof is given up.
+        /// First step, as a part of the flight, and the length below which the proof fails.
         const STEP: f64 = 0.125;
         const SHORTEST: f64 = 1.0 / 8192.0;
         let end = landing.low();
@@ -328,7 +329,7 @@ impl<'a> Launch<'a, '_> {
         let (mut time, mut step) = (0.0, STEP * end);
         while time < end {
             let times = Interval::new(time, end.min(time + step));
-            // Up to where the first start of the box lands: from there on the gap of each falls to 0, as Newton's method has shown.
+            // Up to the first landing of the box's starts: from there on each gap falls to 0, as Newton's method has shown.
             let is_last = times.high() == end;
             let whole = self.over(times);
             let is_clear = if times.low() == 0.0 {

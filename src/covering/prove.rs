@@ -1,17 +1,17 @@
-//! Proves that the strips of an h-set cover it and keep cones, or reports where the proof fails.
+//! Proofs that the strips of an h-set cover it and keep cones, or the place where the proof fails.
 //!
-//! A strip S covers N where its flights are proved all over it, one of its edges is carried beyond one side of N, the other edge beyond the
-//! other side, and no part of it to a point with x inside N's range and y outside. It keeps the cones `|dy| <= L |dx|`, and stretches
-//! differences in them, where the derivative [[a, b], [c, d]], with a of one sign all over it, has
+//! A strip S covers N if its flights are proved over all of it and its two edges are carried beyond opposite sides of N. No part of it may
+//! be carried to a point with x inside N's range and y outside. Let its derivative be [[a, b], [c, d]], with a of one sign over all of S.
+//! It keeps the cones `|dy| <= L |dx|`, and stretches differences in them, if
 //!
 //! ```text
 //! |a| - L |b| > 1        |c| + L |d| <= L (|a| - L |b|)
 //! ```
 //!
-//! Both hold for a mean of derivatives where they hold for each, so they are shown box by box. With them exactly one motion follows a
-//! sequence in both directions: the map can be run backwards, and each impact shrinks `u dtheta du` by exactly `r^2 e^{-2 zeta t}`. So the
+//! Both are true of a mean of derivatives if they are true of each, so they are shown box by box. With them exactly one motion follows a
+//! sequence in both directions. The map can be run backwards, and each impact shrinks `u dtheta du` by exactly `r^2 e^{-2 zeta t}`. So the
 //! impacts of one past, which lie between two graphs of slope L or less, lie on one graph. Two of them with one future would differ within
-//! the cone, and separate. The argument needs losses, and u above 0 all over N.
+//! the cone, and separate. The argument needs losses, and u above 0 over all of N.
 
 use rayon::prelude::*;
 use serde::Serialize;
@@ -25,13 +25,13 @@ use crate::simulate::Machine;
 /// Proved properties of a strip.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Covered {
-    /// Impacts until it is carried across the h-set.
+    /// Number of impacts until it is carried across the h-set.
     pub impacts: u64,
-    /// Turns of the cam until then.
+    /// Number of turns of the cam until then.
     pub revolutions: u64,
     /// Range of y of the image, where it lies over the h-set.
     pub image_y: [f64; 2],
-    /// Least factor that stretches a difference in the cone; `None` where cones were not requested.
+    /// Least factor by which a difference in the cone is stretched; `None` if cones were not requested.
     pub growth: Option<f64>,
     /// Number of boxes of the proof.
     pub boxes: usize,
@@ -41,30 +41,30 @@ pub struct Covered {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Relation {
-    /// The h-set is a parallelogram, and its strips are in it and disjoint.
+    /// Disjoint strips inside an h-set that is a parallelogram.
     Apart,
-    /// Each flight ends with a first impact that is transversal.
+    /// First and transversal impact at the end of each flight.
     Flight,
-    /// The edges of the strip are carried beyond the h-set, each beyond its own side.
+    /// Edges of the strip, carried beyond opposite sides of the h-set.
     Edges,
-    /// No part of the strip is carried above or below the h-set.
+    /// Height of the strip's image: no part is carried above or below the h-set.
     Height,
-    /// Cones are kept.
+    /// Cones that are kept.
     Cones,
-    /// Impacts or flights take energy from the motion. Where cones are kept, this makes the motion of a sequence unique.
+    /// Losses of energy by impacts or flights. If cones are kept, they make the motion of a sequence unique.
     Losses,
 }
 
 named!(Relation);
 
-/// Why a strip is not proved to cover.
+/// Failed proof that a strip covers the h-set.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Refused {
-    /// The relation that failed.
+    /// Relation that failed.
     pub relation: Relation,
-    /// Impacts of the strip.
+    /// Number of impacts of the strip.
     pub impacts: u64,
-    /// x and y of the failure.
+    /// Coordinates x and y of the failure.
     pub at: [f64; 2],
     /// Reason why the flight is not proved.
     pub flight: Option<UnprovedFlight>,
@@ -72,13 +72,13 @@ pub struct Refused {
     pub is_refuted: bool,
 }
 
-/// A part of a strip, with its image if it is computed already.
+/// Part of a strip, with its image if it is already computed.
 type Part = (SectionBox, Option<Image>);
 
-/// Boxes after which the proof of a relation is given up. A strip that covers with a margin takes some hundreds.
+/// Number of boxes after which the proof of a relation fails. A strip that covers with a margin needs some hundreds.
 const MOST_BOXES: usize = 1 << 12;
 
-/// Proves that each strip covers the h-set, at its speeds whatever the machine's own. The error is that of a strip without a proof.
+/// Proves that each strip covers the h-set, at the set's speeds and not the machine's. The error belongs to a strip without a proof.
 pub fn prove(machine: &Machine, set: &HSet) -> Result<Vec<Covered>, Refused> {
     stands(set)?;
     loses(machine, set)?;
@@ -114,7 +114,7 @@ pub(super) fn stands(set: &HSet) -> Result<(), Refused> {
     Ok(())
 }
 
-/// Checks that there are losses where cones are requested: cones make the motion of a sequence unique only with losses.
+/// Checks that there are losses if cones are requested: only with losses do cones make the motion of a sequence unique.
 pub(super) fn loses(machine: &Machine, set: &HSet) -> Result<(), Refused> {
     let is_lossless = machine.restitution() >= 1.0 && machine.flight().zeta() == 0.0;
     match set.strips.first().filter(|_| set.cone_slope.is_some() && is_lossless) {
@@ -126,7 +126,7 @@ pub(super) fn loses(machine: &Machine, set: &HSet) -> Result<(), Refused> {
     }
 }
 
-/// Proves that one strip covers the h-set, and keeps cones where they are requested.
+/// Proves that one strip covers the h-set, and keeps cones if they are requested.
 pub(super) fn covered(machine: &Machine, set: &HSet, strip: &Strip, most_boxes: usize) -> Result<Covered, Refused> {
     let proof = Proof { map: ImpactMap::new(machine), frame: HSetFrame::new(set), set, strip, most_boxes };
     let (y, omega) = (Interval::new(set.y[0], set.y[1]), angular_velocities(set.rpm));
@@ -136,7 +136,7 @@ pub(super) fn covered(machine: &Machine, set: &HSet, strip: &Strip, most_boxes: 
         let fails = if left { whole.low() <= image.centre[0].low() } else { image.centre[0].high() <= whole.high() };
         if x { Some(true) } else { fails.then_some(false) }
     };
-    // Which edge goes to which side is seen in the middle of one of them.
+    // The middle of one edge shows which edge goes to which side.
     let edges = strip.x.map(|x| [x.into(), y, omega]);
     let middle = proof.frame.image(&proof.map, strip, &edges[0].map(|side: Interval| side.middle().into()));
     let is_left = middle.is_ok_and(|image| image.centre[0].middle() < whole.middle());
@@ -156,7 +156,7 @@ pub(super) fn covered(machine: &Machine, set: &HSet, strip: &Strip, most_boxes: 
     let mut images = proof.all(boxes, Relation::Height, inside)?;
     let mut growth = None;
     if let Some(slope) = set.cone_slope {
-        // a is not 0 in any box, and boxes that meet have what they share in both enclosures: so it has one sign all over.
+        // a is not 0 in any box, and neighbouring boxes share points that are in both enclosures: so a has one sign everywhere.
         let keeps = |image: &Image| match image.stretched(slope) {
             Some(_) => Some(true),
             None => image.misses(slope).then_some(false),
@@ -170,7 +170,7 @@ pub(super) fn covered(machine: &Machine, set: &HSet, strip: &Strip, most_boxes: 
     Ok(Covered { impacts, revolutions, image_y: [height.low(), height.high()], growth, boxes: images.len() })
 }
 
-/// The proof of one strip.
+/// Proof for one strip.
 struct Proof<'a> {
     map: ImpactMap<'a>,
     frame: HSetFrame,

@@ -1,14 +1,14 @@
-//! A trapping region: impacts that are followed by impacts among them, for ever.
+//! Trapping regions: sets of impacts that are followed by impacts in the set, for ever.
 //!
-//! The plane of impacts is cut into cells. Starting from the cells of some impacts, the image of each cell is enclosed, and each cell that
-//! the image may touch is added, until no new one appears. Then every motion that starts in the cells stays in them: it flies and hits, and
-//! never rests on the cam. The first cells are squares of one size. A cell is halved where its image is larger than such a square, or its
-//! flights do not all end with one transversal impact. It is halved across the side that makes the image long, and so on. So cells are
-//! small where the map stretches much, and the region is larger than necessary by one square everywhere.
+//! The plane of impacts is divided into cells. Starting from the cells of some impacts, the image of each cell is enclosed, and each cell
+//! that the image may touch is added, until no new one appears. Then every motion that starts in the cells stays in them: it flies and
+//! hits, and never rests on the cam. The first cells are squares of one size. A cell is halved if its image is larger than such a square,
+//! or if its flights do not all end with one transversal impact. It is halved across the side that makes the image long. So cells are small
+//! where the map stretches much, and the region is at most one square larger than necessary everywhere.
 //!
 //! Flights that may graze the cam are followed to each place where they may touch it. An impact there leaves with any velocity from 0 to
-//! the bound that the slope of the gap gives. At a velocity of 0 the cam must release the follower, or the region is not closed. So each
-//! cell has a least time to the next impact, and impacts cannot accumulate, as they do before a rest.
+//! the bound that the slope of the gap gives. At a velocity of 0 the cam must release the follower; otherwise the region is not closed. So
+//! each cell has a least time to the next impact, and impacts cannot accumulate, as they do before a rest.
 
 use std::collections::HashMap;
 
@@ -24,10 +24,10 @@ use crate::orbit::search::velocity_scale;
 use crate::progress::Watch;
 use crate::simulate::Machine;
 
-/// A rectangle of impacts, in squares of the plane: across is the cam's angle, up is the velocity relative to the cam.
+/// Rectangle of impacts, in squares of the plane: across is the cam angle, up is the velocity relative to the cam.
 type Place = [Interval; 2];
 
-/// A square of the plane, halved so many times across and up. `at` counts cells of this size from 0.
+/// Square of the plane, halved a number of times across and up. `at` counts cells of this size from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 struct Cell {
     at: [u64; 2],
@@ -55,36 +55,36 @@ impl Cell {
 
 /// Result of examining a cell.
 enum Look {
-    /// Impacts of the cell are followed by impacts in these rectangles.
+    /// Rectangles that contain the impacts after those of the cell.
     Whole(Vec<Place>),
-    /// The cell is halved across this side, and its halves are to be examined.
+    /// Side across which the cell is halved; its halves are to be examined.
     Halved(usize),
 }
 
-/// A region that the impact map of a machine carries into itself.
+/// Region that the impact map of a machine carries into itself.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Region {
     /// Squares per degree.
     pub squares_per_degree: u32,
-    /// The height of a square, m/s.
+    /// Height of a square, m/s.
     pub square_m_s: f64,
     /// Number of cells.
     pub cells: usize,
-    /// Number of images enclosed.
+    /// Number of enclosed images.
     pub looks: usize,
     /// Covered part of the rectangle of all angles and all velocities up to the highest.
     pub part: f64,
-    /// The lowest and the highest velocity in it, m/s.
+    /// Lowest and highest velocity in it, m/s.
     pub velocities_m_s: [f64; 2],
-    /// The lowest and the highest angle in it, from 0 to 360 degrees.
+    /// Lowest and highest angle in it, from 0 to 360 degrees.
     pub angles_deg: [f64; 2],
-    /// The cells: their ranges of the cam's angle, degrees, and of the velocity, m/s.
+    /// Cells: their ranges of the cam angle, degrees, and of the velocity, m/s.
     #[serde(skip)]
     pub places: Vec<[[f64; 2]; 2]>,
 }
 
 impl Region {
-    /// Whether an impact is in the region, at the cam's angle, degrees in a turn, and the velocity relative to the cam, m/s.
+    /// Whether an impact is in the region, given by the cam angle, degrees in a turn, and the velocity relative to the cam, m/s.
     pub fn holds(&self, impact: [f64; 2]) -> bool {
         self.places.iter().any(|place| place.iter().zip(impact).all(|([low, high], at)| *low <= at && at <= *high))
     }
@@ -93,9 +93,9 @@ impl Region {
 /// Proved lower bound, above 1, on the factor by which some deviations of every motion in a region grow at each impact. `None` without a
 /// proof.
 ///
-/// Coordinates are theta, the angle of an impact, and v, the follower's velocity before it. Each derivative in the region, at a corner that
-/// of either side, maps a cone `|dv - s dtheta| <= L |dtheta|` into itself, and |dtheta| grows in it. So no periodic orbit in the region is
-/// stable (an orbit on a corner has all its neighbours on one side). The largest Lyapunov exponent of each motion is at least the logarithm
+/// Coordinates are theta, the angle of an impact, and v, the follower's velocity before it. Each derivative in the region, at a corner on
+/// either side, maps a cone `|dv - s dtheta| <= L |dtheta|` into itself, and |dtheta| grows in it. So no periodic orbit in the region is
+/// stable (all neighbours of an orbit on a corner are on one side). The largest Lyapunov exponent of each motion is at least the logarithm
 /// of the bound, per impact.
 pub fn parted(machine: &Machine, rpm: f64, region: &Region) -> Option<f64> {
     /// Tried values of L: |s| times these powers of two.
@@ -109,7 +109,7 @@ pub fn parted(machine: &Machine, rpm: f64, region: &Region) -> Option<f64> {
         let place = [Interval::new(angle[0], angle[1]) * degree, Interval::new(velocity[0], velocity[1])];
         let segments = machine.cam().segments();
         let on = segments.iter().enumerate().filter_map(|(index, segment)| {
-            // The last one goes on to where the turn ends, which no double is.
+            // The last segment extends to the end of the turn, which is not a double.
             let end = if index + 1 == segments.len() { Interval::TURN.high() } else { segment.end };
             let angles = place[0].common(Interval::new(segment.start, end))?;
             Some(map.derivative_before(segment, [angles, place[1]], omega))
@@ -117,12 +117,12 @@ pub fn parted(machine: &Machine, rpm: f64, region: &Region) -> Option<f64> {
         on.collect::<Result<Vec<_>, _>>().ok().filter(|sides| !sides.is_empty())
     };
     let derivatives: Vec<Vec<[[Interval; 2]; 2]>> = region.places.par_iter().map(of_cell).collect::<Option<_>>()?;
-    // The derivative has nearly one direction that it sends all to, where impacts take much from the motion.
+    // If impacts have large losses, the derivative sends all directions to nearly one.
     let [[_, b], [_, d]] = *derivatives.get(derivatives.len() / 2)?.first()?;
     let s = d.middle() / b.middle();
     let least = |slope: f64| {
         let grown = derivatives.iter().flatten().map(|[[a, b], [c, d]]| {
-            // In x = dtheta and y = dv - s dtheta.
+            // In coordinates x = dtheta and y = dv - s dtheta.
             let (x, across) = (*a + *b * s, *d - *b * s);
             stretched([[x, *b], [*c - *a * s + across * s, across]], slope)
         });
@@ -131,20 +131,20 @@ pub fn parted(machine: &Machine, rpm: f64, region: &Region) -> Option<f64> {
     SLOPES.filter_map(|power| least(s.abs() * 2.0_f64.powi(power))).reduce(f64::max)
 }
 
-/// A region that is not closed.
+/// Region that is not closed.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct OpenRegion {
     /// Squares per degree.
     pub squares_per_degree: u32,
-    /// Cells so far.
+    /// Number of cells so far.
     pub cells: usize,
-    /// The impact whose cell could not be continued: degrees of the cam, and m/s.
+    /// Impact whose cell could not be continued: degrees of the cam, and m/s.
     pub at: [f64; 2],
-    /// Reason why the flight from there is not proved; `None` where there were too many cells, or no impacts to begin with.
+    /// Reason why the flight from there is not proved; `None` if there were too many cells, or no impacts to begin with.
     pub flight: Option<UnprovedFlight>,
 }
 
-/// The plane of impacts of a machine, in squares.
+/// Plane of impacts of a machine, in squares.
 struct Plane<'a> {
     map: ImpactMap<'a>,
     omega: Interval,
@@ -152,13 +152,14 @@ struct Plane<'a> {
     height: f64,
 }
 
-/// Most halvings of a cell whose image is large.
+/// Largest number of halvings of a cell whose image is large.
 const HALVINGS: u8 = 24;
-/// Most halvings of a cell whose flights do not all end with one transversal impact. After these its flights may graze, and are followed.
+/// Largest number of halvings of a cell whose flights do not all end with one transversal impact. After these its flights may graze, and
+/// are followed.
 const GRAZING: u8 = 12;
 
-/// Closes the region that begins with some rectangles of impacts: the cam's angle, rad, and the velocity relative to it, m/s. The plane has
-/// so many squares per degree, and the region so many cells at most.
+/// Closes the region that begins with some rectangles of impacts: the cam angle, rad, and the velocity relative to the cam, m/s. The plane
+/// has this number of squares per degree, and the region at most this number of cells.
 pub fn trap(
     machine: &Machine,
     rpm: f64,
@@ -167,9 +168,9 @@ pub fn trap(
     most: usize,
     watch: &dyn Watch,
 ) -> Result<Region, OpenRegion> {
-    // Ends of cells are doubles.
+    // Ends of cells must be doubles.
     let squares_per_degree = squares_per_degree.next_power_of_two();
-    /// Squares of a column that reaches to a velocity which few impacts exceed.
+    /// Number of squares of a column up to a velocity that few impacts exceed.
     const SQUARES: f64 = 512.0;
     let height =
         elementary::exp2(elementary::log2(velocity_scale(machine) / SQUARES).floor()) / f64::from(squares_per_degree);
@@ -190,12 +191,12 @@ pub fn trap(
         let wave: Vec<(Cell, Vec<Place>)> = cover.pending.drain().collect();
         looks += wave.len();
         let looked: Vec<_> = wave.par_iter().map(|(cell, _)| plane.look(cell)).collect();
-        // Of the cells that are not carried on the first one in the plane is told, however threads take turns.
+        // The first failing cell in the plane is reported, independent of the order of threads.
         let stuck = wave.iter().zip(&looked).filter_map(|((cell, _), look)| Some((*cell, *look.as_ref().err()?)));
         if let Some((cell, flight)) = stuck.min_by_key(|(cell, _)| *cell) {
             return Err(escape(cells, [cell.side(0), cell.side(1)], Some(flight)));
         }
-        // All of them are known before any image touches one, so that none is looked at twice.
+        // All cells are stored before any image touches one, so that none is examined twice.
         for ((cell, _), look) in wave.iter().zip(&looked) {
             let side = match look {
                 Ok(Look::Halved(side)) => Some(*side),
@@ -219,7 +220,7 @@ pub fn trap(
     Ok(plane.region(&cover, looks))
 }
 
-/// The cells of a region.
+/// Cells of a region.
 struct Cover {
     /// Examined cells: `None` for a whole cell, otherwise the side across which it is halved.
     known: HashMap<Cell, Option<usize>>,
@@ -235,7 +236,7 @@ impl Cover {
         let ends = |side: usize| place[side].low().floor() as i64..=place[side].high().floor() as i64;
         for across in ends(0) {
             let at = across.rem_euclid(self.turn);
-            // A place that goes beyond a turn is the same one turn on.
+            // A place beyond a turn equals the place one turn earlier.
             let shifted = [place[0] + (at - across) as f64, place[1]];
             for up in ends(1).filter(|up| *up >= 0) {
                 self.reach(Cell { at: [at as u64, up as u64], halved: [0; 2] }, &shifted);
@@ -260,7 +261,8 @@ impl Plane<'_> {
         [angle * (Interval::from(360.0) / Interval::TURN) * f64::from(self.per_degree), velocity / self.height]
     }
 
-    /// Converts impacts that follow those of a cell to squares. An error where they are as wide as a turn or unbounded, and so not located.
+    /// Converts impacts that follow those of a cell to squares. Returns an error if they are as wide as a turn or unbounded, and so not
+    /// located.
     fn image(&self, contact: [Interval; 2]) -> Result<Place, UnprovedFlight> {
         let image = self.squares(contact);
         let turn = f64::from(360 * self.per_degree);
@@ -291,7 +293,7 @@ impl Plane<'_> {
             }
             Err(_) if halved < GRAZING => Ok(Look::Halved(usize::from(cell.halved[1] < cell.halved[0]))),
             Err(_) => {
-                // As long as half a square takes to pass.
+                // Time in which half a square passes.
                 let shortest = 0.5 / f64::from(360 * self.per_degree) * (Interval::TURN / self.omega).middle();
                 let contacts = self.map.contacts(&from, omega, shortest)?;
                 Ok(Look::Whole(contacts.into_iter().map(|contact| self.image(contact)).collect::<Result<_, _>>()?))

@@ -1,14 +1,14 @@
-//! Simulated impacts along a line, and where they return: candidates for a proof.
+//! Simulated impacts along a line and their returns: candidates for a proof.
 
 use std::ops::ControlFlow;
 
 use super::HSet;
 use crate::simulate::{Event, EventKind, Machine, SimulateError};
 
-/// Impacts followed after a start.
+/// Number of impacts that are followed after a start.
 pub(super) const MOST_IMPACTS: usize = 8;
 
-/// An impact in the coordinates of an h-set.
+/// Impact in the coordinates of an h-set.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Arrival {
     /// Turns of the cam, chosen so that the angle is nearest to the h-set's.
@@ -17,23 +17,23 @@ pub(crate) struct Arrival {
     pub y: f64,
 }
 
-/// A line along x, with the impacts that follow each of its points.
+/// Line along x, with the impacts that follow each of its points.
 pub(crate) struct Line {
-    /// The points.
+    /// Points of the line.
     pub x: Vec<f64>,
     /// Impacts that follow each point, in order, up to the first rest.
     pub arrivals: Vec<Vec<Arrival>>,
 }
 
 impl Line {
-    /// Simulates points of an h-set at one y on a machine, each for up to so many impacts.
+    /// Simulates points of an h-set at one y on a machine, each for up to this number of impacts.
     pub fn new(machine: &Machine, set: &HSet, y: f64, x: Vec<f64>, impacts: usize) -> Self {
         let arrivals = x.iter().map(|x| arrivals(machine, set, [*x, y], impacts).unwrap_or_default()).collect();
         Self { x, arrivals }
     }
 }
 
-/// Returns the impacts after a start; `None` where the follower cannot start there.
+/// Returns the impacts after a start; `None` if the follower cannot start there.
 fn arrivals(machine: &Machine, set: &HSet, point: [f64; 2], impacts: usize) -> Option<Vec<Arrival>> {
     /// Longest simulation, turns of the cam.
     const MOST_REVOLUTIONS: u64 = 30;
@@ -66,7 +66,7 @@ fn arrivals(machine: &Machine, set: &HSet, point: [f64; 2], impacts: usize) -> O
     Some(found)
 }
 
-/// A stretch of a line that is carried across an h-set.
+/// Part of a line that is carried across an h-set.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Crossing {
     pub impacts: usize,
@@ -78,7 +78,7 @@ pub(super) struct Crossing {
 }
 
 impl Crossing {
-    /// The smallest crossing that contains both.
+    /// Smallest crossing that contains both.
     pub fn hull(&self, other: &Self) -> Self {
         let hull = |one: [f64; 2], two: [f64; 2]| [one[0].min(two[0]), one[1].max(two[1])];
         Self { x: hull(self.x, other.x), y: hull(self.y, other.y), ..*self }
@@ -86,15 +86,15 @@ impl Crossing {
 }
 
 impl Line {
-    /// Returns the stretches within a range of x that are carried across that range after some impacts, without a jump.
+    /// Returns the parts within a range of x that are carried across that range after some impacts, without a jump.
     pub(super) fn crossings(&self, [low, high]: [f64; 2]) -> Vec<Crossing> {
-        /// Fewest points of a crossing. With fewer, some may lie on the two sides of a jump.
+        /// Smallest number of points of a crossing. With fewer, some may lie on the two sides of a jump.
         const FEWEST: usize = 6;
         let mut found = Vec::new();
         let from = self.x.partition_point(|x| *x <= low);
         let to = self.x.partition_point(|x| *x < high);
         for impacts in 1..=MOST_IMPACTS {
-            // The side that it came from, where it was last there, and how many points and which y since.
+            // Side from which the image came, the last point on that side, and the number of points and the y since then.
             let mut last: Option<(bool, usize, i64)> = None;
             let (mut count, mut y) = (0, [f64::INFINITY, f64::NEG_INFINITY]);
             for index in from..to {
@@ -128,7 +128,7 @@ impl Line {
     }
 }
 
-/// Impacts, degrees of the cam and m/s relative to it, of a run that starts with one at an angle, rad, and a velocity.
+/// Impacts, degrees of the cam and m/s relative to it, of a run that starts with an impact at an angle, rad, and a velocity.
 pub(crate) fn impacts(
     machine: &Machine,
     [angle, velocity]: [f64; 2],

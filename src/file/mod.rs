@@ -2,7 +2,8 @@
 //!
 //! An [`Output`] is written like any other stream, in bounded memory. A file of that name appears, or changes, only with
 //! [`Output::commit`]. Until then it is unfinished: it has no name at all where the system supports that, so that nothing stays behind
-//! however the program ends. `-` is standard output, which has no such protection: incomplete output says so in its last line.
+//! however the program ends. The name `-` is standard output, which has no such protection: the last line of incomplete output says that it
+//! is incomplete.
 
 mod read;
 mod registry;
@@ -49,7 +50,7 @@ impl FileError {
     }
 }
 
-/// A destination for results: a file that appears when it is complete, or a stream.
+/// Destination for results: a file that appears when it is complete, or a stream.
 pub struct Output<'a> {
     path: PathBuf,
     sink: Sink<'a>,
@@ -62,10 +63,10 @@ enum Sink<'a> {
         unfinished: BufWriter<Unfinished>,
         target: PathBuf,
     },
-    /// A device or pipe, which cannot be replaced.
+    /// Device or pipe, which cannot be replaced.
     Device(BufWriter<File>),
     Standard(BufWriter<Box<dyn Write + 'a>>),
-    /// Already committed.
+    /// Output that is already committed.
     Done(io::Sink),
 }
 
@@ -92,20 +93,20 @@ impl<'a> Output<'a> {
         Ok(Output { path: path.to_owned(), sink: begin(path)?, begun: false })
     }
 
-    /// Begins to write a file that takes the place of whatever has its name, without following a link.
+    /// Begins to write a file that replaces any file of its name, without following a link.
     pub(crate) fn in_place_of(path: &Path) -> Result<Output<'static>, FileError> {
         let unfinished = Unfinished::begin(folder(path)).map_err(FileError::new(path, "cannot be written"))?;
         let sink = Sink::Whole { unfinished: BufWriter::new(unfinished), target: path.to_owned() };
         Ok(Output { path: path.to_owned(), sink, begun: false })
     }
 
-    /// Completes the output: every byte is on the disk and the file has its name, or there is an error and no file.
+    /// Completes the output: every byte is on the disk and the file has its name; or there is an error and no file.
     pub fn commit(self) -> Result<(), FileError> {
         Self::commit_all(vec![self])
     }
 
-    /// Completes several outputs: all files have their names, or there is an error and each name is as it was. A signal that can be caught
-    /// waits until then.
+    /// Completes several outputs: all files have their names; or there is an error and each name is unchanged. A signal that can be caught
+    /// is delayed until then.
     pub fn commit_all(outputs: Vec<Self>) -> Result<(), FileError> {
         let mut files = Vec::new();
         for mut output in outputs {
@@ -125,7 +126,7 @@ impl<'a> Output<'a> {
         }
     }
 
-    /// Writes what is still in memory. Returns the file that needs its name, if the output is not a stream.
+    /// Writes the data that is still in memory. Returns the file that needs its name, if the output is not a stream.
     fn written(&mut self) -> Result<Option<(Unfinished, PathBuf)>, FileError> {
         let write = FileError::new(&self.path, "cannot be written");
         match std::mem::replace(&mut self.sink, Sink::Done(io::sink())) {
@@ -173,7 +174,7 @@ impl Write for Output<'_> {
     }
 }
 
-/// Refuses results, each with its description, whose names lead to the same file by whatever path: the last would overwrite the others.
+/// Rejects results, each with its description, whose names lead to the same file by any path: the last would overwrite the others.
 pub fn distinct<'a>(results: impl IntoIterator<Item = (&'a str, &'a Path)>) -> Result<(), FileError> {
     let mut places = BTreeMap::new();
     results.into_iter().try_for_each(|(what, path)| match places.insert(place(path), what) {
@@ -185,7 +186,7 @@ pub fn distinct<'a>(results: impl IntoIterator<Item = (&'a str, &'a Path)>) -> R
     })
 }
 
-/// Resolves a name to a path, as far as that exists.
+/// Resolves the existing part of a name to a path.
 fn place(path: &Path) -> PathBuf {
     let whole = || fs::canonicalize(path).ok();
     let of_the_folder = || Some(fs::canonicalize(folder(path)).ok()?.join(path.file_name()?));

@@ -1,15 +1,15 @@
-//! Files that are read whole, up to a limit: model files, tables of lifts, fonts, and the files of a store.
+//! Files that are read completely, up to a limit: model files, tables of lifts, fonts, and the files of a store.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Read};
 use std::path::Path;
 
-/// Largest file and longest line that are read, bytes: a thousand times the size of anything that a person writes, and too small to fill
-/// the memory of a machine.
+/// Largest file and longest line that are read, bytes: a thousand times the size of any handwritten file, and too small to fill the memory
+/// of a machine.
 const LONGEST: usize = 16 << 20;
 const LONGEST_LINE: usize = 1 << 20;
 
-/// Codes of the text of a file that an older program may have written.
+/// Encodings of a text file that an older program may have written.
 const ANY_CODE: &str = "UTF-8, UTF-16 with its mark or Latin-1";
 
 /// Reads the text of a file; never reads more than the limit.
@@ -17,8 +17,8 @@ pub(crate) fn text(path: &Path) -> io::Result<String> {
     lines(String::from_utf8(bytes(path, LONGEST)?).map_err(|_| no_text("UTF-8"))?)
 }
 
-/// Reads a file that an older program may have written: UTF-16 behind its mark, and text that is not UTF-8 as Latin-1, in which a degree sign
-/// is one byte.
+/// Reads a file that an older program may have written: UTF-16 with a byte order mark, and text that is not UTF-8 as Latin-1, in which a
+/// degree sign is one byte.
 pub(crate) fn text_of_any_age(path: &Path) -> io::Result<String> {
     let bytes = bytes(path, LONGEST)?;
     let text = match bytes[..] {
@@ -30,7 +30,7 @@ pub(crate) fn text_of_any_age(path: &Path) -> io::Result<String> {
     if text.contains('\0') { Err(no_text(ANY_CODE)) } else { lines(text) }
 }
 
-/// Text in UTF-16.
+/// Decodes text in UTF-16.
 fn wide(bytes: &[u8], number: fn([u8; 2]) -> u16) -> io::Result<String> {
     let (pairs, rest) = bytes.as_chunks();
     let text = String::from_utf16(&pairs.iter().map(|pair| number(*pair)).collect::<Vec<u16>>());
@@ -46,7 +46,7 @@ fn too_long(what: &str, most: usize) -> io::Error {
     io::Error::new(io::ErrorKind::FileTooLarge, words)
 }
 
-/// Opens a regular file for reading. Refuses devices, pipes, sockets and folders without opening them, and never waits for a pipe.
+/// Opens a regular file for reading. Rejects devices, pipes, sockets and folders without opening them, and never waits for a pipe.
 pub fn regular(path: &Path) -> io::Result<File> {
     is_regular(&fs::metadata(path)?)?;
     let mut options = OpenOptions::new();
@@ -70,7 +70,7 @@ fn is_regular(found: &fs::Metadata) -> io::Result<()> {
     }
 }
 
-/// Reads a regular file whole, up to `most` bytes.
+/// Reads a regular file completely, up to `most` bytes.
 pub fn bytes(path: &Path, most: usize) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     regular(path)?.take(most as u64 + 1).read_to_end(&mut bytes)?;

@@ -1,13 +1,13 @@
 //! Registry of the hidden files, private folders and started programs that must be removed or ended before a signal ends the program.
 //!
-//! Destructors do not run when a signal ends the program. A program that leaves its signals to itself calls [`clear`] first.
+//! Destructors do not run when a signal ends the program. A program that does not handle its signals calls [`clear`] first.
 
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::process::Child;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// Hidden files and private folders that a signal has to remove; locked while one of them is created, removed or renamed.
+/// Hidden files and private folders that a signal must remove; locked while one of them is created, removed or renamed.
 static HIDDEN: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
 
 pub fn held() -> MutexGuard<'static, BTreeSet<PathBuf>> {
@@ -15,14 +15,14 @@ pub fn held() -> MutexGuard<'static, BTreeSet<PathBuf>> {
     HIDDEN.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Ids of the processes that a signal has to end.
+/// Ids of the processes that a signal must end.
 static STARTED: Mutex<BTreeSet<u32>> = Mutex::new(BTreeSet::new());
 
 fn started() -> MutexGuard<'static, BTreeSet<u32>> {
     STARTED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// A started program; it ends with this value or with a signal that ends this program.
+/// Started program; it ends when this value is dropped or when a signal ends this program.
 pub(crate) struct Started {
     child: Child,
 }
@@ -47,7 +47,7 @@ impl Drop for Started {
     }
 }
 
-/// An entry of `HIDDEN`, removed from it with this value.
+/// Entry of `HIDDEN`, removed from it when this value is dropped.
 pub struct HeldPath(pub(super) PathBuf);
 
 impl Drop for HeldPath {
@@ -56,8 +56,8 @@ impl Drop for HeldPath {
     }
 }
 
-/// Removes hidden files and private folders, and ends started programs, before this program ends. While the result lives no thread can begin
-/// or finish a file.
+/// Removes hidden files and private folders, and ends started programs, before this program ends. While the result lives, no thread can
+/// begin or finish a file.
 pub fn clear() -> impl Drop {
     let held = held();
     for path in held.iter() {

@@ -1,4 +1,4 @@
-//! A private folder of files for another program to read.
+//! Private folder of files for another program to read.
 
 use std::collections::BTreeSet;
 use std::fs::{self, File};
@@ -10,17 +10,17 @@ use tempfile::{Builder, TempDir};
 use super::read;
 use super::registry::{self, HeldPath};
 
-/// Prefix of the folder's name, and the file in it that the program keeps locked while it runs.
+/// Prefix of the folder's name, and the file in it that the program locks while it runs.
 const NAME: &str = "corner-impact.";
 const ALIVE: &str = ".alive";
 const UNNAMED: &str = ".alive.new";
-/// First line of that file. The second is the name of the folder, so that a copy is not taken for the program's own.
+/// First line of that file. The second line is the name of the folder, so that a copy is not mistaken for the program's own folder.
 const MARK: &str = "scripts of corner-impact, which it removes";
 
-/// Folder that is removed with this value, or by a signal that ends the program. If neither happens, the next program that makes one
-/// removes it.
+/// Folder that is removed when this value is dropped, or by a signal that ends the program. Otherwise the next program that makes such a
+/// folder removes it.
 pub(crate) struct Scratch {
-    // Dropped before the signals forget the folder.
+    // Dropped before the registry entry of the folder.
     folder: TempDir,
     _listed: HeldPath,
     _alive: File,
@@ -30,7 +30,7 @@ impl Scratch {
     /// Creates a folder with these files, each given by its path in the folder and its text.
     pub(crate) fn of(files: &[(&str, &str)]) -> io::Result<Self> {
         sweep(files);
-        // Signals wait until the last file is complete: a folder cannot be emptied while it is filled.
+        // Signals are delayed until the last file is complete: a folder cannot be emptied while it is filled.
         let mut held = registry::held();
         let folder = Builder::new().prefix(NAME).tempdir()?;
         // Locked before it is renamed: otherwise another program could find it unlocked in between.
@@ -60,8 +60,8 @@ fn mark(folder: &Path) -> String {
     format!("{MARK}\n{}\n", folder.file_name().unwrap_or_default().display())
 }
 
-/// Removes what killed programs of this user left: these files, in folders that bear the mark of this program and whose lock is free. Leaves
-/// everything else alone, and waits for nothing.
+/// Removes folders that killed programs of this user left: these files, in folders that bear the mark of this program and are unlocked.
+/// Leaves everything else unchanged, and never waits.
 fn sweep(files: &[(&str, &str)]) {
     let Ok(entries) = fs::read_dir(std::env::temp_dir()) else { return };
     for folder in entries.flatten().filter(|entry| entry.file_name().to_string_lossy().starts_with(NAME)) {
@@ -80,7 +80,7 @@ fn sweep(files: &[(&str, &str)]) {
     }
 }
 
-/// Whether something, and not a link to it, is of a kind, and of this user.
+/// Whether a path itself, not the target of a link, is of a kind and belongs to this user.
 fn is_own(path: &Path, kind: impl Fn(&fs::Metadata) -> bool) -> bool {
     fs::symlink_metadata(path).is_ok_and(|found| kind(&found) && is_of_this_user(&found))
 }
@@ -96,13 +96,13 @@ fn is_of_this_user(_: &fs::Metadata) -> bool {
     true
 }
 
-/// Removes files of a folder, the folders that they were in, and the folder; stops at whatever else is there.
+/// Removes files of a folder, their subfolders, and the folder; stops at anything else.
 fn emptied(folder: &Path, files: &[(&str, &str)]) -> io::Result<()> {
     let mut folders = BTreeSet::new();
     for (name, _) in files {
         let path = folder.join(name);
         let inside: Vec<&Path> = path.ancestors().skip(1).take_while(|inside| *inside != folder).collect();
-        // Behind a link lies somebody else's folder, in which an empty one stays as well.
+        // Behind a link is another folder, whose empty subfolders must stay as well.
         if !inside.iter().all(|inside| is_own(inside, fs::Metadata::is_dir)) {
             continue;
         }
@@ -111,12 +111,12 @@ fn emptied(folder: &Path, files: &[(&str, &str)]) -> io::Result<()> {
         }
         folders.extend(inside.into_iter().map(Path::to_owned));
     }
-    // The innermost first. A folder that is not empty, or a link, stays.
+    // The innermost folder first. A folder that is not empty, or a link, stays.
     folders.iter().rev().try_for_each(|inside| match fs::remove_dir(inside) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
         removed => removed,
     })?;
-    // The mark goes last: what stays is looked at again.
+    // The mark is removed last, so that a later program examines a folder that stays.
     let only_mark = fs::read_dir(folder)?.flatten().all(|entry| entry.file_name() == ALIVE);
     if only_mark {
         fs::remove_file(folder.join(ALIVE))?;

@@ -1,4 +1,4 @@
-//! A file that is invisible until it has its name.
+//! Files that are invisible until they have their names.
 //!
 //! On Linux the file has no name: the system removes it with the process, however that ends, including by `kill -9` and a power cut. A
 //! nameless file can only get a name that is free; then it is complete at once. If the name is taken, the file first gets a short hidden
@@ -16,7 +16,7 @@ use tempfile::{Builder, NamedTempFile, TempPath};
 
 use super::registry::{self, HeldPath};
 
-/// A file that does not have its name yet.
+/// File that does not have its name yet.
 pub enum Unfinished {
     /// File without a name, and its folder.
     #[cfg(target_os = "linux")]
@@ -48,7 +48,7 @@ impl Unfinished {
         let builder = {
             use std::os::unix::fs::PermissionsExt;
             let mut builder = builder;
-            // Permissions of any new file, less the umask; a temporary file would otherwise be private to its owner.
+            // Permissions of any new file, reduced by the umask; a temporary file would otherwise be private to its owner.
             builder.permissions(std::fs::Permissions::from_mode(0o666));
             builder
         };
@@ -81,17 +81,17 @@ impl Unfinished {
         })
     }
 
-    /// Names a file while no signal ends the program.
+    /// Names a file while signals are delayed.
     fn held(self, name: impl FnOnce(Self) -> (io::Result<()>, Option<HeldPath>)) -> io::Result<()> {
         let held = registry::held();
         let (named, listed) = name(self);
         drop(held);
-        // It takes the same lock.
+        // Dropping the entry takes the same lock.
         drop(listed);
         named
     }
 
-    /// Gives the file its name. The caller holds the registry, and drops the entry after that.
+    /// Gives the file its name. The caller holds the registry's lock, and drops the entry afterwards.
     fn put(self, target: &Path) -> (io::Result<()>, Option<HeldPath>) {
         match self {
             #[cfg(target_os = "linux")]
@@ -107,8 +107,8 @@ impl Unfinished {
     }
 }
 
-/// Gives files their names while no signal ends the program. If one of them cannot have its name, each name is as it was before, and the
-/// error is that of its file.
+/// Gives files their names while signals are delayed. If one of them cannot get its name, each name is unchanged, and the error is that of
+/// its file.
 pub(super) fn named_all<E>(files: Vec<(Unfinished, PathBuf, impl Fn(io::Error) -> E)>) -> Result<(), E> {
     let mut listed = Vec::new();
     let held = registry::held();
@@ -116,7 +116,7 @@ pub(super) fn named_all<E>(files: Vec<(Unfinished, PathBuf, impl Fn(io::Error) -
     let mut before: Vec<(PathBuf, Option<TempPath>)> = Vec::new();
     let mut result = Ok(());
     for (file, target, error) in files {
-        // A second name of the old file, under which it comes back.
+        // Second name of the old file, from which it is restored.
         let kept = match fs::symlink_metadata(&target) {
             Ok(_) if !is_alone => {
                 let link = hidden().make_in(super::folder(&target), |name| fs::hard_link(&target, name));
@@ -136,7 +136,7 @@ pub(super) fn named_all<E>(files: Vec<(Unfinished, PathBuf, impl Fn(io::Error) -
     }
     if result.is_err() {
         for (target, kept) in before {
-            // There is nothing better to do with a file that cannot be put back.
+            // A file that cannot be restored needs no further action.
             let _ = match kept {
                 Some(kept) => kept.persist(&target).map_err(Into::into),
                 None => fs::remove_file(&target),

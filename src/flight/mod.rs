@@ -8,7 +8,7 @@
 //! v(t) =      v0 s'(t) + f0 s(t)       s'' + 2 zeta s' + w0^2 s = 0,  s(0) = 0, s'(0) = 1,  p' = s, p(0) = 0
 //! ```
 //!
-//! No equilibrium is needed, so stiffness 0 is no special case, and `q(t) - q0` comes without cancellation.
+//! The form needs no equilibrium, so stiffness 0 is no special case, and `q(t) - q0` has no cancellation.
 
 mod response;
 
@@ -32,25 +32,25 @@ pub struct State {
 }
 
 impl State {
-    /// Distance between two states, m: velocities count over `omega`, rad/s.
+    /// Distance between two states, m: velocities are divided by `omega`, rad/s.
     pub(crate) fn apart(self, other: Self, omega: f64) -> f64 {
         elementary::hypot(self.position - other.position, (self.velocity - other.velocity) / omega)
     }
 }
 
-/// The place of a flight at an instant.
+/// State of a flight at an instant.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Flown {
     /// Time since the start, s.
     pub time: f64,
     /// `q - q0`, m.
     pub displacement: f64,
-    /// State there.
+    /// State at that time.
     pub state: State,
 }
 
 impl Flown {
-    /// The start of a flight.
+    /// Returns the start of a flight.
     #[inline]
     pub fn not_yet(state: State) -> Self {
         Self { time: 0.0, displacement: 0.0, state }
@@ -67,7 +67,7 @@ pub struct Flight {
     regime: Regime,
 }
 
-/// The solutions of `s'' + 2 zeta s' + w0^2 s = 0`, by the roots of its characteristic polynomial.
+/// Solutions of `s'' + 2 zeta s' + w0^2 s = 0`, by the roots of the characteristic polynomial.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Regime {
     /// Roots `+-i w0`.
@@ -80,12 +80,12 @@ enum Regime {
         /// w, 1/s.
         omega: f64,
     },
-    /// Roots `-slow` and `-fast`, with `slow <= fast` and `slow fast = w0^2`. They are not below 0, except for a damping that drives, as in
-    /// a run backwards. With stiffness 0, the root nearer to 0 is 0.
+    /// Roots `-slow` and `-fast`, with `slow <= fast` and `slow fast = w0^2`. Both rates are 0 or more, except for a negative damping, as
+    /// in a run backwards. With stiffness 0, the root nearer to 0 is 0.
     Monotone {
-        /// 1/s.
+        /// Rate of the root nearer to 0 for positive damping, 1/s.
         slow: f64,
-        /// 1/s.
+        /// Rate of the other root, 1/s.
         fast: f64,
     },
 }
@@ -144,7 +144,7 @@ impl Flight {
     /// `q''` in free flight, m/s^2.
     #[inline]
     pub fn acceleration(&self, state: State) -> f64 {
-        // eq:fb1   q'' = -2 zeta q' - w0^2 (q - rest) - g; the paper measures q from where the spring is slack, rest = 0
+        // eq:fb1   q'' = -2 zeta q' - w0^2 (q - rest) - g; the paper measures q from the slack spring, rest = 0
         self.acceleration_at(state.position, state.velocity)
     }
 
@@ -174,7 +174,7 @@ impl Flight {
         self.never_above(self.acceleration(state), self.jerk(state))
     }
 
-    /// Bound on `|q''''|` at `state` and at every later instant of the same flight, m/s^4: the jerk obeys the same damped equation.
+    /// Bound on `|q''''|` at `state` and at every later instant of the same flight, m/s^4. The jerk obeys the same damped equation.
     #[inline]
     pub fn fourth_bound(&self, state: State) -> f64 {
         let (acceleration, jerk) = (self.acceleration(state), self.jerk(state));
@@ -185,18 +185,18 @@ impl Flight {
     #[inline]
     fn never_above(&self, value: f64, rate: f64) -> f64 {
         let bound = (rate * rate + self.omega0_squared * value * value).sqrt();
-        // Squares leave a double's range long before their root does.
+        // The squares may overflow or underflow although their root does not.
         if bound.is_normal() { bound } else { elementary::hypot(rate, self.omega0_squared.sqrt() * value) }
     }
 
-    /// Displacement `q(t) - q0` and the state after flying for `t` from `start`.
+    /// Returns the displacement `q(t) - q0` and the state after a flight of `t` from `start`.
     #[inline]
     pub fn fly(&self, start: State, t: f64) -> (f64, State) {
         self.fly_by(start, &self.response(t))
     }
 
-    /// The place of a flight from `start` at `time`, s, from its place at another instant. With damping the short way from there takes a few
-    /// terms of a series, where the way from the start takes an exponential, a sine and a cosine.
+    /// State at `time`, s, of a flight from `start`, computed from its state at another instant. With damping a short step needs only a few
+    /// terms of a series, while the whole flight needs an exponential, a sine and a cosine.
     #[inline(always)]
     pub(crate) fn fly_near(&self, start: State, known: &Flown, time: f64) -> Flown {
         let more = time - known.time;
@@ -208,7 +208,7 @@ impl Flight {
         Flown { time, displacement: known.displacement + displacement, state }
     }
 
-    /// Displacement and state after flying from `start`, from the responses over that time.
+    /// Returns the displacement and the state after a flight from `start`, from the responses over that time.
     pub fn fly_by(&self, start: State, response: &Response) -> (f64, State) {
         let Response { step, impulse, impulse_rate } = *response;
         let force = self.force(start.position);
@@ -219,7 +219,7 @@ impl Flight {
 
     /// `d(q, v)/d(q0, v0)` over a flight of `t`, s: the 2x2 propagator of a deviation, by rows.
     ///
-    /// From `q = q0 + v0 s + f0 p`, `v = v0 s' + f0 s` with `df0/dq0 = -w0^2`.
+    /// Follows from `q = q0 + v0 s + f0 p`, `v = v0 s' + f0 s` with `df0/dq0 = -w0^2`.
     pub fn propagator(&self, t: f64) -> Matrix2<f64> {
         self.propagator_by(&self.response(t))
     }
@@ -231,15 +231,15 @@ impl Flight {
         Matrix2::new(1.0 - spring * step, impulse, -spring * impulse, impulse_rate)
     }
 
-    /// Time, s, up to which the position changes in one direction only: the first instant after the start with `v = 0`.
+    /// First time, s, after the start with `v = 0`, up to which the position changes in one direction only.
     ///
-    /// Infinite if there is none. From `v = v0 s' + f0 s`.
+    /// Infinite if there is none. Follows from `v = v0 s' + f0 s`.
     pub fn turning_point(&self, start: State) -> f64 {
         let State { position, velocity } = start;
         let force = self.force(position);
         match self.regime {
             Regime::Undamped { omega } | Regime::Underdamped { omega } => {
-                // v0 cos + (f0 - zeta v0)/w sin = 0 first in (0, pi]; from rest half an oscillation on.
+                // First root of v0 cos + (f0 - zeta v0)/w sin = 0 in (0, pi]; from rest, half an oscillation later.
                 let (along, across) = (self.zeta * velocity - force, omega * velocity.abs());
                 if across == 0.0 {
                     return if force == 0.0 { f64::INFINITY } else { PI / omega };
@@ -262,9 +262,9 @@ impl Flight {
 
     /// Time (s) and state at which a flight comes down to `level`, m, or `None` if it never does.
     ///
-    /// The flight must be above the level, or certain to rise above it; its course before it has risen is not examined. Signs decide
-    /// whether it comes down: of the force at the level, and of the height above the level at the valley. Rounding may make the fall
-    /// earlier by an ulp, and never postpones it to the next swing.
+    /// The flight must be above the level, or certain to rise above it; its course before it has risen is not examined. Two signs decide
+    /// whether it falls to the level: the force at the level, and the height of the valley above the level. Rounding may make the fall
+    /// earlier by an ulp, but never postpones it to the next swing.
     #[inline]
     pub fn fall_to(&self, level: f64, start: State) -> Option<(f64, State)> {
         let omega = match self.regime {
@@ -277,17 +277,17 @@ impl Flight {
         // On the circle (x, v/w0) about the equilibrium, from (x0, y0) to (l, -h), h^2 = x0^2 + y0^2 - l^2.
         let offset = self.rest_position - self.gravity / self.omega0_squared;
         let (x, y, l) = (start.position - offset, start.velocity / omega, level - offset);
-        // x - l would have lost the digits of the two positions, by as much as the equilibrium is far.
+        // x - l would lose digits of the two positions if the equilibrium is far.
         let drop = start.position - level;
         let descent = drop * (x + l);
         let height_squared = descent + y * y;
-        // If the equilibrium is not below the level, a swing may stay above the level. If it is below, every flight comes down.
+        // If the equilibrium is not below the level, a swing may stay above the level. If it is below, every flight falls to the level.
         if l <= 0.0 && !(height_squared > 0.0) {
             return None;
         }
         let height = height_squared.max(0.0).sqrt();
         let sine = if y < 0.0 && x * l > 0.0 {
-            // y l + x h = l (y + h) + h (x - l), with y + h = (x^2 - l^2)/(h - y): nothing cancels on the way down.
+            // y l + x h = l (y + h) + h (x - l), with y + h = (x^2 - l^2)/(h - y): no cancellation on the way down.
             l * descent / (height - y) + height * drop
         } else {
             y * l + x * height
@@ -297,7 +297,7 @@ impl Flight {
         Some((time, State { position: level, velocity: -omega * height }))
     }
 
-    /// Falls under gravity alone: from `q0 - l + v0 t - g t^2/2 = 0`, in the form in which nothing cancels.
+    /// Falls under gravity alone: `q0 - l + v0 t - g t^2/2 = 0`, solved in a form without cancellation.
     fn fall_freely(&self, level: f64, State { position, velocity }: State) -> Option<(f64, State)> {
         let drop = position - level;
         let speed = (velocity * velocity + 2.0 * self.gravity * drop).max(0.0).sqrt();
@@ -310,10 +310,10 @@ impl Flight {
         time.is_finite().then_some((time, State { position: level, velocity: -speed }))
     }
 
-    /// Falls with any follower: between two turning points the position changes in one direction, so a bracket has one root.
+    /// Falls with any follower: between two turning points the position changes in one direction, so that a bracket contains one root.
     fn fall_by_search(&self, level: f64, start: State) -> Option<(f64, State)> {
-        /// Steps of Halley's method, after which the bracket is halved. Where the equilibrium is the level but for rounding, the position stays
-        /// the same over a long time, and steps lead nowhere.
+        /// Steps of Halley's method, after which the bracket is halved. If the equilibrium equals the level up to rounding, the position
+        /// stays the same over a long time and the steps do not converge.
         const STEPS: u32 = 16;
         let at = |time: f64| self.fly(start, time).1;
         let rising = start.velocity > 0.0 || (start.velocity == 0.0 && self.force(start.position) > 0.0);
@@ -334,7 +334,7 @@ impl Flight {
             || match valley.is_finite() {
                 // Valleys lie below the equilibrium, and later ones are shallower.
                 true => at(valley).position < level,
-                // Towards an equilibrium that is not below the level; or with no force but the damping's, which stops it after v/(2 zeta).
+                // Without a valley: spring or damping stops the flight above the level. Damping alone stops it after v/(2 zeta).
                 false => {
                     let is_stopped = self.omega0_squared > 0.0 || drop >= -begin.velocity / (2.0 * self.zeta);
                     !(self.zeta > 0.0 && is_stopped)
@@ -343,12 +343,12 @@ impl Flight {
         if !comes_down {
             return None;
         }
-        // As if it fell with the acceleration at the beginning of the fall.
+        // Time of a fall with the acceleration at its beginning.
         let fastest = (begin.velocity * begin.velocity - 2.0 * self.acceleration(begin) * drop).sqrt();
         let short = 2.0 * drop / (fastest - begin.velocity);
         let mut high = valley;
         if valley.is_infinite() {
-            // Ever longer falls from the highest point, each longer than the rounding of its time.
+            // Falls of doubling length from the highest point, each longer than the rounding of its time.
             let decay = match self.regime {
                 Regime::Monotone { fast, .. } if fast > 0.0 => 1.0 / fast,
                 _ => 1.0,
@@ -366,7 +366,7 @@ impl Flight {
         }
         let guess = peak + short;
         let mut low = peak;
-        // Strictly inside of the bracket: at its lower end the search would stand still.
+        // Strictly inside the bracket: at its lower end the search would make no progress.
         let mut time = if (low.next_up()..high).contains(&guess) { guess } else { 0.5 * (low + high) };
         let (mut steps, mut known) = (0, Flown { time: peak, displacement: 0.0, state: begin });
         while high - low > tolerance::ROOT_WIDTH.value * high {
@@ -378,11 +378,11 @@ impl Flight {
             } else {
                 high = time
             }
-            // Halley's method: of the third order, and the acceleration is known with the state.
+            // Halley's method has third order, and the acceleration follows from the state.
             let (acceleration, newton) = (self.acceleration(state), (level - state.position) / state.velocity);
             let bend = 0.5 * newton * acceleration / state.velocity;
             let step = newton / (1.0 + bend);
-            // The error after the step is at most the fraction bend^2 + (w0^2 + 4 zeta^2) step^2 of it.
+            // The step leaves at most the fraction bend^2 + (w0^2 + 4 zeta^2) step^2 of the error.
             let rates = self.omega0_squared + 4.0 * self.zeta * self.zeta;
             if (bend * bend + rates * step * step) * step.abs() <= tolerance::ULP.value * time {
                 let velocity = state.velocity + step * (acceleration + 0.5 * step * self.jerk(state));

@@ -9,11 +9,11 @@ use crate::tolerance;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[doc(hidden)]
 pub struct Response<N = f64> {
-    /// `p(t)`, s^2: displacement under a unit acceleration switched on.
+    /// `p(t)`, s^2: displacement under a constant unit acceleration.
     pub step: N,
     /// `s(t)`, s: displacement after a unit velocity; also the velocity under a unit step.
     pub impulse: N,
-    /// `s'(t)`: velocity remaining of a unit velocity.
+    /// `s'(t)`: velocity after a unit velocity at the start.
     pub impulse_rate: N,
 }
 
@@ -25,7 +25,7 @@ impl Flight {
             Regime::Undamped { omega } => {
                 let (sin, cos) = elementary::sin_cos(omega * t);
                 let impulse = sin / omega;
-                // p = (1 - cos)/w^2 = s^2/(1 + cos), whichever does not cancel.
+                // p = (1 - cos)/w^2 = s^2/(1 + cos): the form without cancellation is used.
                 let step = if cos > 0.0 { impulse * impulse / (1.0 + cos) } else { (1.0 - cos) / self.omega0_squared };
                 Response { step, impulse, impulse_rate: cos }
             }
@@ -51,7 +51,7 @@ impl Flight {
         Response { step, impulse, impulse_rate: 1.0 - spring * step }
     }
 
-    /// Whether the series holds for a time `t`, s, of either sign: little of an oscillation and of its decay passes in it.
+    /// Whether the series is accurate for a time `t`, s, of either sign: only a small part of an oscillation and of its decay.
     #[inline]
     pub(super) fn is_short(&self, t: f64) -> bool {
         self.omega0_squared * t * t < 0.25 && (self.zeta * t).abs() < 1.0
@@ -60,7 +60,7 @@ impl Flight {
     fn damped_response(&self, t: f64) -> Response {
         let (zeta, omega0_squared) = (self.zeta, self.omega0_squared);
         let angle_squared = omega0_squared * t * t;
-        // p(t) = (1 - s' - 2 zeta s) / w0^2 cancels where little of an oscillation has passed.
+        // p(t) = (1 - s' - 2 zeta s) / w0^2 cancels over a small part of an oscillation.
         if self.is_short(t) {
             return self.response_by_series(t);
         }
@@ -94,7 +94,7 @@ impl Flight {
 
     /// `p(t) = sum d_n/n!`, with `d_n = t^n` times the n-th derivative at 0: `d_2 = t^2`, `d_{n+2} = -2 zeta t d_{n+1} - w0^2 t^2 d_n`.
     ///
-    /// Without a division, which would take longer than all else in a step.
+    /// A division would take longer than everything else in a step.
     fn response_by_series<N: Number>(&self, t: N) -> Response<N> {
         let damping = t * (2.0 * self.zeta);
         let spring = t * self.omega0_squared * t;
@@ -106,7 +106,7 @@ impl Flight {
         let (mut n, mut power, mut size) = (1, 1.0, 1.0);
         // x < 4: the terms of s', which are the largest, fall below a quarter of an ulp of 1 before the 34th.
         while n < 32 && size >= tolerance::SERIES_END.value {
-            // Two terms at a time: a look at their size takes nearly as long as a term.
+            // Two terms at a time: a test of their size takes nearly as long as a term.
             for n in [n, n + 1] {
                 (before, last) = (last, -damping * last - spring * before);
                 impulse_rate = impulse_rate + last.over_factorial(n);
@@ -117,26 +117,26 @@ impl Flight {
             size = f64::over_factorial(power, n + 1);
             n += 2;
         }
-        // Where a term x^n/n! is so small, x is less than a half of n: all terms left out are less than it.
+        // If a term x^n/n! is so small, x is less than half of n: the sum of all terms left out is smaller than this term.
         let tail = N::left_out(2.0 * size);
         Response { step: t * t * (step + tail), impulse: t * (impulse + tail), impulse_rate: impulse_rate + tail }
     }
 
     /// Encloses the responses over a range of times, s.
     ///
-    /// Without damping, sine and cosine are used, whose ranges are known. With damping, the series is used near 0. At a time `m + x` the
-    /// responses at m and those at `x` are combined; the responses at m are combined from those at half of m, so that nothing cancels.
+    /// Without damping, sine and cosine are used, which have exact ranges. With damping, the series is used near 0. At a time `m + x` the
+    /// responses at m and at `x` are combined. The responses at m are combined from those at half of m, so that nothing cancels.
     pub fn response_over(&self, t: Interval) -> Response<Interval> {
         if let Regime::Undamped { .. } = self.regime {
             let omega = Interval::from(self.omega0_squared).sqrt();
             let (sin, cos) = (omega * t).sin_cos();
             let impulse = sin / omega;
-            // p = (1 - cos)/w^2 = s^2/(1 + cos), of which the one is narrow for long times and the other does not cancel for short ones.
+            // p = (1 - cos)/w^2 = s^2/(1 + cos): the first form is narrow for long times, the second does not cancel for short times.
             let step = (-cos + 1.0) / self.omega0_squared;
             return Response { step: step.and(impulse.squared() / (cos + 1.0)), impulse, impulse_rate: cos };
         }
         let size = t.magnitude();
-        // Where the series is good, with room for rounding; what has no end cannot be halved.
+        // The series is accurate here, with room for rounding; an infinite range cannot be halved.
         if (self.omega0_squared * size * size < 3.9 && self.zeta * size < 0.9) || !size.is_finite() {
             return self.response_by_series(t);
         }
@@ -148,7 +148,7 @@ impl Flight {
         self.together(&self.response_over(middle.into()), &self.response_over(t - middle))
     }
 
-    /// `s''`, 1/s: the deceleration of a unit velocity, from the responses at that time.
+    /// `s''`, 1/s: the acceleration after a unit velocity, from the responses at that time.
     pub fn impulse_bend(&self, response: &Response<Interval>) -> Interval {
         // s'' = -2 zeta s' - w0^2 s
         -(response.impulse_rate * (2.0 * self.zeta) + response.impulse * self.omega0_squared)
@@ -156,7 +156,7 @@ impl Flight {
 
     /// Responses at the sum of two times.
     fn together(&self, one: &Response<Interval>, two: &Response<Interval>) -> Response<Interval> {
-        // Under a unit step: at p, with velocity s and the force 1 - w0^2 p left.
+        // Under a unit step: at p, with velocity s and the remaining force 1 - w0^2 p.
         let left = -(one.step * self.omega0_squared) + 1.0;
         Response {
             step: one.step + one.impulse * two.impulse + left * two.step,

@@ -1,15 +1,16 @@
-//! Numbers with their derivatives by some unknowns (forward differentiation): a formula evaluated with them returns its own derivatives.
+//! Numbers with their derivatives with respect to some unknowns (forward differentiation): a formula evaluated with them returns its
+//! derivatives.
 
 use std::ops::{Add, Mul, Neg, Sub};
 
 use super::Interval;
 
-/// A number and its derivative by each unknown.
+/// Number and its derivative with respect to each unknown.
 #[derive(Clone, Copy, Debug)]
 pub struct Dual<const N: usize> {
     /// Enclosure of the number.
     pub value: Interval,
-    /// Enclosure of the derivative by each unknown.
+    /// Enclosure of the derivative with respect to each unknown.
     pub by: [Interval; N],
 }
 

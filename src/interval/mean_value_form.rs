@@ -1,28 +1,28 @@
 //! Numbers over a box of unknowns, in mean value form: the value at the centre, and the derivatives over the box.
 //!
-//! With the centre m of a box X and the derivative of a number f anywhere in the box,
+//! With the centre m of a box X and the derivative of a function f over the box,
 //!
 //! ```text
 //! f(X) is in f(m) + f'(X) (X - m)
 //! ```
 //!
-//! which overestimates by the square of the box's size, where plain intervals overestimate by its size. A formula evaluated with such
-//! numbers returns its own enclosure, value at the centre and derivatives. Across a corner a derivative is the hull of both sides'. The
-//! form still holds there, since the way from the centre is straight.
+//! which overestimates by the square of the box's size, while plain intervals overestimate by its size. A formula evaluated with such
+//! numbers returns its enclosure, its value at the centre and its derivatives. Across a corner a derivative is the hull of both sides. The
+//! form is still valid there, since the path from the centre is straight.
 
 use std::ops::{Add, Mul, Neg, Sub};
 
 use super::Interval;
 use super::dual::Dual;
 
-/// A number over a box, with N unknowns.
+/// Number over a box, with N unknowns.
 #[derive(Clone, Copy, Debug)]
 pub struct MeanValueForm<'a, const N: usize> {
     /// Enclosure at the centre.
     pub centre: Interval,
     /// Enclosure of the number and of its derivatives over the whole box.
     pub whole: Dual<N>,
-    /// X - m, for each unknown.
+    /// Range X - m of each unknown.
     over: &'a [Interval; N],
 }
 
@@ -33,23 +33,23 @@ impl<'a, const N: usize> MeanValueForm<'a, N> {
         Self { centre, whole: Dual { value, ..whole }, over }
     }
 
-    /// A number that does not depend on the unknowns.
+    /// Builds a number that does not depend on the unknowns.
     pub fn fixed(self, value: Interval) -> Self {
         Self { centre: value, whole: Dual { value, by: [Interval::from(0.0); N] }, ..self }
     }
 
-    /// One of the unknowns, with its value at the centre.
+    /// Builds one of the unknowns, with its value at the centre.
     pub fn unknown(which: usize, centre: Interval, over: &'a [Interval; N]) -> Self {
         let by = std::array::from_fn(|unknown| Interval::from(if unknown == which { 1.0 } else { 0.0 }));
         Self::new(centre, Dual { value: Interval::EVERYTHING, by }, over)
     }
 
-    /// A number that solves an equation, from its values at the centre and over the whole box, and its derivatives.
+    /// Builds a number that solves an equation, from its values at the centre and over the whole box, and its derivatives.
     pub fn solved(self, centre: Interval, whole: Interval, by: [Interval; N]) -> Self {
         Self::new(centre, Dual { value: whole, by }, self.over)
     }
 
-    /// A function of this number, from its values at the centre and over the whole box, and its derivative over the box.
+    /// Applies a function to this number, from the function's values at the centre and over the whole box, and its derivative over the box.
     pub fn of(self, centre: Interval, whole: Interval, derivative: Interval) -> Self {
         Self::new(centre, Dual::of(whole, derivative, self.whole.by), self.over)
     }

@@ -1,9 +1,9 @@
-//! Intervals of doubles that enclose the result of a formula for all numbers in the intervals it is evaluated with.
+//! Intervals of doubles that enclose the results of a formula for all numbers in its arguments.
 //!
 //! Each operation is rounded to nearest. Then its ends, except an exact 0, are moved outwards by one ulp, which is more than the rounding
-//! error.
-//! Sine and cosine are alternating series, summed in doubles and widened by bounds on the rounding and on the omitted terms.
-//! A result with no bound on either side, or NaN, is the whole real line: no comparison then holds, so nothing is concluded from it.
+//! error. Sine and cosine are alternating series, summed in doubles and widened by bounds on the rounding and on the omitted terms. A
+//! result that is unbounded on both sides, or NaN, is the whole real line: every comparison then fails, so that nothing is concluded from
+//! it.
 
 pub mod dual;
 pub mod mean_value_form;
@@ -31,17 +31,17 @@ pub trait Number:
 {
     /// Sine and cosine of an angle, rad.
     fn sin_cos(self) -> (Self, Self);
-    /// The square root that is not negative.
+    /// Square root that is not negative.
     fn sqrt(self) -> Self;
-    /// The largest absolute value in it.
+    /// Largest absolute value in it.
     fn magnitude(self) -> f64;
     /// Remainder of a truncated sum, of at most this size. It is 0 for doubles.
     fn left_out(size: f64) -> Self;
-    /// This over `n!`, for `n` up to 34.
+    /// Quotient by `n!`, for `n` up to 34.
     fn over_factorial(self, n: usize) -> Self;
 }
 
-/// `1/n!`, within two units in the last place. A factorial up to 34! is exact before it is rounded to a double.
+/// Inverse factorials `1/n!`, within two units in the last place. A factorial up to 34! is exact before it is rounded to a double.
 const INVERSE_FACTORIALS: [f64; 35] = {
     let (mut all, mut factorial, mut n) = ([1.0; 35], 1_u128, 1);
     while n < all.len() {
@@ -79,7 +79,7 @@ impl Number for f64 {
     }
 }
 
-/// All real numbers from one double to another that is not below it.
+/// Interval of all real numbers from one double to another, larger or equal one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval {
     low: f64,
@@ -94,25 +94,25 @@ impl From<f64> for Interval {
 }
 
 impl Interval {
-    /// The whole real line.
+    /// Whole real line.
     pub const EVERYTHING: Self = Self { low: f64::NEG_INFINITY, high: f64::INFINITY };
-    /// The first 33 bits of pi/2, whose multiples are exact, and an enclosure of the remaining part of pi/2.
+    /// First 33 bits of pi/2, whose multiples are exact, and an enclosure of the remaining part of pi/2.
     const QUARTER_HIGH: f64 = f64::from_bits(FRAC_PI_2.to_bits() & !0xf_ffff);
     const QUARTER_REST: Self = {
         let rest = FRAC_PI_2 - Self::QUARTER_HIGH + 6.123_233_995_736_766e-17;
         Self { low: rest.next_down(), high: rest.next_up() }
     };
     const QUARTER: Self = Self { low: FRAC_PI_2, high: FRAC_PI_2.next_up() };
-    /// Enclosure of 2 pi; its lower end is the double that angles of the cam are counted by.
+    /// Enclosure of 2 pi; its lower end is the double that counts turns of the cam.
     pub const TURN: Self = Self { low: 4.0 * Self::QUARTER.low, high: 4.0 * Self::QUARTER.high };
 
-    /// The interval from `low` to `high`, or the whole real line if `low <= high` does not hold.
+    /// Returns the interval from `low` to `high`, or the whole real line unless `low <= high`.
     #[inline]
     pub fn new(low: f64, high: f64) -> Self {
         if low <= high { Self { low, high } } else { Self::EVERYTHING }
     }
 
-    /// Moves each end outwards by an ulp, except an end that is 0: a sum or a root is 0 only where it is so exactly. Moving a 0 by an ulp
+    /// Moves each end outwards by an ulp, except an end at 0, since a sum or a root is 0 only if it is exactly 0. Moving a 0 by an ulp
     /// would also give a subnormal number, which no processor multiplies at full speed.
     ///
     /// `x + u (1 + 2 u) |x|`, u half an ulp of 1, is rounded to the next double after x (Rump, Zimmermann, Boldo, Melquiond 2009), unless x
@@ -129,39 +129,39 @@ impl Interval {
         }
     }
 
-    /// Widens a product or a quotient past an end at 0 where an exact result that is not 0 underflowed to 0.
+    /// Widens a product or a quotient past an end at 0 if a nonzero result underflowed to 0.
     #[inline]
     fn unless_lost(self, is_lost: impl FnOnce() -> bool) -> Self {
         let at_zero = self.low == 0.0 || self.high == 0.0;
         if at_zero && is_lost() { self.hull(Self::left_out(0.0_f64.next_up())) } else { self }
     }
 
-    /// The lower end.
+    /// Lower end.
     #[inline]
     pub fn low(self) -> f64 {
         self.low
     }
 
-    /// The upper end.
+    /// Upper end.
     #[inline]
     pub fn high(self) -> f64 {
         self.high
     }
 
-    /// A number near its middle; 0 where an end is infinite.
+    /// Number near its middle; 0 if an end is infinite.
     #[inline]
     pub fn middle(self) -> f64 {
         let middle = 0.5 * self.low + 0.5 * self.high;
         if middle.is_finite() { middle.clamp(self.low, self.high) } else { 0.0 }
     }
 
-    /// The width, rounded.
+    /// Width, rounded.
     #[inline]
     pub fn width(self) -> f64 {
         self.high - self.low
     }
 
-    /// Whether 0 lies in it.
+    /// Whether it contains 0.
     #[inline]
     pub fn holds_zero(self) -> bool {
         self.low <= 0.0 && 0.0 <= self.high
@@ -195,11 +195,11 @@ impl Interval {
     /// Intersection of two enclosures of one number; the whole real line if they are disjoint.
     #[inline]
     pub(crate) fn and(self, other: Self) -> Self {
-        // Two enclosures of one number have it in common; were they to have nothing, either would be as wrong.
+        // Two enclosures of one number have it in common; if they are disjoint, both are wrong.
         self.common(other).unwrap_or(Self::EVERYTHING)
     }
 
-    /// The smallest interval that contains both.
+    /// Smallest interval that contains both.
     #[inline]
     pub fn hull(self, other: Self) -> Self {
         Self { low: self.low.min(other.low), high: self.high.max(other.high) }
@@ -211,7 +211,7 @@ impl Interval {
         Self { low: 0.5 * self.low, high: 0.5 * self.high }
     }
 
-    /// Its two halves, which share one number.
+    /// Both halves, which share one number.
     #[inline]
     pub fn halves(self) -> [Self; 2] {
         let middle = self.middle();
@@ -227,25 +227,25 @@ impl Interval {
 
     /// Sine and cosine of one double.
     fn circular(angle: f64) -> (Self, Self) {
-        /// Beyond so many quarters of a turn the reduced angle is too inaccurate to be worth it.
+        /// Number of quarter turns beyond which the reduced angle is too inaccurate.
         const MOST_QUARTERS: f64 = 1e6;
-        /// For an eighth of a turn the twentieth power over 20! is below an ulp.
+        /// Number of terms: for an eighth of a turn the twentieth power over 20! is below an ulp.
         const TERMS: u32 = 9;
-        /// The sum in doubles has an error below this, a unit in the last place of 1. Each step rounds its product and its quotient, at
-        /// most 0.31, by half a unit of their size, and its difference, below 1, by a quarter of a unit. It also carries 0.31 times the
-        /// error of the step before, whose own part is 0.33 at most. That makes 0.31 + 0.25 + 0.31 * 0.33 < 0.67. The ends are rounded by a
-        /// quarter more, and the omitted terms are below a hundredth.
+        /// Bound on the error of the sum in doubles, a unit in the last place of 1. Each step rounds its product and its quotient, at most
+        /// 0.31, by half a unit of their size, and its difference, below 1, by a quarter of a unit. It also carries 0.31 times the error of
+        /// the step before, whose own part is 0.33 at most. That makes 0.31 + 0.25 + 0.31 * 0.33 < 0.67. The ends are rounded by a quarter
+        /// more, and the omitted terms are below a hundredth.
         const OFF: f64 = tolerance::ULP.value;
         let all = Self { low: -1.0, high: 1.0 };
         let quarters = (angle / FRAC_PI_2).round();
         if !(quarters.abs() <= MOST_QUARTERS) {
             return (all, all);
         }
-        // The first difference is exact as well: its ends are near each other, or 0 is one.
+        // The first difference is exact as well: its operands are near each other, or one is 0.
         let rest = Self::from(angle - quarters * Self::QUARTER_HIGH) - Self::QUARTER_REST * quarters;
         let square = rest.squared();
-        // 1 - x^2/(a b) (1 - x^2/(c d) (1 - ...)): the terms fall off and alternate, and the sum changes by at most half of what x^2
-        // does.
+        // 1 - x^2/(a b) (1 - x^2/(c d) (1 - ...)): the terms decrease and alternate, and the sum changes by at most half of the change of
+        // x^2.
         let series = |first: u32| {
             let middle = square.middle();
             let sum = (0..TERMS).rev().fold(1.0, |inner, term| {
@@ -278,7 +278,7 @@ impl Number for Interval {
         }
         let (sin_high, cos_high) = Self::circular(self.high);
         let (mut sin, mut cos) = (sin.hull(sin_high), cos.hull(cos_high));
-        // Between the ends the largest and smallest values are at whole quarters.
+        // Between the ends the largest and smallest values are at whole quarter turns.
         let mut quarter = quarters.low.ceil();
         while quarter <= quarters.high {
             match quarter.rem_euclid(4.0) as u8 {
@@ -292,7 +292,7 @@ impl Number for Interval {
         (sin, cos)
     }
 
-    /// The whole real line if part of the interval is below 0.
+    /// Returns the whole real line if part of the interval is below 0.
     #[inline]
     fn sqrt(self) -> Self {
         Self::rounded(self.low.sqrt(), self.high.sqrt())
@@ -348,7 +348,7 @@ impl Mul for Interval {
     #[inline]
     fn mul(self, other: Self) -> Self {
         let products = [self.low * other.low, self.low * other.high, self.high * other.low, self.high * other.high];
-        // 0 times infinity is no number, and would be lost among the others; what is infinite both ways is everything, too.
+        // 0 times infinity is NaN, and would be lost among the others; a product unbounded on both sides is everything, too.
         let [a, b, c, d] = products;
         if (a + b + (c + d)).is_nan() {
             return Self::EVERYTHING;
@@ -366,13 +366,13 @@ impl Mul for Interval {
 impl Div for Interval {
     type Output = Self;
 
-    /// The whole real line if the divisor may be 0.
+    /// Returns the whole real line if the divisor may be 0.
     #[inline]
     fn div(self, other: Self) -> Self {
         if other.holds_zero() {
             return Self::EVERYTHING;
         }
-        // The quotients' ends rounded, and the products' again: each of them outwards.
+        // The ends of the quotients are rounded outwards, and the ends of the products again.
         self * Self::rounded(1.0 / other.high, 1.0 / other.low)
     }
 }
@@ -409,7 +409,7 @@ impl Mul<f64> for Interval {
 impl Div<f64> for Interval {
     type Output = Self;
 
-    /// The whole real line if the divisor is 0.
+    /// Returns the whole real line if the divisor is 0.
     #[inline]
     fn div(self, number: f64) -> Self {
         if number == 0.0 {

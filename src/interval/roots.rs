@@ -1,4 +1,4 @@
-//! Finds all roots of equations in a box, which is halved until each part contains no root, or certainly one.
+//! Search for all roots of equations in a box, which is halved until each part contains no root, or certainly one.
 //!
 //! Krawczyk's operator about the middle m of a box X, with C near the inverse of the derivative J,
 //!
@@ -7,7 +7,7 @@
 //! ```
 //!
 //! contains every root of X. If it lies inside X there is exactly one (Krawczyk 1969, Moore 1977); if the two are disjoint there is none. A
-//! root next to the border of a box is looked for in a somewhat larger box.
+//! root near the border of a box is searched in a somewhat larger box.
 
 use std::ops::Add as _;
 
@@ -16,20 +16,20 @@ use nalgebra::SMatrix;
 use super::{Interval, Number};
 use crate::tolerance;
 
-/// Encloses the root, near a guess, of a function that decreases there. `of` returns the value and the derivative over any range. `None`
-/// where no root is proved.
+/// Encloses the root, near a guess, of a function that decreases there. `of` returns the value and the derivative over any range. `None` if
+/// no root is proved.
 ///
-/// Applies Newton's method on intervals: `t - g(t)/g'(T)`, t the guess, over a range T that it maps into itself. T contains exactly one
-/// root.
+/// Applies Newton's method on intervals: `t - g(t)/g'(T)`, with the guess t, over a range T that it maps into itself. T contains exactly
+/// one root.
 pub fn falls_to_zero(guess: f64, of: impl Fn(Interval) -> [Interval; 2]) -> Option<Interval> {
-    /// Attempts, each of which widens or narrows the range.
+    /// Number of attempts, each of which widens or narrows the range.
     const TRIES: usize = 8;
     let guessed = Interval::from(guess);
     let [value, rate] = of(guessed);
     let mut image = guessed - value / rate;
     for _ in 0..TRIES {
         let room = 0.1 * image.width() + tolerance::ULP.value * guess;
-        // The theorem needs the guess among them: the mean value of g' is taken from there.
+        // The range must contain the guess, from which the mean value of g' is taken.
         let range = (image + Interval::new(-room, room)).hull(guessed);
         let [_, rate] = of(range);
         if !rate.is_negative() {
@@ -44,15 +44,15 @@ pub fn falls_to_zero(guess: f64, of: impl Fn(Interval) -> [Interval; 2]) -> Opti
     None
 }
 
-/// A box: an interval for each unknown.
+/// Box: an interval for each unknown.
 pub type IntervalBox<const N: usize> = [Interval; N];
 
-/// Equations over a box: the values of N functions, and their derivatives by each unknown.
+/// Equations over a box: the values of N functions, and their derivatives with respect to each unknown.
 #[derive(Clone, Copy, Debug)]
 pub struct BoxValues<const N: usize> {
-    /// The functions whose roots are sought.
+    /// Values of the functions whose roots are sought.
     pub values: [Interval; N],
-    /// Row by row.
+    /// Derivatives, row by row.
     pub derivatives: [[Interval; N]; N],
     /// Whether the box may contain a wanted root.
     pub is_wanted: bool,
@@ -81,7 +81,7 @@ pub fn isolate<const N: usize>(
         (tolerance::NARROWEST_BOX.value * side.width()).max(tolerance::ROOT_WIDTH.value * side.magnitude())
     });
     let mut found = Isolated { roots: Vec::new(), undecided: Vec::new(), boxes: 0 };
-    // Each root with a box in which there is no other.
+    // Each root with a box that contains no other root.
     let mut alone: Vec<(IntervalBox<N>, IntervalBox<N>)> = Vec::new();
     let mut left = vec![place];
     while let Some(here) = left.pop() {
@@ -140,13 +140,13 @@ pub fn isolate<const N: usize>(
 
 /// Result of examining one box.
 enum Look<const N: usize> {
-    /// The box contains no root.
+    /// Box without a root.
     Nothing,
-    /// All roots of the box, if any, are in this one.
+    /// Box that contains all roots of the examined box, if any.
     Within(IntervalBox<N>),
-    /// The derivative may be singular.
+    /// Derivative that may be singular.
     Unknown,
-    /// All values are 0 up to rounding, so halving the box would decide nothing.
+    /// Values that are all 0 up to rounding, so that halving the box would decide nothing.
     Rounding,
 }
 
@@ -156,7 +156,7 @@ fn look<const N: usize>(here: &IntervalBox<N>, over: &impl Fn(&IntervalBox<N>) -
         return Look::Nothing;
     }
     let middle = over(&here.map(|side| side.middle().into()));
-    // F(X) is in F(m) + J(X) (X - m) as well.
+    // F(X) is also in F(m) + J(X) (X - m).
     let centred = |row: usize| {
         (0..N).fold(middle.values[row], |sum, column| {
             sum + whole.derivatives[row][column] * (here[column] - here[column].middle())
@@ -171,7 +171,7 @@ fn look<const N: usize>(here: &IntervalBox<N>, over: &impl Fn(&IntervalBox<N>) -
     image(here, &whole, &middle).map_or(Look::Unknown, Look::Within)
 }
 
-/// Krawczyk's operator; `None` if the derivative in the middle has no inverse.
+/// Applies Krawczyk's operator; `None` if the derivative in the middle has no inverse.
 fn image<const N: usize>(here: &IntervalBox<N>, whole: &BoxValues<N>, middle: &BoxValues<N>) -> Option<IntervalBox<N>> {
     let derivative = SMatrix::<f64, N, N>::from_fn(|row, column| whole.derivatives[row][column].middle());
     let inverse = derivative.try_inverse().filter(|inverse| inverse.iter().all(|entry| entry.is_finite()))?;
@@ -195,22 +195,22 @@ fn step<const N: usize>(
     image(here, &over(here), &over(&here.map(|side| side.middle().into())))
 }
 
-/// A box around both boxes, with room on each side for a root on the border.
+/// Box around both boxes, with room on each side for a root on the border.
 fn around<const N: usize>(here: &IntervalBox<N>, image: &IntervalBox<N>) -> IntervalBox<N> {
     std::array::from_fn(|side| {
         let room = 0.25 * here[side].width();
         let most = Interval::new(here[side].low() - room, here[side].high() + room);
-        // An image far beyond would take the box to where its derivatives are others.
+        // A far image would extend the box to a region with different derivatives.
         here[side].hull(image[side] + Interval::new(-0.5 * room, 0.5 * room)).and(most)
     })
 }
 
-/// Narrows the box of the one root in `here` until rounding stops its width from shrinking.
+/// Narrows the box of the only root in `here` until rounding stops its width from shrinking.
 fn closed_in<const N: usize>(
     mut here: IntervalBox<N>,
     over: &impl Fn(&IntervalBox<N>) -> BoxValues<N>,
 ) -> IntervalBox<N> {
-    /// Newton's method converges quadratically once the box is narrow.
+    /// Step limit: Newton's method converges quadratically once the box is narrow.
     const STEPS: usize = 100;
     for _ in 0..STEPS {
         let Some(next) = step(&here, over).and_then(|image| common(&image, &here)) else { break };

@@ -1,4 +1,4 @@
-//! The lines above the rows of a table of lifts: the header, the columns and the units that it names.
+//! Lines above the rows of a table of lifts: the header, with its columns and units.
 
 use super::ModelError;
 use super::fields::{Fields, Value};
@@ -7,11 +7,11 @@ use super::lines::{Holds, Separator, Table};
 use super::table_units::{AngleUnit, LiftUnit};
 use super::units::{LENGTHS, Unit};
 
-/// Column that a model chooses.
+/// Choice of a column in a model file.
 pub(super) enum Chosen {
-    /// By its number, from 1.
+    /// Number of the column, from 1.
     Number(usize),
-    /// By its name in the header.
+    /// Name of the column in the header.
     Name(String),
 }
 
@@ -32,10 +32,10 @@ impl Chosen {
 
 /// Largest number of a column.
 const MOST_COLUMNS: f64 = 1e6;
-/// The columns of a table, from 0, the angle's first.
+/// Columns of the angle and of the value in a table, from 0.
 pub(super) type Columns = [usize; 2];
 
-/// A line above the rows.
+/// Line above the rows.
 pub(super) struct LineAbove<'a> {
     pub(super) line: usize,
     pub(super) text: &'a str,
@@ -47,12 +47,12 @@ pub(super) struct LineAbove<'a> {
 /// Titles, header and units above the rows.
 pub(super) struct Above<'a> {
     pub(super) titles: usize,
-    /// Comments that are the header or its units.
+    /// Number of comments that serve as header or units.
     pub(super) comments: usize,
     pub(super) header: Option<&'a str>,
     pub(super) units: Option<&'a str>,
     pub(super) columns: Option<Columns>,
-    /// Whether they are x and y.
+    /// Whether the columns are x and y.
     pub(super) are_points: bool,
     /// Names of all columns.
     pub(super) names: Vec<String>,
@@ -63,7 +63,7 @@ pub(super) struct Above<'a> {
 }
 
 impl<'a> Table<'a> {
-    /// The columns that a line names; `None` if it is no header, an error if it leaves open which they are.
+    /// Returns the columns that a line names; `None` if it is no header, an error if it names them ambiguously.
     pub(super) fn named(&self, above: &LineAbove<'_>, chosen: &[Option<Chosen>; 2]) -> Result<Option<Columns>, String> {
         let (cells, headings) = (&above.cells, &above.headings);
         let by_choice = |chosen: &Option<Chosen>| match chosen {
@@ -180,7 +180,7 @@ impl<'a> Table<'a> {
         let cells = |column: usize| {
             used.iter().filter_map(move |(_, above)| {
                 let (cell, mut heading) = (above.cells.get(column)?.clone(), above.headings.get(column)?.clone());
-                // Below a header a word among units is one that is not known.
+                // Below a header, an unknown word among units is an unknown unit.
                 if is_below(above) && above.is_units() && !heading.is_unit && has_letters(&cell) {
                     (heading.angle, heading.lift) = (Err(Vec::new()), Err(Vec::new()));
                 }
@@ -212,7 +212,7 @@ impl<'a> Table<'a> {
         })
     }
 
-    /// The last line that names the columns, by its index. A line of units stands for a header, and so does a comment, where there is no other.
+    /// Index of the last line that names the columns. A line of units or a comment serves as a header if there is no other.
     fn header(
         &self,
         lines: &[LineAbove<'a>],
@@ -236,7 +236,7 @@ impl<'a> Table<'a> {
         Ok(None)
     }
 
-    /// The complaint about a line in place of a header.
+    /// Error about a line in place of a header.
     fn unnamed(&self, last: &LineAbove<'a>, chosen: &[Option<Chosen>; 2]) -> ModelError {
         let more = match chosen.iter().any(Option::is_some) {
             true => format!("; its columns are {}", last.cells.join(", ")),
@@ -250,7 +250,7 @@ impl<'a> Table<'a> {
         self.reject(last.line, "header", last.text.trim(), allowed)
     }
 
-    /// The one unit that the cells of a column name.
+    /// Unit that the cells of a column name together.
     fn together<T: PartialEq>(
         &self,
         cells: impl Iterator<Item = (usize, String, Named<T>)>,
@@ -270,7 +270,7 @@ impl<'a> Table<'a> {
         Ok(unit)
     }
 
-    /// A complaint about a cell whose unit is not understood. One that is left out would be taken for another.
+    /// Error about a cell whose unit is not understood. If such a unit were ignored, the numbers would be read in a wrong unit.
     pub(super) fn unit_complaint(&self, line: usize, cell: &str, column: usize, meant: &[String]) -> ModelError {
         let (name, units, field, example) = match column {
             0 => ("angle", AngleUnit::NAMES.to_vec(), "angle_unit", "deg"),
@@ -301,10 +301,10 @@ fn has_letters(text: &str) -> bool {
 }
 
 impl<'a> LineAbove<'a> {
-    /// Takes a line above the rows apart, or a comment, whose marks go.
+    /// Splits a line above the rows, or a comment without its marks, into cells.
     pub(super) fn new((line, text): (usize, &'a str), separator: Separator, width: usize, is_comment: bool) -> Self {
         let bare = text.trim_matches(|letter: char| letter.is_whitespace() || "#%/*".contains(letter));
-        // In `#,Angle` the sign is a name.
+        // In `#,Angle` the sign is the name of a column.
         let is_name = is_comment
             && text.strip_prefix('#').is_some_and(|after| after.starts_with([',', ';', '\t', '|']))
             && separator.filled_cells(text).len() == width;
@@ -314,7 +314,7 @@ impl<'a> LineAbove<'a> {
         Self { line, text, is_comment, cells, headings }
     }
 
-    /// Whether it has units and no names of an angle or a lift: that of an angle, or units alone.
+    /// Whether it has units but no names of an angle or a lift: an angle's unit, or units alone.
     fn is_units(&self) -> bool {
         let is_of_angle = |heading: &Heading| heading.is_unit && heading.kind == Kind::Angle;
         let is_other = |heading: &Heading| matches!(heading.kind, Kind::Other | Kind::Unknown);

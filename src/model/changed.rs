@@ -1,4 +1,4 @@
-//! A model with some numbers changed from its file, each under the name that the user gives it.
+//! Changes of a model's numbers by the names that a user gives them.
 
 use std::collections::BTreeMap;
 
@@ -7,8 +7,8 @@ use super::quantity::ModelNumber;
 use super::{Model, ModelError, Numeral, Smoothing, SmoothingTolerance, Spline, TableProfile, nearest};
 
 impl Model {
-    /// Dotted path of the number of follower or cam that a user calls `name`: the full path, or a path's end that no other
-    /// path has. `beside` are further names that are allowed; complaints list them too.
+    /// Dotted path of the number of follower or cam called `name`: the full path, or an end of a path that no other path has. `beside` are
+    /// further allowed names, which error messages list too.
     pub fn path_of(&self, name: &str, beside: &[&str]) -> Result<&str, ModelError> {
         self.path_in(&["follower", "cam"], name, beside)
     }
@@ -19,7 +19,7 @@ impl Model {
         match paths.iter().copied().filter(|path| ends(path)).collect::<Vec<_>>().as_slice() {
             [path] => Ok(path),
             [] => {
-                // Compare whole paths if the name has a dot, else their ends.
+                // Compares whole paths if the name has a dot, else their last parts.
                 let ends = paths.iter().map(|path| path.rsplit('.').next().unwrap_or(path));
                 let names: Vec<&str> = if name.contains('.') { paths.clone() } else { ends.collect() };
                 let meant = nearest(name, names.into_iter().chain(beside.iter().copied()));
@@ -31,8 +31,8 @@ impl Model {
         }
     }
 
-    /// Copy of the model with another number in `field`, a dotted path. It is checked as the file is, except for what needs the cam. The
-    /// number becomes exact, as one that a study varies is. A spline near other lifts keeps its weight.
+    /// Returns a copy of the model with another number in `field`, a dotted path. It is checked as the file is, except for checks that need
+    /// the cam. The number becomes exact, because a study varies it. A spline near other lifts keeps its weight.
     pub(crate) fn rewritten(&self, field: &str, number: f64) -> Result<Self, ModelError> {
         let mut fields = self.fields.with_number(field, number.into())?;
         fields.drop_error(field);
@@ -44,9 +44,9 @@ impl Model {
         Ok(model)
     }
 
-    /// Copy of the model with other numbers, including those of `[study]`, each named as for [`Self::path_of`], or with other errors, each
-    /// named as its number with `.error` behind it. All are checked together as the file is, except for what needs the cam. The model's name
-    /// lists the changes.
+    /// Returns a copy of the model with other numbers, including those of `[study]`, each named as for [`Self::path_of`]. An error of a
+    /// number has `.error` after the number's name. All are checked together as the file is, except for checks that need the cam. The
+    /// model's name lists the changes.
     pub(crate) fn renamed(&self, numbers: &[(String, Numeral)]) -> Result<Self, ModelError> {
         let (mut fields, mut new) = (self.fields.clone(), Vec::new());
         for (name, number) in numbers {
@@ -78,8 +78,8 @@ impl Model {
         Ok(Self { changes, ..model })
     }
 
-    /// Copy of the model with a smoothing spline near other lifts, m, at the angles of its table. The caller gives the weight, by its
-    /// logarithm, the corners (exactly or nearly at these places) and the dwells, degrees. Checks that need the cam are not made here.
+    /// Returns a copy of the model with a smoothing spline near other lifts, m, at the angles of its table. The caller gives the logarithm
+    /// of the weight, the corners (exactly or nearly at these angles) and the dwells, degrees. Checks that need the cam are not made here.
     pub(crate) fn relifted(
         &self,
         lifts: &[f64],
@@ -103,14 +103,14 @@ impl Model {
         Ok(model)
     }
 
-    /// Gives a smoothing spline its weight, by its logarithm, and says whether its corners are near their places or there.
+    /// Sets the weight of a smoothing spline, by its logarithm, and whether its corners are only near their given angles.
     fn weigh(&mut self, weight: f64, are_near: bool) {
         if let Some(TableProfile { spline: Spline::Smoothing(smoothing), .. }) = self.cam.table_mut() {
             (smoothing.tolerance, smoothing.are_near) = (SmoothingTolerance::Weighted(weight), are_near);
         }
     }
 
-    /// Numeric and text fields of follower, cam, study and units by dotted path, as JSON documents have them.
+    /// Numeric and text fields of follower, cam, study and units by dotted path, as in JSON documents.
     pub(crate) fn values(&self) -> BTreeMap<&str, serde_json::Value> {
         let of = |(path, field): (&'_ std::sync::Arc<str>, &Field)| match &field.value {
             _ if !path.contains('.') => None,
@@ -121,7 +121,7 @@ impl Model {
         self.fields.fields.iter().filter_map(|entry| Some((&**entry.0, of(entry)?))).collect()
     }
 
-    /// The numbers that differ from the file, by dotted path.
+    /// Numbers that differ from the file, by dotted path.
     pub fn changes(&self) -> &[(String, f64)] {
         &self.changes
     }

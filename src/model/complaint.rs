@@ -1,4 +1,4 @@
-//! Errors in a model file, as values that point into it.
+//! Errors in a model file, as values that point to a place in it.
 
 use std::fmt;
 use std::ops::Range;
@@ -6,29 +6,29 @@ use std::sync::Arc;
 
 use crate::untrusted;
 
-/// A complaint about a model file: where, what was found, what is allowed.
+/// Error in a model file: its place, the value found, and the values allowed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub struct ModelError {
-    /// The file as the user named it.
+    /// File as the user named it.
     pub file: Box<str>,
     /// Line in the file, from 1; for a missing field, the line of its table.
     pub line: Option<usize>,
     /// Dotted path of the field.
     pub field: Option<String>,
-    /// The value as written.
+    /// Value as written.
     pub value: Option<String>,
-    /// The allowed values, or the error.
+    /// Allowed values, or the error.
     pub allowed: String,
     /// Exact place in the text, and a suggestion.
     pub pointer: Box<Pointer>,
 }
 
-/// Place and suggestion of a complaint.
+/// Place of an error, and a suggested correction.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Pointer {
     /// Text of the file, if there is one.
     pub text: Option<Arc<str>>,
-    /// Range of the text that the complaint is about, in bytes.
+    /// Range of the text with the error, in bytes.
     pub span: Option<Range<usize>>,
     /// Suggested correction, as a question.
     pub meant: Option<String>,
@@ -39,12 +39,12 @@ impl ModelError {
         Self { file: file.into(), line: None, field: None, value: None, allowed, pointer: Box::default() }
     }
 
-    /// The field, if any, with what it allows.
+    /// Field, if any, followed by its allowed values.
     pub fn rule(&self) -> String {
         self.field.as_ref().map_or_else(|| self.allowed.clone(), |field| format!("{field} {}", self.allowed))
     }
 
-    /// Adds `span` of `text` as the place.
+    /// Sets the place to `span` of `text`.
     pub(super) fn at(mut self, text: Option<Arc<str>>, span: Option<Range<usize>>) -> Self {
         (self.pointer.text, self.pointer.span) = (text, span);
         self
@@ -56,13 +56,13 @@ impl ModelError {
         self
     }
 
-    /// Appends a description of what was found instead.
+    /// Appends a description of the value found instead.
     pub fn found(mut self, words: &str) -> Self {
         self.allowed.push_str(words);
         self
     }
 
-    /// Adds the complaint's line of `text` as the place: `value` in that line if it is there, else the whole line.
+    /// Sets the place in the error's line of `text`: `value` if the line contains it, else the whole line.
     pub(super) fn in_line(self, text: &str, value: Option<&str>) -> Self {
         let Some(line) = self.line else { return self };
         let start = text.split_inclusive('\n').take(line - 1).map(str::len).sum::<usize>();

@@ -1,4 +1,4 @@
-//! A model that another program passes as a document: the fields of a model file, without the file.
+//! Models that another program passes as a document with the fields of a model file.
 
 use serde_json::{Map, Value as Item};
 

@@ -1,13 +1,13 @@
-//! Doubts about what the rows of a table mean: sentences for those who read them.
+//! Doubts about the meaning of a table's rows, in sentences for the user.
 
 use super::rows::TableRow;
 use super::table::TableProfile;
 use crate::tolerance;
 
 impl TableProfile {
-    /// Doubts about what the rows mean, a sentence each.
+    /// Doubts about the meaning of the rows, one sentence each.
     pub fn doubts(&self) -> Vec<String> {
-        /// Part of the rise that a lift may be below 0 by the errors of a gauge.
+        /// Part of the rise by which a lift may be below 0 through errors of a gauge.
         const BELOW: f64 = 0.01;
         let (reading, mut doubts) = (&self.reading, Vec::new());
         if reading.layout.as_ref().is_some_and(|layout| layout.is_of_crank) && reading.turn_deg.is_none() {
@@ -29,19 +29,19 @@ impl TableProfile {
         doubts
     }
 
-    /// Rows with the gap to the next one, degrees.
+    /// Gaps from each row to the next one, degrees.
     fn gaps(&self) -> Vec<f64> {
         let next =
             |index: usize| self.rows.get(index + 1).map_or(self.rows[0].angle_deg + 360.0, |next| next.angle_deg);
         self.rows.iter().enumerate().map(|(index, row)| next(index) - row.angle_deg).collect()
     }
 
-    /// Place of a row for a sentence.
+    /// Place of a row, for a sentence.
     fn row_place(&self, row: &TableRow) -> String {
         self.file.as_ref().map_or_else(|| "cam.rows".to_owned(), |file| format!("{file}, line {}", row.line))
     }
 
-    /// Too few rows on a lobe, or in a hollow, for its accelerations.
+    /// Doubt about too few rows on a lobe, or in a hollow, for its accelerations.
     fn coarse(&self) -> Option<String> {
         let highest = self.rows.iter().map(|row| row.lift).fold(f64::NEG_INFINITY, f64::max);
         let rise = self.rise();
@@ -57,9 +57,9 @@ impl TableProfile {
         })
     }
 
-    /// Number of rows of one lobe, of which `part` is the height over the largest, from 0 to 1.
+    /// Number of rows per lobe; `part` is the height of a row relative to the largest, from 0 to 1.
     fn rows_of_one(&self, part: impl Fn(&TableRow) -> f64) -> f64 {
-        /// Heights, over the largest, below which a lobe has not begun, and above which there is one.
+        /// Relative heights: a lobe begins above the first and counts above the second.
         const FOOT: f64 = 0.05;
         const BODY: f64 = 0.5;
         let heights: Vec<f64> = self.rows.iter().map(part).collect();
@@ -73,19 +73,19 @@ impl TableProfile {
         f64::from(rows) / f64::from(lobes.max(1))
     }
 
-    /// A step of the lift between two level stretches, as a gauge leaves that slips.
+    /// Doubt about a step of the lift between two level ranges, as left by a slipping gauge.
     fn slipped(&self) -> Option<String> {
-        /// Rows on either side that must be level.
+        /// Number of rows on either side that must be level.
         const LEVEL: usize = 5;
-        /// Range of the lifts on a level side, over the step.
+        /// Range of the lifts on a level side, relative to the step.
         const RANGE: f64 = 0.2;
-        /// Largest step over the rise: a larger one is a motion.
+        /// Largest step relative to the rise: a larger one is a motion.
         const LARGEST: f64 = 0.2;
         let count = self.rows.len();
         if count < 4 * LEVEL {
             return None;
         }
-        // Rounding leaves a step between two level stretches, too, where the lift creeps.
+        // Rounding also leaves steps between two level ranges where the lift changes slowly.
         let rise = self.rise();
         let least = (6.0 * self.reading.half_step()).max(tolerance::ON_BASE.value * rise);
         let lift = |index: usize| self.rows[index % count].lift;
@@ -112,13 +112,13 @@ impl TableProfile {
         ))
     }
 
-    /// Rows that are missing where the lift changes, or turns.
+    /// Doubt about missing rows where the lift changes or turns.
     fn missing(&self) -> Option<String> {
-        /// Gap over those beside it from which on rows are missing.
+        /// Gap relative to neighbouring gaps from which rows count as missing.
         const WIDE: f64 = 2.5;
         /// Part of the rise by which the lift changes over the gap.
         const CHANGE: f64 = 0.01;
-        /// Difference of the slopes at the ends of a gap over the largest slope, from which on the lift turns within the gap.
+        /// Difference of the slopes at the ends of a gap, relative to the largest slope, from which the lift turns within the gap.
         const TURNS: f64 = 0.05;
         let (gaps, count) = (self.gaps(), self.rows.len());
         let change = |index: usize| (self.rows[(index + 1) % count].lift - self.rows[index].lift).abs();
@@ -127,7 +127,7 @@ impl TableProfile {
             (self.rows[(index + 1) % count].lift - self.rows[index].lift) / gaps[index]
         };
         let steepest = (0..count).map(|index| slope(index).abs()).fold(0.0, f64::max);
-        // Slope at the edge of a gap, of the parabola through the three rows that are nearest on that side.
+        // Slope at the edge of a gap, of the parabola through the three nearest rows on that side.
         let at_edge = |near: usize, far: usize| {
             let [near_gap, far_gap] = [near, far].map(|index| gaps[index % count]);
             slope(near) + (slope(near) - slope(far)) * near_gap / (near_gap + far_gap)

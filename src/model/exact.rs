@@ -1,6 +1,6 @@
-//! The exact numbers of a model for proofs: the rationals as written, as text.
+//! Exact numbers of a model for proofs: the rationals as written, as text.
 //!
-//! Each number is a decimal, or a decimal times a quotient of whole numbers, `"1.25 * 1/1000"`, which converts it to internal units.
+//! Each number is a decimal, or a decimal times a quotient of whole numbers that converts it to internal units, such as `"1.25 * 1/1000"`.
 
 use serde_json::{Map, Value as Item, json};
 
@@ -11,8 +11,8 @@ use super::{Model, Unit};
 impl Model {
     /// Tables of the follower and the cam, as in a model file in SI units or in the file's unit of length, with every number as text.
     ///
-    /// If the file gives a preload, it replaces the rest position. A number that no field of the file has, such as a lift of
-    /// another table, is the shortest decimal that reads back as its double.
+    /// If the file gives a preload, it replaces the rest position. A number without a field in the file, such as a lift of another table,
+    /// is the shortest decimal that reads back as its double.
     pub fn exact(&self) -> Item {
         let told = |name: &str, number: f64| {
             let text = self.fields.exact(&format!("follower.{name}"), self.units.of_follower(name), number);
@@ -38,7 +38,7 @@ impl Model {
     }
 }
 
-/// A decimal in a unit, as an expression in internal units.
+/// Expression in internal units of a decimal in a unit.
 fn times(decimal: String, unit: Option<&Unit>) -> String {
     match unit.and_then(Unit::factor) {
         Some([above, below]) => format!("{decimal} * {above}/{below}"),
@@ -47,7 +47,7 @@ fn times(decimal: String, unit: Option<&Unit>) -> String {
 }
 
 impl Fields {
-    /// Text of the number that became `inside`; the digits of that double where no field has it.
+    /// Text of the number that became `inside`; the digits of that double if no field has it.
     fn exact(&self, path: &str, unit: Option<&Unit>, inside: f64) -> String {
         let became = |number: f64| unit.map_or(number, |unit| unit.inside(number));
         match self.fields.get(path) {

@@ -1,4 +1,4 @@
-//! A model file as a flat list of fields with their lines, so that every complaint can point into the file.
+//! Fields of a model file as a flat list with their lines, so that every error can point into the file.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
@@ -9,15 +9,15 @@ use super::quantity::{Allowed, MODEL_NUMBERS, ModelNumber};
 use super::{ModelError, nearest};
 use crate::untrusted;
 
-/// Two numbers and their line.
+/// Pair of numbers, and its line.
 pub(super) type Pair = ([f64; 2], Option<usize>);
 
 #[derive(Clone, Debug)]
 pub(super) enum Value {
     Table,
-    /// Length of an array whose elements are fields of their own: `path[0]`, `path[1]`, ...
+    /// Length of an array whose elements are separate fields: `path[0]`, `path[1]`, ...
     Array(usize),
-    /// An array of pairs of numbers; it may have a million rows.
+    /// Array of pairs of numbers; it may have a million rows.
     Rows(Vec<Pair>),
     Text(String),
     Number(f64),
@@ -26,11 +26,11 @@ pub(super) enum Value {
 
 #[derive(Clone, Debug)]
 pub(super) struct Field {
-    /// Line in the file; `None` for a default, a replaced value, or a field that came without a file.
+    /// Line in the file; `None` for a default, a replaced value, or a field without a file.
     pub(super) line: Option<usize>,
     /// Whether the field was given; false for a default.
     pub(super) is_there: bool,
-    /// Range of the name in the text; for an element of an array, of its value.
+    /// Range of the name in the text; for an element of an array, range of its value.
     pub(super) key: Range<usize>,
     /// Range of the value in the text.
     pub(super) span: Range<usize>,
@@ -43,7 +43,7 @@ impl Field {
         Self { line: None, is_there: true, key: 0..0, span: 0..0, written: written.into(), value }
     }
 
-    /// The value as written; a list of tables is not shown.
+    /// Returns the value as written; `None` for a list of tables.
     fn shown(&self) -> Option<String> {
         match self.value {
             Value::Table => None,
@@ -53,7 +53,7 @@ impl Field {
     }
 }
 
-/// The fields of a model file by dotted path, and the set of those that the format has.
+/// Fields of a model file by dotted path, and the set of fields of the format.
 #[derive(Clone, Debug)]
 pub(super) struct Fields {
     file: String,
@@ -61,7 +61,7 @@ pub(super) struct Fields {
     text: Option<Arc<str>>,
     pub(super) fields: BTreeMap<Arc<str>, Field>,
     known: Arc<BTreeSet<String>>,
-    /// Whether the format has all of them: another number in one of them does not change that.
+    /// Whether the format has all fields; a changed number does not alter that.
     is_checked: bool,
 }
 
@@ -69,7 +69,7 @@ impl Fields {
     /// Separators of the names in a path.
     pub(super) const PARTS: [char; 2] = ['.', '['];
 
-    /// Empty fields, of a file with a text or of a source that is not a file.
+    /// Returns an empty list of fields for a file with a text, or for a source that is not a file.
     pub(super) fn none(file: &str, text: Option<&str>) -> Self {
         let (text, known) = (text.map(Arc::from), Arc::default());
         Self { file: file.into(), text, fields: BTreeMap::new(), known, is_checked: false }
@@ -91,7 +91,7 @@ impl Fields {
 
     /// Path and value of every number in `tables`.
     pub(super) fn numbers_in<'a>(&'a self, tables: &[&str]) -> impl Iterator<Item = (&'a str, f64)> {
-        /// Numbers that say how a table is read, and are none of the machine's.
+        /// Numbers that control how a table is read, and are not numbers of the machine.
         const OF_READING: [&str; 6] = [
             "cam.angle_column",
             "cam.lift_column",
@@ -109,7 +109,7 @@ impl Fields {
         })
     }
 
-    /// Copy of the fields with another number at `path`; fails if there is no number there. An exact number may get an error.
+    /// Returns a copy of the fields with another number at `path`; fails if there is no number. An exact number may get an error.
     pub(super) fn with_number(&self, path: &str, number: Numeral) -> Result<Self, ModelError> {
         let mut fields = self.clone();
         let is_exact = !self.has(path) && Self::number_of(path).is_some_and(|of| self.has(of));
@@ -128,7 +128,7 @@ impl Fields {
         }
     }
 
-    /// Copy of the fields without the text of a file.
+    /// Returns a copy of the fields without the text of a file.
     pub(super) fn without_text(&self) -> Self {
         Self { text: None, known: Arc::default(), is_checked: false, ..self.clone() }
     }
@@ -137,7 +137,7 @@ impl Fields {
         self.fields.contains_key(path)
     }
 
-    /// The number at a path, within what it may be. One that is left out has its default, and can still be changed.
+    /// Reads the number at a path, within its allowed range. A missing number has its default, and can still be changed.
     pub(super) fn number(&mut self, path: &str) -> Result<f64, ModelError> {
         let row = ModelNumber::of(path);
         if let Some(default) = row.and_then(|number| number.default).filter(|_| !self.has(path)) {
@@ -149,7 +149,7 @@ impl Fields {
         self.number_within(path, row.map_or(Allowed::FINITE, |number| number.allowed))
     }
 
-    /// The number at a path, within a range.
+    /// Reads the number at a path, within a range.
     pub(super) fn number_within(&mut self, path: &str, allowed: Allowed) -> Result<f64, ModelError> {
         if let Value::Number(number) = *self.take(path)?
             && allowed.contains(number)
@@ -160,12 +160,12 @@ impl Fields {
         Err(self.reject(path, if has_error { ModelNumber::without_error() } else { allowed.to_string() }))
     }
 
-    /// Complains where there is nothing at a path.
+    /// Returns an error if there is no field at a path.
     pub(super) fn present(&mut self, path: &str) -> Result<(), ModelError> {
         self.take(path).map(|_| ())
     }
 
-    /// Length of an array, at least one and at most `most`.
+    /// Reads the length of an array, at least one and at most `most`.
     pub(super) fn length(&mut self, path: &str, what: &str, most: usize) -> Result<usize, ModelError> {
         match *self.take(path)? {
             Value::Array(length) if (1..=most).contains(&length) => Ok(length),
@@ -174,13 +174,13 @@ impl Fields {
         }
     }
 
-    /// An array of finite numbers, one to `most` of them.
+    /// Reads an array of finite numbers, one to `most` of them.
     pub(super) fn numbers(&mut self, path: &str, most: usize) -> Result<Vec<f64>, ModelError> {
         let length = self.length(path, "numbers", most)?;
         (0..length).map(|index| self.number(&format!("{path}[{index}]"))).collect()
     }
 
-    /// Pairs of numbers, each with its line, `fewest` to `most` of them.
+    /// Reads pairs of numbers, each with its line, `fewest` to `most` of them.
     pub(super) fn rows(&mut self, path: &str, [fewest, most]: [usize; 2]) -> Result<Vec<Pair>, ModelError> {
         match self.take(path)?.clone() {
             Value::Rows(rows) if (fewest..=most).contains(&rows.len()) => Ok(rows),
@@ -202,7 +202,7 @@ impl Fields {
         matches!(self.fields.get(path), Some(Field { value: Value::Array(0), .. }))
     }
 
-    /// Number of tables `[[path]]`, at least one and at most `most`.
+    /// Counts the tables `[[path]]`, at least one and at most `most`.
     pub(super) fn tables(&mut self, path: &str, most: usize) -> Result<usize, ModelError> {
         let length = self.length(path, "tables", most)?;
         for item in (0..length).map(|index| format!("{path}[{index}]")) {
@@ -214,7 +214,7 @@ impl Fields {
     }
 
     pub(super) fn text(&mut self, path: &str) -> Result<String, ModelError> {
-        /// Most characters: every page and figure shows the text.
+        /// Largest number of characters: every page and figure shows the text.
         const LONGEST: usize = 1000;
         match self.take(path)?.clone() {
             Value::Text(text) if text.chars().count() <= LONGEST => Ok(text),
@@ -238,7 +238,7 @@ impl Fields {
         if self.has(path) { self.text(path) } else { Ok(default.into()) }
     }
 
-    /// The text at a path, or the default where there is nothing. `None` for anything else than text.
+    /// Reads the text at a path, or the default if the field is missing; `None` for any value that is not text.
     pub(super) fn word<'a>(&'a mut self, path: &str, default: &'a str) -> Option<&'a str> {
         self.may_hold(path);
         match self.fields.get(path).map(|field| &field.value) {
@@ -251,7 +251,7 @@ impl Fields {
     fn take(&mut self, path: &str) -> Result<&Value, ModelError> {
         self.may_hold(path);
         self.fields.get(path).map(|field| &field.value).ok_or_else(|| {
-            // A mistyped field is missing under its own name, so list the fields of its table.
+            // A mistyped field is missing under its own name, so the message lists the fields of its table.
             let table = path.rsplit_once('.').map_or("", |(table, _)| table);
             let inside = |(name, field): &(&Arc<str>, &Field)| {
                 let is_there = field.is_there && !name.ends_with(']');
@@ -266,7 +266,7 @@ impl Fields {
         })
     }
 
-    /// Complaint about a missing field, if a similar name in its place may be meant for the field or for its table.
+    /// Error about a missing field, if a similar name in its place may be a misspelling of the field or of its table.
     fn mistyped(&self, path: &str) -> Option<ModelError> {
         let (table, name) = path.rsplit_once('.').unwrap_or(("", path));
         let in_table = |at: &str, name: &str| if at.is_empty() { name.to_owned() } else { format!("{at}.{name}") };
@@ -276,7 +276,7 @@ impl Fields {
             let (at, meant) = table.rsplit_once('.').unwrap_or(("", table));
             (at, meant, format!("[{meant}]"))
         };
-        // A number of the format is not a misspelling of another; other names of it are unlike each other.
+        // A number of the format is not a misspelling of another; the format's other names are dissimilar.
         let is_name = |word: &str| MODEL_NUMBERS.iter().any(|number| number.name() == word);
         let inside = |path: &str| path.strip_prefix(at).map(|rest| rest.trim_start_matches('.').to_owned());
         let stray: Vec<String> = self.fields.keys().filter_map(|path| inside(path)).collect();
@@ -302,7 +302,7 @@ impl Fields {
         }
     }
 
-    /// The complaint about a field, present or not.
+    /// Builds an error about a field, present or not.
     pub(super) fn reject(&self, path: &str, allowed: impl Into<String>) -> ModelError {
         let field = self.fields.get(path);
         let table = path.rsplit_once('.').and_then(|(table, _)| self.fields.get(table));
@@ -327,7 +327,7 @@ impl Fields {
         Err(self.reject(path, format!("must be one of: {}", known.join(", "))).meaning(meant))
     }
 
-    /// Complains about the first field in the file that the format does not have.
+    /// Returns an error about the first field in the file that the format does not have.
     pub(super) fn finish(&mut self) -> Result<(), ModelError> {
         if self.is_checked {
             return Ok(());
@@ -346,7 +346,7 @@ impl Fields {
             return Err(self.reject(path, format!("must be a table, [{path}]")));
         }
         let table = table_of(path);
-        // An array is listed once, not once more for each element.
+        // An array is listed once, without its elements.
         let listed = |known: &&String| !known.ends_with(']') && table_of(known) == table;
         let siblings = self.known.iter().filter(listed);
         // A number with an error is a table as well.
@@ -356,7 +356,7 @@ impl Fields {
             siblings.chain(tables).map(|known| known.rsplit('.').next().unwrap_or(known)).collect();
         let place = if table.is_empty() { "at the top of the file".to_owned() } else { format!("in [{table}]") };
         let is_table = matches!(field.value, Value::Table);
-        // For a table, no value is shown between its name and these words.
+        // A table has no value between its name and these words.
         let is = if is_table { "is an " } else { "" };
         let words = format!("{is}unknown field; allowed {place}: {}", allowed.join(", "));
         let name = path.rsplit('.').next().unwrap_or(path);

@@ -7,22 +7,22 @@ use super::quantity::{Allowed, ModelNumber};
 use super::units::Units;
 use super::{Model, ModelError};
 
-/// Standard deviations of the follower's numbers, in internal units; 0 for an exact number. The numbers are independent of each other.
+/// Standard deviations of the follower's numbers, in internal units; 0 for an exact number. The errors are independent of each other.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FollowerErrors([f64; Self::COUNT]);
 
-/// Multiples of the standard deviations by which the follower's numbers are moved, in the order of [`FollowerErrors::names`].
+/// Shifts of the follower's numbers as multiples of their standard deviations, in the order of [`FollowerErrors::names`].
 pub(crate) type Moves = [f64; FollowerErrors::COUNT];
 
 impl FollowerErrors {
-    /// Number of the follower's numbers that may have an error.
+    /// Number of the follower's quantities that may have an error.
     pub const COUNT: usize = 7;
     /// Name of the entry that gives an error.
     const ERROR: &str = "error";
-    /// Largest error of a number that must not reach 0, as a part of its value.
+    /// Largest error of a number that must not reach 0, relative to its value.
     const MOST: f64 = 0.5;
 
-    /// Reads the errors of the numbers that a model file has.
+    /// Reads the errors of the numbers in a model file.
     pub(super) fn read(fields: &mut Fields, units: &Units) -> Result<Self, ModelError> {
         let mut errors = Self::default();
         for (error, name) in errors.0.iter_mut().zip(Self::names()) {
@@ -38,7 +38,7 @@ impl FollowerErrors {
         Ok(errors)
     }
 
-    /// Refuses an error with which a number makes no sense: ± is two standard deviations, and neither a mass nor a stiffness is 0.
+    /// Rejects an error that includes impossible values: ± is two standard deviations, and a mass or a stiffness must not reach 0.
     pub(super) fn check(self, fields: &mut Fields) -> Result<(), ModelError> {
         for (name, _) in self.uncertain() {
             let (number, path) = (format!("follower.{name}"), format!("follower.{name}.{}", Self::ERROR));
@@ -69,28 +69,28 @@ impl FollowerErrors {
         self.0
     }
 
-    /// The errors with the number at a dotted path made exact.
+    /// Returns the errors with the number at a dotted path made exact.
     pub fn without(self, path: &str) -> Self {
         let name = path.strip_prefix("follower.");
         self.kept(|index| name != Self::names().nth(index))
     }
 
-    /// The larger errors of two machines.
+    /// Returns the larger error of two machines for each number.
     pub(crate) fn or(self, other: Self) -> Self {
         Self(std::array::from_fn(|index| self.0[index].max(other.0[index])))
     }
 
-    /// The errors of the numbers at some indices; the others are made exact.
+    /// Keeps the errors of the numbers at some indices and makes the others exact.
     pub(crate) fn kept(self, is_kept: impl Fn(usize) -> bool) -> Self {
         Self(std::array::from_fn(|index| if is_kept(index) { self.0[index] } else { 0.0 }))
     }
 
-    /// The numbers that are not exact, each with its standard deviation.
+    /// Numbers that are not exact, each with its standard deviation.
     pub fn uncertain(self) -> impl Iterator<Item = (&'static str, f64)> {
         Self::names().zip(self.0).filter(|(_, error)| *error > 0.0)
     }
 
-    /// The errors, or none if every number is exact.
+    /// Returns the errors, or `None` if every number is exact.
     pub fn if_any(self) -> Option<Self> {
         (!self.are_none()).then_some(self)
     }
@@ -100,7 +100,7 @@ impl FollowerErrors {
         self.0.iter().all(|error| *error == 0.0)
     }
 
-    /// A number of the follower moved from `value` by `by`, but no further than it may be. A number that must not be 0 keeps a tenth of its
+    /// Moves a number of the follower from `value` by `by`, within its allowed range. A number that must not be 0 keeps a tenth of its
     /// value.
     pub(crate) fn moved(name: &str, value: f64, by: f64) -> f64 {
         const KEPT: f64 = 0.1;
@@ -110,7 +110,7 @@ impl FollowerErrors {
     }
 }
 
-/// The names of the numbers that are not exact.
+/// Serializes as the names of the numbers that are not exact.
 impl Serialize for FollowerErrors {
     fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
         to.collect_seq(self.uncertain().map(|(name, _)| name))
@@ -118,12 +118,12 @@ impl Serialize for FollowerErrors {
 }
 
 impl Model {
-    /// A number of the follower by its name, in internal units; none where the model has none.
+    /// Number of the follower by its name, in internal units; `None` if the model has none.
     pub(crate) fn of_follower(&self, name: &str) -> Option<f64> {
         self.clone().of_follower_mut(name).copied()
     }
 
-    /// A number of the follower, to be changed.
+    /// Number of the follower by its name, for a change.
     pub(crate) fn of_follower_mut(&mut self, name: &str) -> Option<&mut f64> {
         let follower = &mut self.follower;
         match name {
@@ -145,20 +145,20 @@ impl Fields {
         format!("{path}.{}", FollowerErrors::ERROR)
     }
 
-    /// Whether a path is that of an error, and no number of the machine.
+    /// Whether a path belongs to an error and not to a number of the machine.
     pub(super) fn is_error(path: &str) -> bool {
         path.strip_suffix(FollowerErrors::ERROR).is_some_and(|head| head.ends_with('.'))
     }
 
-    /// Path of the number that an error belongs to, with the error's name behind its own.
+    /// Path of the number to which an error belongs; `error` is the path of the error.
     pub(super) fn number_of(error: &str) -> Option<&str> {
         error.strip_suffix(FollowerErrors::ERROR)?.strip_suffix('.')
     }
 
-    /// Takes `{ value = ..., error = ... }` apart: the value becomes the number at `path`, and its error stays beside it.
+    /// Splits `{ value = ..., error = ... }`: the value becomes the number at `path`, and its error stays beside it.
     pub(super) fn part_error(&mut self, path: &str) -> Result<(), ModelError> {
         let [value, error] = [format!("{path}.value"), Self::error_of(path)];
-        // Another table is no number.
+        // Any other table is not a number.
         if !self.is_table(path) || !(self.has(&value) || self.has(&error)) {
             return Ok(());
         }
@@ -175,7 +175,7 @@ impl Fields {
         self.fields.remove(&*Self::error_of(path));
     }
 
-    /// The error of the number at `path`, in the unit of the file; none for an exact number.
+    /// Error of the number at `path`, in the unit of the file; `None` for an exact number.
     pub(super) fn error_at(&self, path: &str) -> Option<f64> {
         match self.fields.get(&*Self::error_of(path)) {
             Some(Field { value: Value::Number(error), .. }) if *error > 0.0 => Some(*error),

@@ -1,38 +1,38 @@
-//! Words and units in the lines above a table of lifts: what a column holds, and what its numbers are in.
+//! Words and units in the lines above a table of lifts: the quantity of a column, and the unit of its numbers.
 
 use std::collections::HashMap;
 use std::sync::LazyLock;
 
 use super::table_units::{AngleUnit, LiftUnit, decimal_part};
 
-/// Meaning of a word.
+/// Meaning of a word in a heading.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Meaning {
     /// Quantity of a column that is left out.
     Other,
     Lift,
-    /// Radius of the cam itself, which is no lift.
+    /// Radius of the cam itself, which is not a lift.
     Radius,
     Angle,
     /// x of a point.
     Abscissa,
     /// y of a point.
     Ordinate,
-    /// Word that says nothing about a quantity or a unit.
+    /// Word without a quantity or a unit.
     Filler,
     /// Unit of angles, by its index in the names of a model file.
     AngleUnit(usize),
     /// Unit of lengths, by its index in their table.
     LengthUnit(usize),
-    /// Unit of time, which is read below a slash alone.
+    /// Unit of time, which is only read after a slash.
     TimeUnit,
-    /// Unit that no column is read in.
+    /// Unit that no column may have.
     OtherUnit,
     /// Decimal part of a unit, by its number of places.
     Part(u32),
 }
 
-/// Words by their meaning, each once. One behind a hyphen may end a longer word, as in German.
+/// Words by their meaning, each once. A word after a hyphen may end a longer word, as in German.
 const WORDS: [(Meaning, &str); 23] = [
     (
         Meaning::Other,
@@ -70,11 +70,11 @@ const WORDS: [(Meaning, &str); 23] = [
     (Meaning::Part(2), "hundredth hundredths hundertstel"),
     (Meaning::Part(3), "thousandth thousandths tausendstel"),
 ];
-/// The unit of gauges.
+/// Unit of dial gauges.
 const MILLIMETRE: Meaning = Meaning::LengthUnit(2);
-/// The meaning of each word.
+/// Meaning of each word.
 static MEANINGS: LazyLock<HashMap<&str, Meaning>> = LazyLock::new(|| words().collect());
-/// The endings of longer words.
+/// Endings of longer words.
 static ENDINGS: LazyLock<Vec<(&str, Meaning)>> =
     LazyLock::new(|| words().filter_map(|(word, meaning)| Some((word.strip_prefix('-')?, meaning))).collect());
 
@@ -82,20 +82,20 @@ fn words() -> impl Iterator<Item = (&'static str, Meaning)> {
     WORDS.iter().flat_map(|(meaning, words)| words.split_whitespace().map(|word| (word, *meaning)))
 }
 
-/// Words that begin the name of a crank's angle, and of a cam's.
+/// Beginnings of words for a crank's angle, and for a cam's.
 const CRANK: [&str; 5] = ["crank", "kurbel", "kw", "cad", "vilebrequin"];
 const CAM: [&str; 3] = ["cam", "nocken", "nw"];
-/// Most decimal places of a part of a unit.
+/// Largest number of decimal places of a part of a unit.
 const MOST_PLACES: u32 = 6;
 
-/// A word, a number or a sign.
+/// Word, number or sign of a heading.
 #[derive(Clone, Debug, PartialEq)]
 struct Token {
     /// Text in lower case; a multiplication sign is `*`, a power `^`, a prime `'`.
     text: String,
     /// Number of the brackets around it, from 1; 0 outside of brackets.
     bracket: usize,
-    /// Whether nothing stands between it and the token before.
+    /// Whether it follows the token before without a gap.
     is_joined: bool,
 }
 
@@ -118,13 +118,13 @@ impl Token {
         self.text.replace(',', ".").parse().ok().filter(|number: &f64| number.is_finite())
     }
 
-    /// Whether it is a Latin letter, which is a word of its own only as a name.
+    /// Whether it is a single Latin letter, which is a word only as a name.
     fn is_letter(&self) -> bool {
         self.text.len() == 1 && self.is_word() && self.text != "#"
     }
 }
 
-/// Length of the number, the word or the sign that a text begins with, bytes.
+/// Length in bytes of the number, word or sign at the beginning of a text.
 fn first_length(text: &str) -> usize {
     let digits = |text: &str| text.len() - text.trim_start_matches(|next: char| next.is_ascii_digit()).len();
     let letter = text.chars().next().map_or(0, char::len_utf8);
@@ -136,7 +136,7 @@ fn first_length(text: &str) -> usize {
         let exponent = text[end..].strip_prefix("e-").map_or(0, digits);
         return end + if exponent > 0 { 2 + exponent } else { 0 };
     }
-    // Degrees of temperature, which are no angle.
+    // Degrees of temperature, which are not an angle.
     if text.starts_with('°')
         && after.to_lowercase().starts_with(['c', 'f'])
         && !after[1..].starts_with(char::is_alphabetic)
@@ -153,9 +153,9 @@ fn first_length(text: &str) -> usize {
     next.map_or(end, |((at, _), _)| at)
 }
 
-/// Takes a text apart.
+/// Splits a text into tokens.
 fn tokens(text: &str) -> Vec<Token> {
-    /// Signs by the forms that they are typed in.
+    /// Signs, each with the forms in which it is typed.
     const SIGNS: [(&str, &str); 7] =
         [("/", "/"), ("#", "#"), ("%", "%"), ("°", "°"), ("*", "*×·⋅"), ("'", "'’′´"), ("\"", "\"″”“")];
     let mut text = text.replace("\"\"", "\"").replace('º', "°");
@@ -174,7 +174,7 @@ fn tokens(text: &str) -> Vec<Token> {
             brackets += 1;
             (bracket, is_joined) = (brackets, false);
         } else if ")]}".contains(letter) {
-            // Brackets around nothing, or around a dash, name a unit that is none.
+            // Brackets around nothing, or around a dash, mean that there is no unit.
             if tokens.last().is_none_or(|last| last.bracket != bracket) {
                 tokens.push(token("-", false));
             }
@@ -201,19 +201,19 @@ fn tokens(text: &str) -> Vec<Token> {
             is_joined = false;
         }
     }
-    // A pair of quotation marks is no sign of inches.
+    // A pair of quotation marks is not a sign of inches.
     let is_mark = |token: &Token| token.text == "\"" && token.bracket == 0;
     if tokens.iter().filter(|token| is_mark(token)).count() > 1 {
         tokens.retain(|token| !is_mark(token));
     }
-    // What stands in brackets alone stands there as outside of them.
+    // If all tokens are in brackets, the brackets are ignored.
     if tokens.iter().all(|token| token.bracket > 0) {
         tokens.iter_mut().for_each(|token| token.bracket = 0);
     }
     tokens
 }
 
-/// Reads a decimal part of a unit of length, as in `0.01 mm`.
+/// Reads a decimal part of a unit of length, such as `0.01 mm`.
 pub(super) fn part_of_unit(text: &str) -> Option<LiftUnit> {
     let tokens = tokens(text);
     match units(&tokens)[..] {
@@ -226,27 +226,27 @@ pub(super) fn part_of_unit(text: &str) -> Option<LiftUnit> {
     }
 }
 
-/// Multiple of a unit that a number beside it says.
+/// Multiple of a unit, given by a number beside it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Parts {
-    /// A decimal part of the unit, by its number of places; 0 is the unit itself.
+    /// Decimal part of the unit, by its number of places; 0 is the unit itself.
     Decimal(u32),
-    /// Numbers that are so many times those in the unit, or a part that is not decimal.
+    /// Factor of the numbers relative to the unit, or a part that is not decimal.
     Times(f64),
 }
 
-/// A unit in a text.
+/// Unit found in a text.
 #[derive(Clone, Debug, PartialEq)]
 struct FoundUnit {
     /// Range of its tokens.
     at: std::ops::Range<usize>,
     meaning: Meaning,
     parts: Parts,
-    /// Whether it is of something per angle or time.
+    /// Whether it is a quantity per angle or time.
     is_rate: bool,
 }
 
-/// The units in a text.
+/// Finds the units in a text.
 fn units(tokens: &[Token]) -> Vec<FoundUnit> {
     let mut found: Vec<FoundUnit> = Vec::new();
     let mut index = 0;
@@ -261,7 +261,7 @@ fn units(tokens: &[Token]) -> Vec<FoundUnit> {
     found
 }
 
-/// Whether a unit's word is a name or a preposition where it stands.
+/// Whether the word of a unit is a name or a preposition at this place.
 fn is_name(tokens: &[Token], index: usize) -> bool {
     let token = &tokens[index];
     let is_slash = |token: &Token| token.text == "/";
@@ -277,7 +277,7 @@ fn is_name(tokens: &[Token], index: usize) -> bool {
     }
 }
 
-/// The unit whose word is at `index`, with what stands beside it; tokens before `from` belong to another.
+/// Reads the unit whose word is at `index`, with the numbers beside it; tokens before `from` belong to another unit.
 fn unit_at(tokens: &[Token], index: usize, meaning: Meaning, from: usize) -> FoundUnit {
     let beside = |token: &&Token| token.bracket == tokens[index].bracket;
     let text = |index: usize| tokens.get(index).filter(beside).map(|token| &*token.text);
@@ -301,7 +301,7 @@ fn unit_at(tokens: &[Token], index: usize, meaning: Meaning, from: usize) -> Fou
             None => {}
         }
     }
-    // Behind it: "/100", "/deg", "^2"
+    // After the unit: "/100", "/deg", "^2"
     let per = |below: Meaning| match (meaning, below) {
         (Meaning::LengthUnit(_), Meaning::AngleUnit(_)) | (_, Meaning::TimeUnit) => Some(true),
         (Meaning::AngleUnit(_), Meaning::AngleUnit(_)) => None,
@@ -315,7 +315,7 @@ fn unit_at(tokens: &[Token], index: usize, meaning: Meaning, from: usize) -> Fou
             None => {}
         },
         (Some("^"), ..) => meaning = Meaning::OtherUnit,
-        // "[mm·10⁻²]"; outside of brackets the numbers may be so many times those in the unit.
+        // "[mm·10⁻²]"; outside brackets the number may be a factor of the numbers.
         (Some("*"), Some(value), _) if tokens[index].bracket > 0 && value < 1.0 => {
             (end, parts) = (end + 2, parts * value)
         }
@@ -326,7 +326,7 @@ fn unit_at(tokens: &[Token], index: usize, meaning: Meaning, from: usize) -> Fou
     while matches!(text(end), Some("^")) {
         end += 1;
     }
-    // In `s"` the sign may be a unit, or a second derivative.
+    // In `s"` the sign may be a unit or a second derivative.
     let is_behind_word = index.checked_sub(1).is_some_and(|before| tokens[before].is_word());
     if tokens[index].text == "\"" && tokens[index].is_joined && is_behind_word {
         meaning = Meaning::OtherUnit;
@@ -341,31 +341,31 @@ fn unit_at(tokens: &[Token], index: usize, meaning: Meaning, from: usize) -> Fou
 pub(super) enum Kind {
     Angle,
     Lift,
-    /// A radius of the cam itself.
+    /// Radius of the cam itself.
     Radius,
     /// x of a point.
     Abscissa,
     /// y of a point.
     Ordinate,
-    /// Something else, which is left out.
+    /// Other quantity, which is left out.
     Other,
     Unknown,
 }
 
-/// A unit that a cell names, if any; an error with the units that may be meant where it is not understood.
+/// Unit that a cell names, if any; the error lists the possible units if the unit is not understood.
 pub(super) type Named<T> = Result<Option<T>, Vec<String>>;
 
-/// A cell of a header, understood.
+/// Interpreted cell of a header.
 #[derive(Clone, Debug)]
 pub(super) struct Heading {
     pub(super) kind: Kind,
-    /// Unit of angles in it, by its index in the names of a model file.
+    /// Unit of its angles, by its index in the names of a model file.
     pub(super) angle: Named<usize>,
-    /// Unit of lifts in it.
+    /// Unit of its lifts.
     pub(super) lift: Named<LiftUnit>,
     /// Whether it has a unit and no word.
     pub(super) is_unit: bool,
-    /// Whether it names an angle of the crank, and one of the cam.
+    /// Whether it names an angle of the crank, and whether of the cam.
     pub(super) is_of: [bool; 2],
 }
 
@@ -380,7 +380,7 @@ impl Heading {
             .map(|index| &tokens[index])
             .filter(|token| token.is_word())
             .collect();
-        // Short words of a quantity are names only in the first place: "no 1", but "lift no 1".
+        // Short words for a quantity are names only in the first place: "no 1", but not "lift no 1".
         let has = |meaning: Meaning| {
             let is_short = |name: &Token| name.text.chars().count() < 3 && name.text != "#";
             let counts = |place: usize, name: &Token| {
@@ -428,15 +428,15 @@ impl Heading {
         }
     }
 
-    /// Whether it is understood without any other cell.
+    /// Whether it is understood without other cells.
     pub(super) fn is_known(&self) -> bool {
         self.kind != Kind::Unknown || matches!(self.lift, Ok(Some(_)))
     }
 }
 
-/// Fields of the model by which angles are read in a unit that has no name in it, or in a decimal part of one: "[0.1 deg]", "[mrad]".
+/// Fields of the model for angles in a unit without a name in it, or in a decimal part of a unit: "[0.1 deg]", "[mrad]".
 fn turn_of(tokens: &[Token], unit: &FoundUnit) -> Option<String> {
-    /// Units with a unit of the model and the number of theirs, times that unit's, that make a turn of 360 degrees.
+    /// Small units, each with a unit of the model and the number `turn_deg` that makes a turn of 360 degrees.
     const SMALL: [(&str, usize, f64); 3] =
         [("mrad", 1, 360_000.0), ("arcmin", 0, 21_600.0), ("arcsec", 0, 1_296_000.0)];
     let small = SMALL.iter().find(|(word, ..)| tokens[unit.at.clone()].iter().any(|token| token.text == *word));
@@ -450,7 +450,7 @@ fn turn_of(tokens: &[Token], unit: &FoundUnit) -> Option<String> {
     Some(format!("angle_unit = \"{}\" and turn_deg = {turn}", AngleUnit::NAMES[index]))
 }
 
-/// The one unit of a kind in a cell.
+/// Finds the only unit of a kind in a cell.
 fn named<T: PartialEq>(
     tokens: &[Token],
     units: &[FoundUnit],
@@ -471,26 +471,25 @@ fn named<T: PartialEq>(
     found.dedup();
     match found.len() {
         0 if units.is_empty() && times.is_some() => {
-            // Parts of a unit that has no name: of a millimetre, as gauges have them.
+            // Part of an unnamed unit: a millimetre, as on dial gauges.
             let meant = times.and_then(places_of).and_then(|places| of(MILLIMETRE, places));
             Err(meant.iter().map(name).collect())
         }
         0 if is_unread || !units.is_empty() => Err(Vec::new()),
-        // A share of the length beside it, or so.
+        // A percentage, for example of a length.
         1 if tokens.iter().any(|token| token.text == "%") => Err(Vec::new()),
         0 | 1 => Ok(found.pop()),
         _ => Err(found.iter().map(name).collect()),
     }
 }
 
-/// Multiple of a unit that the numbers are by a factor that stands apart from the unit, or may be: "Lift x1000 (in)", "Lift/100 [mm]",
-/// "hundredths [mm]".
+/// Factor between the numbers and their unit, written apart from the unit: "Lift x1000 (in)", "Lift/100 [mm]", "hundredths [mm]".
 fn multiple(tokens: &[Token], units: &[FoundUnit]) -> Option<f64> {
     let factor = |index: usize| {
         let before = index.checked_sub(1).map_or("", |before| &tokens[before].text);
         let is_used = units.iter().any(|unit| unit.at.contains(&index));
         match (before, tokens[index].number(), tokens[index].meaning()) {
-            // In brackets it belongs to the unit.
+            // A factor in brackets belongs to the unit.
             ("*", Some(number), _) if !is_used || tokens[index].bracket == 0 => Some(number),
             ("x", Some(number), _) if number >= 10.0 => Some(number),
             ("/", Some(number), _) if !is_used && places_of(number).is_some() => Some(number),
@@ -502,12 +501,12 @@ fn multiple(tokens: &[Token], units: &[FoundUnit]) -> Option<f64> {
     (0..tokens.len()).find_map(factor)
 }
 
-/// Decimal places of the unit of numbers that are so many times those in it: 2 for 100.
+/// Number of decimal places of the unit whose numbers are this factor larger: 2 for 100.
 fn places_of(times: f64) -> Option<u32> {
     (1..=MOST_PLACES).find(|places| 1.0 / times == decimal_part(*places))
 }
 
-/// Whether brackets or what follows a slash or "in" is no unit that is known.
+/// Whether text in brackets, or after a slash or "in", is not a known unit.
 fn is_unread(tokens: &[Token], units: &[FoundUnit]) -> bool {
     (0..tokens.len()).any(|index| {
         let token = &tokens[index];
@@ -523,7 +522,7 @@ fn is_unread(tokens: &[Token], units: &[FoundUnit]) -> bool {
     })
 }
 
-/// Whether a name is that of a derivative: `s'`, `ds/dθ`.
+/// Whether a name denotes a derivative: `s'`, `ds/dθ`.
 fn is_derivative(tokens: &[Token]) -> bool {
     let is_prime = |pair: &[Token]| pair[1].text == "'" && pair[1].is_joined && pair[0].number().is_none();
     let is_quotient = |three: &[Token]| {
@@ -536,18 +535,18 @@ fn is_derivative(tokens: &[Token]) -> bool {
     tokens.windows(2).any(is_prime) || tokens.windows(3).any(is_quotient)
 }
 
-/// A unit in a title or a comment.
+/// Unit in a title or a comment.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum ProseUnit {
-    /// A unit of angles, by its index.
+    /// Unit of angles, by its index.
     Angle(usize),
-    /// A unit of lengths.
+    /// Unit of lifts.
     Length(LiftUnit),
 }
 
-/// The units in a title or a comment, with the words that name them.
+/// Units in a title or a comment, with the words that name them.
 pub(super) fn prose_units(text: &str) -> Vec<(String, ProseUnit)> {
-    /// Units that are words of other meanings, too, or quotation marks.
+    /// Units that are also words with other meanings, or quotation marks.
     const WORDS_TOO: [&str; 10] =
         ["in", "m", "turn", "turns", "rev", "revs", "revolution", "revolutions", "foot", "feet"];
     let tokens = tokens(text);
@@ -560,7 +559,7 @@ pub(super) fn prose_units(text: &str) -> Vec<(String, ProseUnit)> {
         if word.bracket == 0 && (word.text == "\"" || WORDS_TOO.contains(&&*word.text) && !is_counted) || unit.is_rate {
             return None;
         }
-        // A number beside the unit is the part of it that lifts are in, or some length.
+        // A number beside the unit is either the decimal part of the lifts' unit, or a length.
         let places = match unit.parts {
             Parts::Decimal(0) if is_of_lift => multiple(&tokens, &units).and_then(places_of).unwrap_or(0),
             Parts::Decimal(places) if is_of_lift => places,

@@ -54,27 +54,27 @@ impl Holds {
         }
     }
 
-    /// Name of what the rows come to over the angle.
+    /// Name of the quantity of the rows as a function of the angle.
     pub fn value(self) -> &'static str {
         if self == Self::Lifts { "lift" } else { "radius" }
     }
 
-    /// Plural of that name.
+    /// Plural of the quantity's name.
     pub fn values(self) -> &'static str {
         if self == Self::Lifts { "lifts" } else { "radii" }
     }
 }
 
-/// A table while it is read; complaints use it.
+/// Table that is being read, with the information for error messages.
 pub(super) struct Table<'a> {
     pub(super) holds: Holds,
     /// Whether a header may name x and y instead.
     pub(super) may_be_points: bool,
     pub(super) file: String,
     pub(super) text: &'a str,
-    /// Whether complaints name rows by their lines in the text; otherwise by their numbers.
+    /// Whether error messages name rows by their lines in the text; otherwise by their numbers.
     pub(super) has_lines: bool,
-    /// Unit in which complaints name angles, as the table does; rows have them in degrees of the cam.
+    /// Unit in which error messages name angles, as the table does; rows have them in degrees of the cam.
     pub(super) angles: AngleUnit,
     /// Whether the text names that unit.
     pub(super) says_angles: bool,
@@ -85,13 +85,13 @@ pub(super) struct Table<'a> {
 #[serde(rename_all = "kebab-case")]
 #[doc(hidden)]
 pub enum Separator {
-    /// ","
+    /// Comma
     Comma,
-    /// ";"
+    /// Semicolon
     Semicolon,
-    /// A tabulator.
+    /// Tabulator.
     Tab,
-    /// "|"
+    /// Vertical bar
     Bar,
     /// Spaces.
     Blanks,
@@ -104,8 +104,8 @@ fn unquoted(text: &str) -> &str {
     inside('"').or_else(|| inside('\'')).map_or(text, str::trim)
 }
 
-/// Rewrites a number as Rust reads it: with a decimal point, the exponent of Fortran as any other, a minus sign as a hyphen, and nothing between
-/// thousands: neither an apostrophe nor a blank.
+/// Rewrites a number for Rust's parser: with a decimal point, Fortran's exponent as `e`, a minus sign as a hyphen, and without apostrophes
+/// or blanks between thousands.
 pub(super) fn decimal(text: &str, decimal_comma: bool) -> Cow<'_, str> {
     if text.bytes().all(|byte| byte.is_ascii_digit() || b"+-.eE".contains(&byte)) {
         return Cow::Borrowed(text);
@@ -114,7 +114,7 @@ pub(super) fn decimal(text: &str, decimal_comma: bool) -> Cow<'_, str> {
         ',' if decimal_comma => '.',
         'd' | 'D' => 'e',
         '\u{2212}' | '–' => '-',
-        // A cell has a blank only where blanks do not part the columns.
+        // A cell contains a blank only if blanks do not separate the columns.
         '’' | ' ' | '\u{a0}' | '\u{2009}' | '\u{202f}' => '\'',
         letter => letter,
     };
@@ -132,9 +132,9 @@ pub(super) fn number(text: &str, decimal_comma: bool) -> Option<f64> {
 }
 
 impl Separator {
-    /// Separator of a line of numbers.
+    /// Finds the separator of a line of numbers.
     pub(super) fn of(line: &str) -> Self {
-        // What stands in quotes is one cell.
+        // Text in quotes is one cell.
         let outside = line.split('"').enumerate().map(|(part, text)| if part % 2 == 0 { text } else { "0" });
         let line: String = outside.collect();
         let mut numbers = line.split_whitespace();
@@ -160,7 +160,7 @@ impl Separator {
 
     /// Cells of a line, without quotes.
     pub(super) fn cells(self, line: &str) -> impl Iterator<Item = &str> {
-        // Beside usual blanks between the columns a thin or a hard one parts thousands.
+        // If usual blanks separate the columns, a thin or non-breaking one separates thousands.
         let is_typed = line.trim().contains([' ', '\t']);
         let parts = move |letter: char| match self {
             Self::Comma => letter == ',',
@@ -170,7 +170,7 @@ impl Separator {
             Self::Blanks => letter.is_whitespace() && !(is_typed && "\u{a0}\u{2009}\u{202f}".contains(letter)),
         };
         let trimmed = match self {
-            // Tabs part the cells, of which the first may be empty.
+            // Tabs separate the cells, and the first cell may be empty.
             Self::Tab => line.trim_matches(' '),
             Self::Bar => line.trim().trim_start_matches('|').trim_end_matches('|'),
             _ => line.trim(),
@@ -207,7 +207,7 @@ impl Separator {
         cells
     }
 
-    /// Cells of a line above `width` columns. It may be parted otherwise than the rows: by two blanks, by a sign, or with each unit behind a name.
+    /// Cells of a line above `width` columns. Its separator may differ from the rows': two blanks, a sign, or a unit after each name.
     pub(super) fn names(self, line: &str, width: usize) -> Vec<String> {
         let wide: Vec<&str> = line.split("  ").flat_map(|part| part.split('\t')).map(unquoted).collect();
         let wide = wide.into_iter().filter(|cell| !cell.is_empty()).collect();
@@ -231,19 +231,19 @@ impl Separator {
 /// Marks of comments; a line may begin with `*`, too.
 const MARKS: [&str; 3] = ["#", "%", "//"];
 
-/// The line without its comment, and the comment.
+/// Splits a line into its content and its comment.
 pub(super) fn without_comment(line: &str) -> (&str, Option<&str>) {
     if line.trim_start().starts_with('*') {
         return ("", Some(line));
     }
-    // A percent sign is a unit, but where a line begins with it or it follows a number.
+    // A percent sign is a unit unless it begins a line or follows a number.
     let is_mark = |at: usize, mark: &str| {
         let before = line[..at].trim_end();
         mark != "%" || before.is_empty() || before.ends_with(|letter: char| letter.is_ascii_digit() || letter == '.')
     };
     let first = |mark: &&str| line.match_indices(*mark).map(|(at, _)| at).find(|at| is_mark(*at, mark));
     let at = MARKS.iter().filter_map(first).min();
-    // In `Pt #,Angle` and `Pt #  Angle` the sign belongs to the name, and in `Angle,#` it is one.
+    // In `Pt #,Angle` and `Pt #  Angle` the sign belongs to the name, and in `Angle,#` it is a name.
     let is_name = |at: usize| {
         const PARTS: [char; 4] = [',', ';', '\t', '|'];
         let (before, behind) = (line[..at].trim_end_matches(' '), line[at + 1..].trim_start_matches(' '));
@@ -259,7 +259,7 @@ pub(super) fn without_comment(line: &str) -> (&str, Option<&str>) {
     }
 }
 
-/// Whether a line has numbers, more of them than words.
+/// Whether a line has at least two numbers, and more numbers than words.
 pub(super) fn has_numbers(line: &str) -> bool {
     let parts = line.split(|letter: char| letter.is_whitespace() || ",;|\"°".contains(letter));
     let (numbers, all) = parts
@@ -268,7 +268,7 @@ pub(super) fn has_numbers(line: &str) -> bool {
     numbers >= 2 && 2 * numbers > all
 }
 
-/// Whether a line only rules off others, as in a table of Markdown.
+/// Whether a line is only a rule between others, as in a table of Markdown.
 pub(super) fn is_rule(line: &str) -> bool {
     line.contains(['-', '=']) && line.chars().all(|letter| "|-:+= ".contains(letter))
 }

@@ -1,8 +1,7 @@
 //! A checked model file: follower, cam profile, and the speed range to search.
 //!
-//! A [`Model`] has numbers that passed the checks of a single field. Errors that need geometry
-//! (circles that cannot touch) are found in [`crate::cam`]. It reports them through
-//! [`Model::reject`], so that every complaint about a file names file, line, field and value.
+//! The numbers of a [`Model`] passed the checks of a single field. Errors that need geometry (circles that cannot touch) are found in
+//! [`crate::cam`], which reports them through [`Model::reject`]. So every error about a file names file, line, field and value.
 
 mod above;
 mod changed;
@@ -58,54 +57,54 @@ pub use table::{MOST_PROVED_ROWS, Smoothing, SmoothingTolerance, Spline, TablePr
 pub use template::{ModelTemplate, TEMPLATE_NAME, TEMPLATES};
 pub use units::{Converted, Unit, Units};
 
-/// The model whose numbers the paper prints, built in so that the binary needs no other file.
+/// Model with the numbers that the paper prints, built in so that the binary needs no other file.
 pub const OSORIO_2008: &str = include_str!("../../models/osorio-2008.toml");
 
 /// A cam-follower system as described by a model file.
 #[derive(Clone, Debug)]
 pub struct Model {
-    /// Label for headings; never used to decide anything.
+    /// Label for headings, without influence on results.
     pub name: String,
     /// Source of the numbers, in the author's words.
     pub source: String,
-    /// The moving body and its spring.
+    /// Follower: the moving body and its spring.
     pub follower: Follower,
-    /// The cam profile as written.
+    /// Cam profile as written.
     pub cam: CamProfile,
-    /// Range of speeds in which to look for a corner impact.
+    /// Range of speeds that is searched for corner impacts.
     pub study: Option<Study>,
-    /// Units of the model file's numbers and of the answers.
+    /// Units of the model file's numbers and of the results.
     pub units: Units,
-    /// Spring force on the base circle, in internal units, where the file gives it instead of `rest_position`.
+    /// Spring force on the base circle, in internal units; `None` if the file gives `rest_position` instead.
     pub preload: Option<f64>,
     /// Standard deviations of the follower's numbers.
     pub errors: FollowerErrors,
-    /// Multiples of their standard deviations by which the follower's numbers are moved from those of the file.
+    /// Shifts of the follower's numbers from the file's values, as multiples of their standard deviations.
     pub(crate) moves: Moves,
     fields: Fields,
     changes: Vec<(String, f64)>,
 }
 
-/// `m q'' + b q' + k (q - rest_position) = -m g` while `q > c(theta)`, and Newton's restitution.
+/// Follower that obeys `m q'' + b q' + k (q - rest_position) = -m g` while `q > c(theta)`, and Newton's law of restitution at impacts.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Follower {
-    /// m, kg, positive.
+    /// Mass m, kg, positive.
     pub mass: f64,
-    /// b, N s/m, zero or more.
+    /// Damping b, N s/m, zero or more.
     pub damping: f64,
-    /// k, N/m, zero or more; zero is a ballistic follower.
+    /// Stiffness k, N/m, zero or more; zero is a ballistic follower.
     pub stiffness: f64,
-    /// g, m/s^2.
+    /// Gravity g, m/s^2.
     pub gravity: f64,
     /// Position at which the spring is slack, m, in the cam's coordinates.
     pub rest_position: f64,
-    /// r, 0 (plastic) to 1 (elastic).
+    /// Coefficient of restitution r, 0 (plastic) to 1 (elastic).
     pub restitution: f64,
 }
 
 impl Follower {
-    /// Reads the numbers that the table has of a follower, and the preload if the file gives it instead of the rest position.
+    /// Reads the follower's numbers, and the preload if the file gives it instead of the rest position.
     fn read(fields: &mut Fields, units: &Units) -> Result<(Self, Option<f64>), ModelError> {
         for name in FollowerErrors::names() {
             fields.part_error(&format!("follower.{name}"))?;
@@ -117,7 +116,7 @@ impl Follower {
             match name {
                 "preload" if is_preloaded => preload = Some(units.number(fields, name)?),
                 "preload" => {}
-                // It follows from the cam's lowest lift, which is unknown here.
+                // The rest position follows from the cam's lowest lift, which is not available here.
                 "rest_position" if is_preloaded => {
                     fields.may_hold("follower.rest_position");
                     numbers.push((name, f64::NAN));
@@ -148,7 +147,7 @@ impl Follower {
     }
 }
 
-/// The range of speeds in which the corner impact is looked for, rpm.
+/// Range of speeds that is searched for corner impacts, rpm.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Study {
     /// Lowest speed, positive.
@@ -158,15 +157,15 @@ pub struct Study {
 }
 
 impl Model {
-    /// Name of the built-in model in complaints, in place of a file name.
+    /// Name of the built-in model in error messages, in place of a file name.
     pub(crate) const BUILT_IN: &str = "the built-in model";
 
-    /// Parses and checks the text of a model file, except for what needs the cam; complaints name the file as `file`.
+    /// Parses and checks the text of a model file, except for checks that need the cam; errors name the file as `file`.
     pub(crate) fn written(file: &str, text: &str) -> Result<Self, ModelError> {
         Self::from_fields(Fields::parse(file, text)?)
     }
 
-    /// Checks the text of a model file like [`Self::written`], and refuses one that names a table: no other file is read.
+    /// Checks the text of a model file like [`Self::written`], and rejects a text that names a table, because no other file is read.
     pub(crate) fn written_alone(file: &str, text: &str) -> Result<Self, ModelError> {
         let fields = Fields::parse(file, text)?;
         if fields.has("cam.file") {
@@ -178,7 +177,7 @@ impl Model {
         Self::from_fields(fields)
     }
 
-    /// Checks a document with the fields of a model file, except for what needs the cam; complaints call it `name`.
+    /// Checks a document with the fields of a model file, except for checks that need the cam; errors call it `name`.
     pub(crate) fn written_as(name: &str, document: &serde_json::Value) -> Result<Self, ModelError> {
         Self::from_fields(Fields::of_document(name, document)?)
     }
@@ -207,24 +206,24 @@ impl Model {
         Ok(Self { name, source, follower, cam, study, units, preload, errors, moves, fields, changes })
     }
 
-    /// Numeric fields that shape the motion, by dotted path, with their values. These are the numbers that a study may vary.
+    /// Numeric fields that shape the motion, by dotted path, with their values. A study may vary these numbers.
     pub fn numbers(&self) -> impl Iterator<Item = (&str, f64)> {
         self.fields.numbers_in(&["follower", "cam"])
     }
 
-    /// Standard deviation of the number at a dotted path, in its unit in the file; none for an exact number.
+    /// Standard deviation of the number at a dotted path, in its unit in the file; `None` for an exact number.
     pub fn error_of(&self, path: &str) -> Option<f64> {
         self.fields.error_at(path)
     }
 
-    /// The `[study]` range, or the complaint that it is missing.
+    /// Range `[study]`, or an error if it is missing.
     pub fn study(&self) -> Result<Study, ModelError> {
         self.study.ok_or_else(|| {
             self.reject("study.rpm_min", "is needed here: [study] says where to look for the corner impact; `locate --rpm LO:HI` and `certify --rpm LO:HI` look at any speeds")
         })
     }
 
-    /// The table of lifts, or of radii of a contour, that gives the cam its profile, if there is one.
+    /// Table of lifts, or of radii of a contour, that gives the cam its profile, if any.
     pub fn table(&self) -> Option<&TableProfile> {
         match self.cam.plain() {
             CamProfile::Table(table) | CamProfile::Contour(ContourProfile { table, .. }) => Some(table),
@@ -237,7 +236,7 @@ impl Model {
         self.table().is_some_and(|table| table.spline.smoothing().is_some())
     }
 
-    /// Complaint about `field` from a later stage; `allowed` says what would be accepted.
+    /// Builds an error about `field` in a later stage; `allowed` names the accepted values.
     pub fn reject(&self, field: &str, allowed: impl Into<String>) -> ModelError {
         self.fields.reject(field, allowed)
     }
@@ -247,7 +246,7 @@ impl Model {
         (self.file() != Self::BUILT_IN).then(|| Path::new(self.file()))
     }
 
-    /// Name of the file that the model came from.
+    /// Name of the file from which the model was read.
     pub fn file(&self) -> &str {
         self.fields.file()
     }

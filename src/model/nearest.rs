@@ -1,14 +1,14 @@
-//! "Did you mean": the allowed name nearest to an unknown one.
+//! Suggestions for "did you mean": the allowed name nearest to an unknown one.
 
-/// The one of `names` nearest to `word`, if it is near: one or two typing errors, more in a long word. Case, hyphens and
-/// underscores make no difference.
+/// Returns the name nearest to `word`, if it differs by one or two typing errors, more in a long word. Case, hyphens and underscores make
+/// no difference.
 #[doc(hidden)]
 pub fn nearest<'a>(word: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let plain = |word: &str| word.to_lowercase().replace('-', "_");
     let word = plain(word);
     let distances = names.into_iter().map(|name| {
         let plain = plain(name);
-        // A table that both names share does not count for their similarity.
+        // A table name that both share does not count for the similarity.
         let (one, other) = match (word.rsplit_once('.'), plain.rsplit_once('.')) {
             (Some((table, one)), Some((its, other))) if table == its => (one, other),
             _ => (&word[..], &plain[..]),

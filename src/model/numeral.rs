@@ -1,20 +1,21 @@
-//! A number with the text that it was written in: proofs use the decimal, everything else the nearest double. Numbers as people type them
-//! may have a unit, or a decimal comma.
+//! Numbers with the text in which they were written: proofs use the decimal, everything else the nearest double. Numbers that people type
+//! may have a unit or a decimal comma.
 
 use crate::untrusted;
 
-/// A number as the user wrote it.
+/// Number as the user wrote it.
 #[derive(Clone, Debug, PartialEq)]
 #[doc(hidden)]
 pub struct Numeral {
-    /// The nearest double.
+    /// Nearest double.
     pub number: f64,
-    /// The text as written.
+    /// Text as written.
     pub text: String,
 }
 
 impl Numeral {
-    /// Decimal form of the text, without the plus sign and underscores that TOML also allows. If the text is not that number, the double's.
+    /// Decimal form of the text, without the plus sign and underscores that TOML also allows; the digits of the double if the text is not
+    /// that number.
     pub(super) fn decimal(&self) -> String {
         let text = self.text.trim().replace('_', "");
         let text = text.trim_start_matches('+');
@@ -33,7 +34,7 @@ impl From<f64> for Numeral {
     }
 }
 
-/// Splits `900N` or `900 N` into the number, which is the longest part from the start that reads as one, and what follows it.
+/// Splits `900N` or `900 N` into the number, which is the longest initial part that parses, and the rest.
 #[doc(hidden)]
 pub fn parted(text: &str) -> (&str, &str) {
     let text = text.trim();
@@ -43,7 +44,8 @@ pub fn parted(text: &str) -> (&str, &str) {
     (&text[..end], text[end..].trim())
 }
 
-/// Reads a finite number, which `unit` may follow; an empty unit is that of a pure number. A decimal comma is refused with both readings.
+/// Reads a finite number, which `unit` may follow; an empty unit means a pure number. A decimal comma is rejected with both possible
+/// readings.
 #[doc(hidden)]
 pub fn finite(text: &str, unit: &str) -> Result<f64, String> {
     let (written, follows) = parted(text);

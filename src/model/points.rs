@@ -1,4 +1,4 @@
-//! Points of a contour, x and y, as radii over polar angles.
+//! Conversion of points of a contour, x and y, to radii over polar angles.
 
 use super::ModelError;
 use super::lines::Table;
@@ -7,7 +7,7 @@ use super::rows::TableRow;
 impl Table<'_> {
     /// Turns points about the cam's axis, x = 0 and y = 0, into polar angles, degrees from -180 to 180, and radii.
     ///
-    /// Refuses points that do not go round the axis once, or not always in one direction: no radius would belong to an angle.
+    /// Rejects points that do not go round the axis exactly once in one direction: an angle would not have exactly one radius.
     pub(super) fn polar(&self, rows: &mut [TableRow]) -> Result<(), ModelError> {
         for row in rows.iter_mut() {
             let (x, y) = (row.angle_deg, row.lift);
@@ -51,7 +51,7 @@ impl Table<'_> {
         Err(self.reject(row.line, "x, y", &point, words.into()))
     }
 
-    /// Refuses a radius that is not above 0.
+    /// Rejects a radius that is not above 0.
     pub(super) fn radii(&self, rows: &[TableRow]) -> Result<(), ModelError> {
         match rows.iter().find(|row| !(row.lift > 0.0)) {
             Some(row) => {

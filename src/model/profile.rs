@@ -1,4 +1,4 @@
-//! The `[cam]` table: one entry for each lift law, and the fields of each.
+//! Table `[cam]`: one entry for each lift law, with its fields.
 
 use serde::{Serialize, Serializer};
 
@@ -8,28 +8,28 @@ use super::table::TableProfile;
 use super::table_file;
 use crate::tolerance;
 
-/// The lift law of a `[cam]` table.
+/// Lift law of a `[cam]` table.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CamProfile {
-    /// Appendix A of the paper: base, flank and nose circles.
+    /// Base, flank and nose circles of Appendix A of the paper.
     Arcs(ArcsProfile),
-    /// A sum of cosines.
+    /// Sum of cosines.
     Harmonic(HarmonicProfile),
-    /// The absolute value of a sine.
+    /// Absolute value of a sine.
     RectifiedSine(RectifiedSineProfile),
     /// Rises, dwells and returns, in sequence.
     Program(ProgramProfile),
     /// Polynomials in the angle, ordered by their start.
     Polynomial(Vec<PolynomialSegment>),
-    /// A spline through measured lifts.
+    /// Spline through measured lifts.
     Table(TableProfile),
-    /// A spline through measured radii of the cam's own contour.
+    /// Spline through measured radii of the cam's contour.
     Contour(ContourProfile),
-    /// Another profile, with the corners of its acceleration rounded or its lift scaled by a lever.
+    /// Profile with rounded corners of its acceleration, or with its lift scaled by a lever.
     Modified {
-        /// The changes.
+        /// Changes of the profile.
         change: ProfileChange,
-        /// The profile without them.
+        /// Profile without the changes.
         plain: Box<Self>,
     },
 }
@@ -40,7 +40,7 @@ pub struct ProfileChange {
     /// Angle over which each corner is rounded, degrees; 0 for none.
     #[serde(skip_serializing_if = "is_zero")]
     pub corner_rounding_deg: f64,
-    /// Lift of the follower over lift at the cam; 1 without a lever.
+    /// Ratio of the follower's lift to the cam's; 1 without a lever.
     #[serde(skip_serializing_if = "is_one")]
     pub lever_ratio: f64,
 }
@@ -75,12 +75,12 @@ impl CamProfile {
         }
     }
 
-    /// The profile without its changes.
+    /// Profile without its changes.
     pub fn plain(&self) -> &Self {
         if let Self::Modified { plain, .. } = self { plain } else { self }
     }
 
-    /// The table of a profile that has one.
+    /// Table of a profile, if it has one.
     pub(super) fn table_mut(&mut self) -> Option<&mut TableProfile> {
         let plain = if let Self::Modified { plain, .. } = self { plain } else { self };
         match plain {
@@ -89,7 +89,7 @@ impl CamProfile {
         }
     }
 
-    /// Lift of the follower over lift at the cam: the ratio of the lever between them, 1 without one.
+    /// Ratio of the follower's lift to the cam's by a lever between them; 1 without a lever.
     pub fn lever_ratio(&self) -> f64 {
         self.change().lever_ratio
     }
@@ -98,7 +98,7 @@ impl CamProfile {
         if let Self::Modified { change, .. } = self { *change } else { ProfileChange::NONE }
     }
 
-    /// The end of the follower, where the lift follows from the cam's contour; `None` where the lift itself is given.
+    /// End of the follower that touches the cam, if the lift follows from the cam's contour; `None` if the lift itself is given.
     pub fn contact(&self) -> Option<FollowerContact> {
         match self.plain() {
             Self::Arcs(profile) => Some(profile.contact),
@@ -108,7 +108,7 @@ impl CamProfile {
     }
 }
 
-/// Serializes the profile as the table of a model file; a table of lifts has its rows in place of the file.
+/// Serializes the profile as the table of a model file; a table of lifts has its rows instead of the file's name.
 impl Serialize for CamProfile {
     fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
         #[derive(Serialize)]
@@ -140,44 +140,44 @@ impl Serialize for CamProfile {
 /// Base, flank and nose circles, mirrored about theta = pi. Centres and top radius follow from tangency.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ArcsProfile {
-    /// rho0, m.
+    /// Base radius rho0, m.
     pub base_radius: f64,
-    /// rho1, m.
+    /// Flank radius rho1, m.
     pub flank_radius: f64,
-    /// rho2, m.
+    /// Nose radius rho2, m.
     pub nose_radius: f64,
-    /// R = 90 - theta1, degrees from the middle of the base circle.
+    /// Angle R = 90 - theta1, degrees from the middle of the base circle.
     pub flank_start_deg: f64,
-    /// Q = 90 - theta3, degrees from the middle of the base circle.
+    /// Angle Q = 90 - theta3, degrees from the middle of the base circle.
     pub nose_end_deg: f64,
-    /// The end of the follower that touches the cam.
+    /// End of the follower that touches the cam.
     #[serde(skip_serializing_if = "FollowerContact::is_point")]
     pub contact: FollowerContact,
 }
 
-/// A cam's own contour, and the follower on it.
+/// Contour of a cam, and the follower on it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ContourProfile {
-    /// Radii over polar angles, which count against the cam's turn.
+    /// Radii over polar angles, which count against the cam's direction of rotation.
     #[serde(flatten)]
     pub table: TableProfile,
-    /// The end of the follower that touches the cam.
+    /// End of the follower that touches the cam.
     pub contact: FollowerContact,
 }
 
-/// The end of the follower that touches the cam; a lift belongs to one of them.
+/// End of the follower that touches the cam; each end gives another lift.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum FollowerContact {
-    /// A point on a line through the cam's axis, as in the paper.
+    /// Point on a line through the cam's axis, as in the paper.
     #[default]
     Point,
-    /// A face square to the line of motion.
+    /// Flat face perpendicular to the line of motion.
     Flat,
-    /// A roller.
+    /// Roller.
     Roller {
-        /// Its radius, m.
+        /// Radius of the roller, m.
         roller_radius: f64,
-        /// Distance of its line of motion from the cam's axis, m; positive where each point of the cam arrives earlier.
+        /// Distance of its line of motion from the cam's axis, m; positive if each point of the cam arrives earlier.
         offset: f64,
     },
 }
@@ -205,19 +205,19 @@ impl Serialize for FollowerContact {
     }
 }
 
-/// `c = offset + sum a_k cos(k theta + p_k)`, k from 1.
+/// Sum of cosines `c = offset + sum a_k cos(k theta + p_k)`, k from 1.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[doc(hidden)]
 pub struct HarmonicProfile {
     /// Mean lift, m.
     pub offset: f64,
-    /// a_k, m; at least one.
+    /// Amplitudes a_k, m; at least one.
     pub amplitudes: Vec<f64>,
-    /// p_k, degrees; as many as the amplitudes.
+    /// Phases p_k, degrees; as many as the amplitudes.
     pub phases_deg: Vec<f64>,
 }
 
-/// `c = offset + amplitude |sin theta|`.
+/// Rectified sine `c = offset + amplitude |sin theta|`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct RectifiedSineProfile {
     /// Lift at the corners, m.
@@ -226,17 +226,17 @@ pub struct RectifiedSineProfile {
     pub amplitude: f64,
 }
 
-/// Motions from theta = 0 on.
+/// Sequence of motions, starting at theta = 0.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ProgramProfile {
     /// Lift at theta = 0, m.
     pub base: f64,
-    /// The motions in order; at least one.
+    /// Motions in order; at least one.
     #[serde(rename = "segment")]
     pub segments: Vec<MotionSegment>,
 }
 
-/// One motion of a program.
+/// Motion of a program.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct MotionSegment {
     /// Shape of the lift curve between the two ends.
@@ -247,7 +247,7 @@ pub struct MotionSegment {
     pub rise: f64,
 }
 
-/// The standard motions of cam design, between ends at rest.
+/// Standard motion of cam design, between ends at rest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 #[doc(hidden)]
@@ -260,18 +260,18 @@ pub enum StandardMotion {
     Harmonic,
     /// One period of a sine as acceleration.
     Cycloidal,
-    /// An acceleration trapezoid whose flanks are quarter periods of a sine.
+    /// Trapezoidal acceleration whose flanks are quarter periods of a sine.
     ModifiedTrapezoid,
-    /// A sine as acceleration, whose first and last eighth run three times as fast as the middle.
+    /// Sinusoidal acceleration, whose first and last eighth run three times as fast as the middle.
     ModifiedSine,
-    /// The polynomial with velocity and acceleration 0 at both ends.
+    /// Polynomial with velocity and acceleration 0 at both ends.
     Poly345,
-    /// The polynomial with velocity, acceleration and jerk 0 at both ends.
+    /// Polynomial with velocity, acceleration and jerk 0 at both ends.
     Poly4567,
 }
 
 impl StandardMotion {
-    /// Every motion, with its name in the field `motion`.
+    /// All motions, with their names in the field `motion`.
     pub const NAMES: [(&'static str, Self); 8] = [
         ("dwell", Self::Dwell),
         ("parabolic", Self::Parabolic),
@@ -284,26 +284,26 @@ impl StandardMotion {
     ];
 }
 
-/// `c = sum a_k (theta - start)^k` from its start to the start of the next segment.
+/// Polynomial `c = sum a_k (theta - start)^k` from its start to the start of the next segment.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PolynomialSegment {
     /// Start, degrees, from 0 to below 360.
     pub start_deg: f64,
-    /// a_k, m/rad^k, k from 0.
+    /// Coefficients a_k, m/rad^k, k from 0.
     pub coefficients: Vec<f64>,
 }
 
-/// Most segments of a program or of polynomials: more than anyone writes by hand. A table may have more rows.
+/// Largest number of segments of a program or of polynomials: more than anyone writes by hand. A table may have more rows.
 const MOST_SEGMENTS: usize = 10_000;
-/// Most cosines: the hundredth harmonic is already shorter than any cutter that could make it.
+/// Largest number of cosines: the hundredth harmonic is already shorter than any cutter that could make it.
 const MOST_HARMONICS: usize = 1000;
 
-/// Most coefficients of a polynomial: powers of a radian beyond the 31st add nothing.
+/// Largest number of coefficients of a polynomial: powers of a radian beyond the 31st add nothing.
 pub const MOST_COEFFICIENTS: usize = 32;
 
 type ReadProfile = fn(&mut Fields) -> Result<CamProfile, ModelError>;
 
-/// Every lift law, with its name in the field `law`.
+/// All lift laws, with their names in the field `law`.
 static CAM_LAWS: [(&str, ReadProfile); 7] = [
     ("arcs", arcs),
     ("harmonic", harmonic),
@@ -317,10 +317,10 @@ static CAM_LAWS: [(&str, ReadProfile); 7] = [
     }),
 ];
 
-/// Values of the field `contact`.
+/// Values of the field `contact`, in words.
 #[doc(hidden)]
 pub const CONTACTS: &str = "a name or a roller: \"point\", \"flat\", { roller_radius = 0.01 }";
-/// Field of the angle over which corners are rounded.
+/// Field of the rounding angle of corners.
 #[doc(hidden)]
 pub const CORNER_ROUNDING: &str = "cam.corner_rounding_deg";
 /// Field of the ratio of the lever between cam and follower.

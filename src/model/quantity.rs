@@ -1,12 +1,12 @@
 //! Table of the numbers of a model file: path, symbol, meaning, dimension, allowed range and laws of each.
 //!
-//! Limits, "did you mean", units, the axes of figures, reports and `explain` follow from a row, and how a number of the follower is read.
-//! The laws that use it do not: `docs/extending.md` lists them.
+//! A row determines limits, suggestions of names, units, axes of figures, reports, `explain`, and how a number of the follower is read. The
+//! laws that use the number are separate: `docs/extending.md` lists them.
 
 use std::borrow::Cow;
 use std::fmt;
 
-/// A range of finite numbers.
+/// Range of finite numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Allowed {
     low: f64,
@@ -23,7 +23,7 @@ impl Allowed {
         Self { low, low_is_allowed: true, high }
     }
 
-    /// The range above `low`, up to and including `high`.
+    /// Builds the range above `low`, up to and including `high`.
     pub(super) const fn above(low: f64, high: f64) -> Self {
         Self { low, low_is_allowed: false, high }
     }
@@ -33,7 +33,7 @@ impl Allowed {
         number.is_finite() && above && number <= self.high
     }
 
-    /// The number of the closed range that is nearest.
+    /// Nearest number of the closed range.
     pub(super) fn nearest(self, number: f64) -> f64 {
         number.clamp(self.low, self.high)
     }
@@ -56,7 +56,7 @@ impl fmt::Display for Allowed {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[doc(hidden)]
 pub enum Dimension {
-    /// Without a unit.
+    /// Number without a unit.
     Pure,
     Mass,
     Damping,
@@ -64,16 +64,16 @@ pub enum Dimension {
     Acceleration,
     Force,
     Length,
-    /// An angle in degrees, as the names say that have it.
+    /// Angle in degrees, as in names that end in `deg`.
     Degrees,
     /// Revolutions per minute.
     Speed,
-    /// A length over a power of a radian: the power is the place in the list.
+    /// Length over a power of a radian: the power is the position in the list.
     LengthPerPower,
 }
 
 impl Dimension {
-    /// Name of its SI unit; empty without one.
+    /// Name of the SI unit; empty for a pure number.
     pub fn si(self) -> &'static str {
         match self {
             Self::Pure => "",
@@ -90,12 +90,12 @@ impl Dimension {
     }
 }
 
-/// A number of the format.
+/// Number of the model file's format.
 #[doc(hidden)]
 pub struct ModelNumber {
-    /// Path without the places in lists: `follower.mass`, `cam.segment.rise`.
+    /// Path without positions in lists: `follower.mass`, `cam.segment.rise`.
     pub path: &'static str,
-    /// Symbol in the paper; empty without one.
+    /// Symbol in the paper; empty if it has none.
     pub symbol: &'static str,
     /// Meaning in words.
     pub meaning: &'static str,
@@ -103,9 +103,9 @@ pub struct ModelNumber {
     pub dimension: Dimension,
     /// Allowed range.
     pub(super) allowed: Allowed,
-    /// The laws of the cam that have it; empty for a number of every model.
+    /// Laws of the cam that have the number; empty for a number of every model.
     pub laws: &'static [&'static str],
-    /// Its value where the file leaves it out; `None` for a number that is needed.
+    /// Default value if the file leaves it out; `None` for a required number.
     pub(super) default: Option<f64>,
 }
 
@@ -120,7 +120,7 @@ const fn number(
     ModelNumber { path, symbol, meaning, dimension, allowed, laws, default: None }
 }
 
-/// Every number of the format, in the order in which reports have them.
+/// All numbers of the format, in the order of reports.
 #[doc(hidden)]
 #[rustfmt::skip]
 pub static MODEL_NUMBERS: [ModelNumber; 29] = {
@@ -164,12 +164,12 @@ pub static MODEL_NUMBERS: [ModelNumber; 29] = {
 };
 
 impl ModelNumber {
-    /// The number as one that a file may leave out.
+    /// Makes the number optional, with a default.
     const fn or(self, default: f64) -> Self {
         Self { default: Some(default), ..self }
     }
 
-    /// The number at a path, whatever its places in lists.
+    /// Number at a path, for any positions in lists.
     pub fn of(path: &str) -> Option<&'static Self> {
         let plain = match path.contains('[') {
             true => path.split('[').map(|part| part.split_once(']').map_or(part, |(_, rest)| rest)).collect(),
@@ -183,23 +183,23 @@ impl ModelNumber {
         self.path.rsplit('.').next().unwrap_or(self.path)
     }
 
-    /// Names of the numbers of the follower, which are those that may have an error.
+    /// Names of the follower's numbers, which may have an error.
     pub(super) fn of_follower() -> impl Iterator<Item = &'static str> {
         MODEL_NUMBERS.iter().filter_map(|number| number.path.strip_prefix("follower."))
     }
 
-    /// Complaint about the error of another number.
+    /// Error message about a number that cannot have an error.
     pub(super) fn without_error() -> String {
         let names: Vec<&str> = Self::of_follower().collect();
         format!("takes a number without an error; numbers of [follower] take one: {}", names.join(", "))
     }
 
-    /// Number of the closed allowed range that is nearest to another.
+    /// Number of the closed allowed range that is nearest to another number.
     pub fn nearest(&self, number: f64) -> f64 {
         self.allowed.nearest(number)
     }
 
-    /// Allowed range in words, for a complaint.
+    /// Allowed range in words, for an error message.
     pub fn allowed(&self) -> String {
         self.allowed.to_string()
     }

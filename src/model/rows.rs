@@ -1,8 +1,8 @@
-//! The text of a table of lifts: its lines, its columns and their units, and its numbers row by row.
+//! Parser for the text of a table of lifts: its lines, its columns and their units, and its numbers row by row.
 //!
-//! The order of detection: the first line with numbers tells the separator. Of the lines above it, the last that names an angle and a lift is the
-//! header, be it a comment where no other line is one. It chooses the columns, unless the model does. Other lines that name these columns may have
-//! their units; what else there is are titles and comments.
+//! The first line with numbers determines the separator. Of the lines above it, the last that names an angle and a lift is the header; a
+//! comment counts only if no other line is a header. The header chooses the columns, unless the model does. Other lines that name these
+//! columns may contain their units. The remaining lines are titles and comments.
 
 use std::iter;
 
@@ -20,11 +20,11 @@ pub struct TableRow {
     pub angle_deg: f64,
     /// Lift, m.
     pub lift: f64,
-    /// Line in the file, from 1; for rows that came without a file, the row's number.
+    /// Line in the file, from 1; for rows without a file, the row's number.
     pub line: usize,
 }
 
-/// Layout of a text.
+/// Layout of a table's text.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[doc(hidden)]
 pub struct TableLayout {
@@ -32,35 +32,35 @@ pub struct TableLayout {
     pub separator: Separator,
     /// Whether numbers have a decimal comma.
     pub decimal_comma: bool,
-    /// A number whose comma may part thousands, where three digits follow every comma.
+    /// Number whose comma may separate thousands, if three digits follow every comma.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub thousands: Option<String>,
-    /// Whether it does, as the lifts beside it show, and lifts are read so.
+    /// Whether the comma separates thousands, as neighbouring lifts show.
     #[serde(rename = "parts_thousands", skip_serializing_if = "std::ops::Not::not")]
     pub has_parted: bool,
     /// Number of lines with a comment.
     pub comments: usize,
-    /// Lines above the header, or above the rows where there is none.
+    /// Number of lines above the header, or above the rows if there is no header.
     pub titles: usize,
-    /// The line that names the columns.
+    /// Line that names the columns.
     pub header: Option<String>,
-    /// A line of units alone.
+    /// Line of units alone.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub units: Option<String>,
     /// Columns of the angle and of the lift, from 1.
     pub columns: [usize; 2],
-    /// The other columns: their names, or their numbers where there is no header.
+    /// Other columns: their names, or their numbers if there is no header.
     pub left_out: Vec<String>,
-    /// Whether the header says that angles are a crank's.
+    /// Whether the header calls the angles a crank's.
     #[serde(skip)]
     pub is_of_crank: bool,
     /// Whether the columns are x and y.
     #[serde(skip)]
     pub(super) are_points: bool,
-    /// Unit of angles that the lines above the rows name, by its index in the names of a model file; a complaint where it is not understood.
+    /// Unit of angles named above the rows, by its index in the names of a model file; an error if it is not understood.
     #[serde(skip)]
     pub(super) angle: Result<Option<usize>, ModelError>,
-    /// Unit of lifts that they name.
+    /// Unit of lifts named above the rows.
     #[serde(skip)]
     pub(super) lift: Result<Option<LiftUnit>, ModelError>,
     /// Units in titles and comments, each with its line and its word.
@@ -68,13 +68,14 @@ pub struct TableLayout {
     pub(super) seen: Vec<(usize, String, ProseUnit)>,
 }
 
-/// Most rows: more would be finer than any cam is made or measured.
+/// Largest number of rows: more would be finer than any cam is made or measured.
 pub(super) const MOST_ROWS: usize = 1_000_000;
-/// Number of lines by which a text is taken for a table: titles may stand above its rows.
+/// Number of first lines that are examined to recognise a table: titles may precede its rows.
 const FIRST_LINES: usize = 20;
 
 impl<'a> Table<'a> {
-    /// Takes what a line has out of a complaint about a text that does not begin like a table: the model may name any file of its reader.
+    /// Removes the contents of a line from an error about a text that does not begin like a table: the model may name any file that its
+    /// reader can open.
     pub(super) fn discreet(&self, complaint: ModelError, chosen: &[Option<Chosen>; 2]) -> ModelError {
         let lines = self.text.lines().map(|line| without_comment(line).0).filter(|line| !line.trim().is_empty());
         let begins_like_table = lines.take(FIRST_LINES).any(|line| has_numbers(line) || self.is_header(line, chosen));
@@ -88,7 +89,7 @@ impl<'a> Table<'a> {
         ModelError { line: complaint.line, ..ModelError::file(&self.file, words) }
     }
 
-    /// Refuses a row with `####` in place of a number that is read, or before one, where it would begin a comment.
+    /// Rejects a row with `####` in place of a number that is read, or before one, where it would begin a comment.
     fn has_no_hidden(&self, separator: Separator, width: usize, columns: Columns) -> Result<(), ModelError> {
         let is_hidden = |cell: &&str| cell.len() > 1 && cell.bytes().all(|letter| letter == b'#');
         let last = columns[0].max(columns[1]);
@@ -108,7 +109,7 @@ impl<'a> Table<'a> {
         Ok(())
     }
 
-    /// Refuses a column that the model chooses by a number or a name that no line has.
+    /// Rejects a column number or name of the model that no line has.
     fn has_columns(
         &self,
         above: &[LineAbove<'_>],
@@ -129,10 +130,10 @@ impl<'a> Table<'a> {
         Ok(())
     }
 
-    /// Whether a line below rows is the header of a second table: angles begin again below it.
+    /// Whether a line below rows is the header of a second table, with angles that begin again below it.
     fn begins_again(&self, line: usize, text: &str, chosen: &[Option<Chosen>; 2], rows: &[TableRow]) -> bool {
         let (Some(first), Some(last)) = (rows.first(), rows.last()) else { return false };
-        // Only a line without numbers is looked at closely.
+        // Only a line without numbers is examined in detail.
         if text.trim_start().starts_with(|letter: char| letter.is_ascii_digit()) || has_numbers(text) {
             return false;
         }
@@ -174,7 +175,7 @@ impl<'a> Table<'a> {
         if filled().next().is_none() {
             return Err(self.complain(None, format!("is empty; its first line must be {header}")));
         }
-        // Spreadsheets are told the separator so.
+        // A line `sep=` states the separator for spreadsheets.
         let said = filled().next().and_then(|(_, text)| match text.trim().to_lowercase().strip_prefix("sep=") {
             Some(";") => Some(Separator::Semicolon),
             Some(",") => Some(Separator::Comma),
@@ -187,7 +188,7 @@ impl<'a> Table<'a> {
             let before = |letter: char| letter.is_whitespace() || "\"|,;+-.\u{2212}".contains(letter);
             text.trim_start_matches(before).starts_with(|letter: char| letter.is_ascii_digit())
         };
-        // Below a header even a line without a number is a row, with a slip.
+        // Below a header even a line without a number is a row, with a mistake.
         let found =
             filled().position(|(_, text)| has_numbers(text)).or_else(|| filled().position(|(_, text)| is_number(text)));
         let found = found.or_else(|| Some(1 + filled().position(|(_, text)| self.is_header(text, chosen))?));
@@ -206,9 +207,9 @@ impl<'a> Table<'a> {
         let shown = if is_one { above.last().map_or(first, |(_, text)| *text) } else { first };
         let separator = said.unwrap_or_else(|| Separator::of(shown));
         let width = separator.filled_cells(first).len();
-        // A slip in a first row, or an empty cell, makes it no title; below a header a number alone is a row.
+        // A mistake or an empty cell in a first row does not make it a title; below a header a single number is a row.
         let is_slip = |&(index, &(line, text)): &(usize, &(usize, &str))| {
-            // What ends a line is cut off where it is a tab or a bar.
+            // A tab or a bar at the end of a line is removed.
             let is_cut = || {
                 self.text.lines().nth(line - 1).is_some_and(|line| line.trim_end_matches(' ').ends_with(['\t', '|']))
             };
@@ -272,7 +273,7 @@ impl<'a> Table<'a> {
             let (text, comment) = without_comment(text);
             let Some(comment) = comment else { continue };
             layout.comments += 1;
-            // A comment in a row is about that row.
+            // A comment in a row is only about that row.
             if text.trim().is_empty() == (line > first_line) {
                 layout.seen.extend(prose_units(comment).into_iter().map(|(word, unit)| (line, word, unit)));
             }
@@ -305,7 +306,7 @@ impl<'a> Table<'a> {
                     .filter(|(_, wanted)| *wanted == column)
                     .for_each(|(found, _)| *found = Some(cell));
             }
-            // A decimal comma would be one more.
+            // A decimal comma would add a column.
             if filled_cells > most {
                 let words = format!(
                     "has {filled_cells} columns, and {what} has {most}{}",
@@ -359,7 +360,7 @@ impl<'a> Table<'a> {
     }
 }
 
-/// The slip in a cell that is no finite number; none where it is unknown.
+/// Names the mistake in a cell that is not a finite number; `None` if it is unknown.
 fn slip(cell: &str, decimal_comma: bool) -> Option<&'static str> {
     let begins = |cell: &str| {
         let end = cell.find(|letter: char| {
@@ -380,7 +381,7 @@ fn slip(cell: &str, decimal_comma: bool) -> Option<&'static str> {
     }
 }
 
-/// Advice about rows that may have the sign between their columns also in their numbers: decimal commas, or blanks between thousands.
+/// Advice for rows whose numbers may contain the separator of the columns: decimal commas, or blanks between thousands.
 fn twofold<'a>(separator: Separator, mut rows: impl Iterator<Item = &'a str>) -> &'static str {
     let has_thousands = |row: &str| separator.cells(row).skip(1).any(|cell| is_three(cell.split(['.', ',']).next()));
     match separator {
@@ -394,21 +395,21 @@ fn twofold<'a>(separator: Separator, mut rows: impl Iterator<Item = &'a str>) ->
     }
 }
 
-/// Whether a part of a number is three digits, as behind a sign between thousands.
+/// Whether a part of a number is three digits, as after a separator of thousands.
 fn is_three(part: Option<&str>) -> bool {
     part.is_some_and(|part| part.len() == 3 && part.bytes().all(|digit| digit.is_ascii_digit()))
 }
 
-/// Digits by three behind the commas or points of all numbers, which may part thousands.
+/// Evidence from groups of three digits after commas or points that these may separate thousands.
 #[derive(Default)]
 struct Thousands {
-    /// A number that has two readings.
+    /// Number that has two readings.
     example: Option<String>,
-    /// Whether a number has one reading alone.
+    /// Whether some number has only one reading.
     is_decided: bool,
-    /// Whether a lift has neither a comma nor a point, and is not 0.
+    /// Whether some lift has neither a comma nor a point, and is not 0.
     has_whole: bool,
-    /// Rows whose lift has a comma or a point.
+    /// Whether the lift has a comma or a point, for each row.
     parted: Vec<bool>,
 }
 
@@ -421,7 +422,7 @@ impl Thousands {
             }
         }
         self.parted.push(lift.contains(['.', ',']));
-        // Points are decimal but where numbers below a thousand have none.
+        // Points are decimal, unless numbers below a thousand have none.
         match lift.split_once('.') {
             Some((before, behind)) => {
                 self.is_decided |= before.starts_with('0') || !is_three(Some(behind));
@@ -435,9 +436,9 @@ impl Thousands {
         self.example.as_ref().is_some_and(|example| !self.is_decided && (self.has_whole || example.contains(',')))
     }
 
-    /// Reads lifts with a comma or a point in thousands where that alone makes one curve of them and the whole numbers beside them.
+    /// Reads lifts with a comma or a point as thousands if only this makes one curve with the whole numbers beside them.
     fn are_parted(&self, rows: &mut [TableRow]) -> bool {
-        /// Bends of the curve in thousands over those with decimals, below which no decimal is meant.
+        /// Ratio of the bends of the curve in thousands to the bends with decimals, below which thousands are meant.
         const SMOOTH: f64 = 0.5;
         if !(self.is_open() && self.has_whole) {
             return false;

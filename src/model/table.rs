@@ -1,4 +1,4 @@
-//! Measured lifts as a model has them: the rows of a turn, the spline through or near them, and how they were read.
+//! Measured lifts of a model: the rows of a turn, the spline through or near them, and how they were read.
 
 use std::sync::Arc;
 
@@ -8,21 +8,21 @@ use super::lines::Holds;
 use super::rows::{TableLayout, TableRow};
 use super::units::Unit;
 
-/// Most rows of a table in proofs.
+/// Largest number of rows of a table in proofs.
 #[doc(hidden)]
 pub const MOST_PROVED_ROWS: usize = 1000;
 
-/// A spline through the rows of a table, or near them.
+/// Spline through the rows of a table, or near them.
 #[derive(Clone, Debug, PartialEq)]
 #[doc(hidden)]
 pub struct TableProfile {
-    /// Path of the file as in the model, relative to the model file; `None` where the model has the rows itself.
+    /// Path of the file as in the model, relative to the model file; `None` if the model contains the rows.
     pub file: Option<String>,
     /// Kind of the spline.
     pub spline: Spline,
     /// Rows in order of angle, one for each angle in `[0, 360)`; shared, because a table may be long.
     pub rows: Arc<[TableRow]>,
-    /// How the rows were interpreted.
+    /// Interpretation of the rows.
     pub reading: Arc<Reading>,
 }
 
@@ -53,7 +53,7 @@ impl TableProfile {
     }
 }
 
-/// The periodic splines.
+/// Periodic spline.
 #[derive(Clone, Debug, PartialEq)]
 #[doc(hidden)]
 pub enum Spline {
@@ -87,9 +87,9 @@ impl Spline {
 pub struct Smoothing {
     /// Largest distance from a row.
     pub tolerance: SmoothingTolerance,
-    /// Angles at which the second derivative may jump, degrees, ascending; `None` where they are to be found.
+    /// Angles at which the second derivative may jump, degrees, ascending; `None` if they are to be found.
     pub corners_deg: Option<Vec<f64>>,
-    /// Dwells, from and to, degrees, ascending by their start; `None` where they are to be found.
+    /// Dwells, start and end, degrees, ascending by their start; `None` if they are to be found.
     pub dwells_deg: Option<Vec<[f64; 2]>>,
     /// Whether corners are only near the given angles, not exactly there.
     pub are_near: bool,
@@ -100,73 +100,72 @@ pub struct Smoothing {
 #[serde(rename_all = "kebab-case")]
 #[doc(hidden)]
 pub enum SmoothingTolerance {
-    /// Estimated from the rows themselves.
+    /// Estimate from the rows themselves.
     #[default]
     Auto,
-    /// This distance, in the model's unit of length.
+    /// Given distance, in the model's unit of length.
     #[serde(untagged)]
     Within(f64),
-    /// The distance that results from this weight of the rows, given by its logarithm; the weight is that of another table.
+    /// Distance that results from this weight of the rows, given by its logarithm; the weight comes from another table.
     #[serde(untagged)]
     Weighted(f64),
 }
 
-/// How the rows of a table were interpreted.
+/// Interpretation of the rows of a table.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[doc(hidden)]
 pub struct Reading {
     /// Quantities in its columns.
     #[serde(skip)]
     pub holds: Holds,
-    /// The unit of lifts in the table.
+    /// Unit of lifts in the table.
     pub unit: String,
-    /// The decimal part of that unit that the numbers of the table are.
+    /// Decimal part of that unit in which the table's numbers are.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub part: Option<String>,
     /// Unit of lifts as a multiple of the model's unit of length.
     #[serde(skip)]
     pub in_model: Unit,
-    /// Angle and lift of every row as written, in degrees and the unit of lifts. Empty where angles are in radians, where the lifts are
-    /// those of another table, and where there are more rows than proofs take.
+    /// Angle and lift of every row as written, in degrees and the unit of lifts. Empty if angles are in radians, if the lifts come from
+    /// another table, or if there are more rows than proofs accept.
     #[serde(skip)]
     pub(crate) written: Vec<[String; 2]>,
-    /// The unit of angles in the table.
+    /// Unit of angles in the table.
     pub angle_unit: &'static str,
-    /// Degrees of the table in one turn of the cam, where these are not 360.
+    /// Degrees of the table in one turn of the cam, if not 360.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub turn_deg: Option<f64>,
-    /// The layout of its text; none where the model has the rows itself.
+    /// Layout of its text; `None` if the model contains the rows.
     #[serde(flatten)]
     pub layout: Option<TableLayout>,
     /// Number of rows kept.
     pub rows: usize,
     /// Angle of the first row as written, degrees.
     pub first_deg: f64,
-    /// Whether the rows came with falling angles.
+    /// Whether the angles fell from row to row as written.
     pub falls: bool,
-    /// Number of rows that repeated the one before and were dropped.
+    /// Number of rows that repeated the row before and were dropped.
     pub merged: usize,
     /// Whether the rows are half a lobe and its mirror image.
     #[serde(rename = "mirrored")]
     pub is_mirrored: bool,
-    /// Angle that they are mirrored about, degrees of the cam.
+    /// Angle of the axis of the mirror image, degrees of the cam.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub nose_deg: Option<f64>,
-    /// Number of rows that were added on the base circle.
+    /// Number of rows added on the base circle.
     pub filled: usize,
     /// Whether the last row repeated the first and was dropped.
     pub repeats_first: bool,
-    /// Step of the decimal grid that all lifts lie on, in the table's unit; `None` if no such step is above the rounding of a
-    /// double.
+    /// Step of the decimal grid of all lifts, in the table's unit; `None` if no such step is above the rounding of a double.
     pub step: Option<f64>,
 }
 
 impl Reading {
-    /// Half of the step that the lifts are rounded to, in the model's unit of length; 0 without such a step.
+    /// Half of the step to which the lifts are rounded, in the model's unit of length; 0 without such a step.
     pub fn half_step(&self) -> f64 {
         self.step.map_or(0.0, |step| self.in_model.inside(0.5 * step))
     }
 }
 
-/// Fewest rows of a smoothing spline, which has to separate the motion from errors of measurement.
+/// Smallest number of rows of a smoothing spline, which has to separate the motion from errors of measurement.
 pub(super) const FEWEST_SMOOTHED: usize = 12;

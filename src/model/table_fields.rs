@@ -1,4 +1,4 @@
-//! Fields of `[cam]` that say how a table is read: its units, its turn, and the constraints of a smoothing spline.
+//! Fields of `[cam]` that control how a table is read: its units, its turn, and the constraints of a smoothing spline.
 
 use super::ModelError;
 use super::fields::{Fields, Value};
@@ -17,13 +17,13 @@ pub(super) enum Kind {
     Smoothing,
 }
 
-/// The splines, with their names in the field `spline`.
+/// Splines, with their names in the field `spline`.
 pub(super) const SPLINES: [(&str, Kind); 3] =
     [("cubic", Kind::Cubic), ("quintic", Kind::Quintic), ("smoothing", Kind::Smoothing)];
-/// Most corners or dwells: more than any cam has.
+/// Largest number of corners or dwells: more than any cam has.
 const MOST_FEATURES: usize = 1000;
 
-/// The unit that a field or the table names; `usual` if neither does. A field that is given decides where the table is not understood.
+/// Unit that a field or the table names; `usual` if neither does. A given field decides if the table is not understood.
 pub(super) fn unit<T: Copy + PartialEq>(
     fields: &Fields,
     path: &str,
@@ -40,7 +40,7 @@ pub(super) fn unit<T: Copy + PartialEq>(
     }
 }
 
-/// Unit that `cam.unit` names: a unit of length, or a decimal part of one as in `0.01 mm`.
+/// Reads the unit `cam.unit`: a unit of length, or a decimal part of one such as `0.01 mm`.
 pub(super) fn lift_unit(fields: &mut Fields) -> Result<Option<LiftUnit>, ModelError> {
     let path = "cam.unit";
     fields.may_hold(path);
@@ -54,7 +54,7 @@ pub(super) fn lift_unit(fields: &mut Fields) -> Result<Option<LiftUnit>, ModelEr
     part.map_or_else(|| fields.choice(path, &choices), Ok).map(Some)
 }
 
-/// Degrees of the table in one turn of the cam.
+/// Reads the degrees of the table in one turn of the cam.
 pub(super) fn turn_deg(fields: &mut Fields) -> Result<f64, ModelError> {
     let path = "cam.turn_deg";
     fields.may_hold(path);
@@ -65,7 +65,7 @@ pub(super) fn turn_deg(fields: &mut Fields) -> Result<f64, ModelError> {
     }
 }
 
-/// Whether the rows are half a lobe.
+/// Reads whether the rows are half a lobe.
 pub(super) fn mirrored(fields: &mut Fields) -> Result<bool, ModelError> {
     let path = "cam.mirrored";
     fields.may_hold(path);
@@ -87,7 +87,7 @@ pub(super) fn smoothing(
         Some(Value::Text(_)) => fields.choice(path, &[("auto", SmoothingTolerance::Auto)])?,
         Some(_) => {
             let within = fields.number(path)?;
-            // Half of a decimal step has one digit more; allow for its rounding.
+            // Half of a decimal step has one digit more, which may be rounded.
             if let Some(step) = step.filter(|step| within < 0.5 * step * (1.0 - 8.0 * tolerance::ULP.value)) {
                 let (half, values) = (0.5 * step, holds.values());
                 let words =

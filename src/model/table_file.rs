@@ -1,4 +1,4 @@
-//! Measured lifts in a model file: the rows themselves, or the file that has them, read whole.
+//! Measured lifts in a model file: the rows, given directly or in another file.
 
 use std::borrow::Cow;
 use std::path::Path;
@@ -14,7 +14,7 @@ use super::table_units::AngleUnit;
 use super::turn::FEWEST_ROWS;
 use crate::file;
 
-/// Reads the fields of `law = "table"`, and the file that they name unless they have its rows.
+/// Reads the fields of `law = "table"`, and the file that they name unless they contain its rows.
 pub(super) fn read(fields: &mut Fields) -> Result<TableProfile, ModelError> {
     read_rows(fields, Holds::Lifts, false)
 }
@@ -89,7 +89,8 @@ fn read_rows(fields: &mut Fields, holds: Holds, may_be_points: bool) -> Result<T
     let shown = path.display().to_string();
     let text = file::text_of_any_age(&path)
         .map_err(|error| fields.reject("cam.file", format!("cannot be read at {shown}: {error}")))?;
-    // Spreadsheets begin UTF-8 with a byte order mark; old ones end lines with a carriage return alone, and old systems a text with Ctrl-Z.
+    // Spreadsheets begin UTF-8 with a byte order mark; old ones end lines with a carriage return alone, and old systems end a text with
+    // Ctrl-Z.
     let text = text.strip_prefix('\u{feff}').unwrap_or(&text).trim_end_matches(['\u{1a}', '\r', '\n']);
     let text = if text.contains('\r') {
         Cow::Owned(text.replace("\r\n", "\n").replace('\r', "\n"))

@@ -1,4 +1,4 @@
-//! Rows as they are written, turned into the rows of one turn of the cam, in the units of the model.
+//! Conversion of rows as written to the rows of one turn of the cam, in the units of the model.
 
 use std::sync::Arc;
 
@@ -15,19 +15,19 @@ use super::turn::FEWEST_ROWS;
 use super::units::{LENGTHS, Units};
 use crate::tolerance;
 
-/// Most rows of a table in proofs, plus a last one that repeats the first.
+/// Largest number of rows of a table in proofs, plus a last row that repeats the first.
 const MOST_WRITTEN: usize = MOST_PROVED_ROWS + 1;
 
-/// A decimal number as it is written, divided by a power of ten.
+/// Decimal number as written, divided by a power of ten.
 fn shifted(number: &str, places: u32) -> String {
     let (digits, exponent) = number.split_once(['e', 'E']).unwrap_or((number, "0"));
     format!("{digits}e{}", exponent.parse::<i64>().unwrap_or(0) - i64::from(places))
 }
 
-/// Step of the coarsest decimal grid, 1, 2 or 5 times a power of ten, that all numbers lie on. `None` if they have as many
-/// digits as a double, or are all 0.
+/// Step of the coarsest decimal grid, 1, 2 or 5 times a power of ten, that contains all numbers. `None` if they have as many digits as a
+/// double, or are all 0.
 fn grid(numbers: &[f64]) -> Option<f64> {
-    /// Upper limit of whole numbers of which a double has every digit.
+    /// Upper limit of whole numbers that a double represents digit by digit.
     const DIGITS: f64 = 1e15;
     // The shortest digits that read back as the same double are the written ones, except for zeros at the end.
     let decimals = |number: &f64| number.to_string().split_once('.').map_or(0, |(_, behind)| behind.len());
@@ -54,10 +54,10 @@ fn grid(numbers: &[f64]) -> Option<f64> {
 }
 
 impl Table<'_> {
-    /// Whether the values of rows, as written, look like angles, and the angles do not: they go on in one direction, but for a new turn, or do so in
-    /// equal steps where the angles do not.
+    /// Whether the values of rows, as written, look like angles, and the angles do not. Angles change in one direction, except at a new
+    /// turn, or in equal steps.
     pub(super) fn seems_swapped(&self, rows: &[TableRow]) -> bool {
-        /// Least angle that the rows of a cam go over, degrees, and the most, two turns of a crank with a row too many.
+        /// Smallest range of angles of a cam's rows, degrees, and the largest: two turns of a crank with a row too many.
         const OVER: [f64; 2] = [45.0, 730.0];
         let [angles, values] = [|row: &TableRow| row.angle_deg, |row: &TableRow| row.lift].map(|of| {
             let steps = rows.windows(2).map(|pair| of(&pair[1]) - of(&pair[0]));
@@ -74,7 +74,7 @@ impl Table<'_> {
         self.holds != Holds::Points && (OVER[0]..=OVER[1]).contains(&over) && (is_better(0) || is_better(1))
     }
 
-    /// Builds the profile from rows that are each valid alone, and from the fields beside them.
+    /// Builds the profile from rows that are each valid, and from the fields beside them.
     pub(super) fn profile(
         mut self,
         fields: &mut Fields,
@@ -88,7 +88,7 @@ impl Table<'_> {
             AngleUnit::NAMES.iter().enumerate().map(|(index, name)| (*name, index)).collect();
         let given_angle = fields.has("cam.angle_unit").then(|| fields.choice("cam.angle_unit", &names)).transpose()?;
         let angle = named.map_or(Ok(None), |named| named.angle.clone());
-        // A "grad" is a degree in German, and a gon elsewhere.
+        // The word "grad" is a degree in German, and a gon elsewhere.
         let is_grad = || {
             named.and_then(|named| named.header.as_ref()).is_some_and(|header| header.to_lowercase().contains("grad"))
         };
@@ -104,7 +104,7 @@ impl Table<'_> {
         let lift = named.map_or(Ok(None), |named| named.lift.clone());
         let said = unit(fields, "cam.unit", [given, None], lift, LiftUnit::name)?;
         let lift_unit = said.or(own).unwrap_or(LiftUnit { index: 0, places: 0 });
-        // A unit in a title or a comment may be that of the lifts, or of something else.
+        // A unit in a title or a comment may belong to the lifts or to something else.
         let unread = |(_, _, seen): &&(usize, String, ProseUnit)| match seen {
             ProseUnit::Angle(_) if are_points => false,
             ProseUnit::Angle(seen) => index.is_none() && *seen != self.angles.index,
@@ -154,7 +154,7 @@ impl Table<'_> {
             rows.reverse();
         }
         let read = rows.len();
-        // Segments that are given one after the other repeat the row between them.
+        // Segments listed one after the other repeat the row between them.
         rows.dedup_by(|row, before| row.angle_deg == before.angle_deg && row.lift == before.lift);
         let merged = read - rows.len();
         let is_mirrored = mirrored(fields)?;
@@ -172,7 +172,7 @@ impl Table<'_> {
             written.iter_mut().for_each(|[_, lift]| *lift = shifted(lift, lift_unit.places));
         }
         let nose_deg = if is_mirrored { self.mirror(fields, &mut rows)? } else { None };
-        // Row numbers are as far apart as degrees are.
+        // Row numbers increase by 1, as degrees often do.
         let counts = !are_points
             && fields.has("cam.angle_column")
             && rows.windows(2).all(|pair| pair[1].angle_deg - pair[0].angle_deg == 1.0);

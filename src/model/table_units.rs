@@ -7,7 +7,7 @@ use super::units::LENGTHS;
 pub(super) struct AngleUnit {
     /// Index in the names of the units.
     pub(super) index: usize,
-    /// Degrees of the table in one turn of the cam: 720 for those of a crank.
+    /// Degrees of the table in one turn of the cam: 720 for a crank's.
     pub(super) turn_deg: f64,
 }
 
@@ -15,19 +15,19 @@ impl AngleUnit {
     pub(super) const DEGREES: Self = Self { index: 0, turn_deg: 360.0 };
     /// Names in a model file.
     pub(super) const NAMES: [&'static str; 4] = ["deg", "rad", "turn", "gon"];
-    /// Degrees of a gon, of which a turn has 400.
+    /// Degrees of a gon; a turn has 400 gon.
     const GON: f64 = 0.9;
 
     pub(super) fn name(self) -> &'static str {
         Self::NAMES[self.index]
     }
 
-    /// Whether numbers of the table are degrees of the cam.
+    /// Whether the table's numbers are degrees of the cam.
     pub(super) fn is_of_cam(self) -> bool {
         self == Self::DEGREES
     }
 
-    /// Degrees of the cam of an angle as written.
+    /// Converts an angle as written to degrees of the cam.
     pub(super) fn degrees(self, angle: f64) -> f64 {
         let degrees = match self.index {
             0 => angle,
@@ -38,7 +38,7 @@ impl AngleUnit {
         if self.turn_deg == 360.0 { degrees } else { degrees * 360.0 / self.turn_deg }
     }
 
-    /// An angle, degrees of the cam, as the table has it, to the digits that survive a conversion there and back.
+    /// Converts an angle, degrees of the cam, to the table's unit, with the digits that survive a conversion there and back.
     pub(super) fn told(self, angle_deg: f64) -> f64 {
         if self.is_of_cam() {
             return angle_deg;
@@ -64,7 +64,7 @@ pub(super) struct LiftUnit {
 }
 
 impl LiftUnit {
-    /// The part of a unit of length, which has a name of its own where there is one: a thousandth of an inch is a thou.
+    /// Part of a unit of length, as a separate unit if it has a name: a thousandth of an inch is a thou.
     pub(super) fn part(index: usize, places: u32) -> Self {
         match LENGTHS.iter().position(|unit| places > 0 && unit.is_part_of(&LENGTHS[index], places)) {
             Some(index) => Self { index, places: 0 },
@@ -72,14 +72,14 @@ impl LiftUnit {
         }
     }
 
-    /// Name, as in a model file.
+    /// Name in a model file.
     pub(super) fn name(self) -> String {
         let unit = LENGTHS[self.index].name();
         if self.places == 0 { unit.to_owned() } else { format!("{} {unit}", decimal_part(self.places)) }
     }
 }
 
-/// A decimal part as it is written: 0.01.
+/// Decimal part as a number: 0.01 for 2 places.
 pub(super) fn decimal_part(places: u32) -> f64 {
     format!("1e-{places}").parse().unwrap_or(f64::NAN)
 }

@@ -1,13 +1,13 @@
-//! Commented model files to begin with, one for each law of the cam.
+//! Commented model files as starting points, one for each law of the cam.
 
-/// A law with its part of a model file.
+/// Law with its part of a model file.
 pub struct ModelTemplate {
     /// Name of the law in `[cam]`.
     pub law: &'static str,
     cam: &'static str,
-    /// Name and text of the table that the file names, which has a follower of its size.
+    /// Name and text of the table that the file names; its follower fits the size of the cam.
     pub table: Option<(&'static str, &'static str)>,
-    /// Whether `verify` has something to look for: the cam has corners of order 2.
+    /// Whether the cam has corners of order 2, so that `verify` can search for corner impacts.
     has_study: bool,
 }
 
@@ -21,7 +21,7 @@ const fn template(law: &'static str, cam: &'static str, has_study: bool) -> Mode
     ModelTemplate { law, cam, table: None, has_study }
 }
 
-/// The laws in the order of `new --help`.
+/// Laws in the order of `new --help`.
 pub static TEMPLATES: [ModelTemplate; 7] = [
     template("arcs", include_str!("templates/arcs.toml"), true),
     template("harmonic", include_str!("templates/harmonic.toml"), false),
@@ -39,7 +39,7 @@ pub static TEMPLATES: [ModelTemplate; 7] = [
 ];
 
 impl ModelTemplate {
-    /// The template of a law.
+    /// Template of a law.
     pub fn of(law: &str) -> Option<&'static Self> {
         TEMPLATES.iter().find(|template| template.law == law)
     }

@@ -1,4 +1,4 @@
-//! A model as the text of a self-contained model file.
+//! Conversion of a model to the text of a self-contained model file.
 
 use std::sync::Arc;
 
@@ -8,7 +8,7 @@ use super::fields::{Fields, Value};
 use super::{FollowerErrors, Model, SmoothingTolerance, TableProfile};
 
 impl Model {
-    /// Text of the model file with exact numbers, which is the same for models whose machines move alike.
+    /// Text of the model file with exact numbers, which is equal for models whose machines move alike.
     pub(crate) fn text_of_values(&self) -> String {
         let mut exact = self.clone();
         for name in FollowerErrors::names() {
@@ -17,8 +17,8 @@ impl Model {
         exact.text()
     }
 
-    /// Text of a self-contained model file: the model's name, every number in digits that read back as the same double,
-    /// and a table's rows in place of their file. Reading the text gives the same model and the same text.
+    /// Text of a self-contained model file: the model's name, every number in digits that read back as the same double, and a table's rows
+    /// instead of their file. Reading the text gives the same model and the same text.
     pub fn text(&self) -> String {
         let mut fields = self.fields.clone();
         fields.put("name", Value::Text(self.name.clone()));
@@ -35,7 +35,7 @@ impl Model {
 impl Fields {
     /// Replaces a table's rows and file by rows at the same angles with other lifts, in the units of the model.
     pub(super) fn put_lifts(&mut self, table: &TableProfile, lifts: impl Iterator<Item = f64>) {
-        // What says how the rows are read is done.
+        // Fields that control how rows are read, which is done.
         const OF_READING: [&str; 12] = [
             "file",
             "unit",
@@ -98,7 +98,7 @@ impl Fields {
         self.fields.get(&*format!("{path}[0]")).is_some_and(|first| matches!(first.value, Value::Table))
     }
 
-    /// The value in one line; `None` for a table or an array of tables, which have headers of their own.
+    /// Value in one line; `None` for a table or an array of tables, which have separate headers.
     fn written(&self, path: &str, value: &Value) -> Option<String> {
         match value {
             Value::Number(number) => Some(match self.error_at(path) {

@@ -1,4 +1,4 @@
-//! Reads TOML into fields with their places in the text.
+//! Parser of TOML into fields with their places in the text.
 
 use std::ops::Range;
 
@@ -9,7 +9,7 @@ use super::ModelError;
 use super::fields::{Field, Fields, Value};
 use super::numeral::Numeral;
 
-/// A TOML number as a double; `None` for any other value.
+/// Converts a TOML number to a double; `None` for any other value.
 fn number(value: &DeValue<'_>) -> Option<f64> {
     match value {
         DeValue::Integer(integer) => {
@@ -20,7 +20,7 @@ fn number(value: &DeValue<'_>) -> Option<f64> {
     }
 }
 
-/// The two numbers of a TOML array; `None` for any other value.
+/// Returns the two numbers of a TOML array; `None` for any other value.
 fn pair(value: &DeValue<'_>) -> Option<[f64; 2]> {
     let DeValue::Array(items) = value else { return None };
     let mut items = items.iter().map(|item| number(item.get_ref()));
@@ -48,7 +48,7 @@ pub(super) fn pairs(array: &str) -> Vec<[String; 2]> {
 }
 
 impl Fields {
-    /// Parses a text into fields; complaints name the file as `file`.
+    /// Parses a text into fields; errors name the file as `file`.
     pub(super) fn parse(file: &str, text: &str) -> Result<Self, ModelError> {
         let line_ends: Vec<usize> = text.match_indices('\n').map(|(at, _)| at).collect();
         let line_of = |offset: usize| 1 + line_ends.partition_point(|end| *end < offset);
@@ -88,7 +88,7 @@ impl Fields {
                     ..ModelError::file(self.file(), words.into()).at(Some(self.source().into()), Some(key.span()))
                 });
             }
-            // The span of a table is not that of its header; the span of its key is.
+            // The span of a table does not include its header; the span of its key is used.
             let (line, _) = place(key.span());
             self.add(&path, (line, key.span()), value, place)?;
         }

@@ -1,4 +1,4 @@
-//! Rows of a table brought into one turn of the cam: half a lobe mirrored, the base circle filled, their angles checked.
+//! Conversion of a table's rows to one turn of the cam: half a lobe is mirrored, the base circle filled, and the angles are checked.
 
 use std::f64::consts::TAU;
 
@@ -8,12 +8,12 @@ use super::lines::{Holds, Table};
 use super::rows::{MOST_ROWS, TableRow};
 use crate::tolerance;
 
-/// Fewest rows: a periodic spline needs three for every row to have a neighbour on either side.
+/// Smallest number of rows: a periodic spline needs three for every row to have a neighbour on either side.
 pub(super) const FEWEST_ROWS: usize = 3;
 
 impl Table<'_> {
-    /// Adds the mirror image of half a lobe about its nose, and returns the nose's angle. It is the row of the greatest lift at one of the ends; or
-    /// half a step before or behind it, where that is 0 or half a turn.
+    /// Adds the mirror image of half a lobe about its nose, and returns the nose's angle. The nose is the row of the greatest lift at one
+    /// of the ends; or half a step beyond it, if that angle is 0 or half a turn.
     pub(super) fn mirror(&self, fields: &Fields, rows: &mut Vec<TableRow>) -> Result<Option<f64>, ModelError> {
         let highest = rows.iter().copied().reduce(|highest, row| if row.lift > highest.lift { row } else { highest });
         let (Some(first), Some(last), Some(highest)) = (rows.first().copied(), rows.last().copied(), highest) else {
@@ -43,7 +43,7 @@ impl Table<'_> {
         };
         let whole = (outside / 180.0).round() * 180.0;
         let nose = if (outside - whole).abs() <= slack { whole } else { end };
-        // What is half a turn from the nose is its own image.
+        // A row half a turn from the nose is its own image.
         let is_other = |row: &&TableRow| {
             let from = (row.angle_deg - nose).abs();
             from > 0.0 && from < 180.0 - slack
@@ -55,7 +55,7 @@ impl Table<'_> {
         Ok(Some(nose.rem_euclid(360.0)))
     }
 
-    /// Adds rows on the base circle over the widest gap, as far apart as the others are. Returns their number.
+    /// Adds rows on the base circle over the widest gap, spaced like the others. Returns their number.
     fn fill(&self, fields: &Fields, rows: &mut Vec<TableRow>) -> Result<usize, ModelError> {
         let Some(first) = rows.first().copied() else { return Ok(0) };
         let next = |index: usize| {
@@ -71,7 +71,7 @@ impl Table<'_> {
         let (base, top) =
             lifts.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), lift| (low.min(lift), high.max(lift)));
         let little = tolerance::ON_BASE.value * (top - base);
-        // From the gap inwards on either side; a rise from the circle begins with little and goes on with more.
+        // From the gap inwards on either side: a rise from the circle begins with a small step and continues with larger ones.
         let inwards = |from: usize, back: bool| {
             [0, 1, 2].map(|step| rows[(from + if back { rows.len() - step } else { step }) % rows.len()].lift)
         };
@@ -113,8 +113,8 @@ impl Table<'_> {
         Ok(count)
     }
 
-    /// Orders the rows of one turn from 0 to below 360, from any first angle, and fills the base circle if that is asked for. Returns whether the
-    /// last row repeated the first, and how many were added.
+    /// Orders the rows of one turn from 0 to below 360, from any first angle, and fills the base circle on request. Returns whether the
+    /// last row repeated the first, and the number of rows added.
     pub(super) fn turned(
         &self,
         fields: &Fields,
@@ -179,7 +179,7 @@ impl Table<'_> {
         Ok((last.is_some(), filled))
     }
 
-    /// Whether the rows from `index` on repeat those of a turn before.
+    /// Whether the rows from `index` on repeat those of the turn before.
     fn repeats(&self, rows: &[TableRow], index: usize, slack: f64) -> bool {
         let lifts = rows.iter().map(|row| row.lift.abs());
         let little = tolerance::ON_BASE.value * lifts.fold(0.0, f64::max);
@@ -196,7 +196,7 @@ impl Table<'_> {
         format!("{} {}", if self.has_lines { "line" } else { "row" }, row.line)
     }
 
-    /// An angle, degrees of the cam, as the table has it.
+    /// Angle, degrees of the cam, in the unit of the table.
     fn shown(&self, angle_deg: f64) -> f64 {
         // Polar angles of points have rounded digits.
         if self.holds == Holds::Points { (angle_deg * 1e9).round() / 1e9 } else { self.angles.told(angle_deg) }
@@ -207,10 +207,10 @@ impl Table<'_> {
         self.reject(line, &field, &self.shown(angle_deg).to_string(), words)
     }
 
-    /// Refuses a row that is not above the one before it; each comes with its angle as written, degrees.
+    /// Rejects a row that is not above the one before it; each comes with its angle as written, degrees.
     fn in_order(&self, rows: [(&TableRow, f64); 2], begins_turn: bool) -> Result<(), ModelError> {
         let [(before, above), (row, written)] = rows;
-        // Angles that are equal in radians count as one.
+        // Angles that are equal in radians count as equal.
         if row.angle_deg.to_radians() > before.angle_deg.to_radians() {
             return Ok(());
         }
@@ -238,9 +238,9 @@ impl Table<'_> {
         Ok(())
     }
 
-    /// Refuses a gap where rows are missing.
+    /// Rejects a gap where rows are missing.
     fn even(&self, fields: &Fields, rows: &[TableRow]) -> Result<(), ModelError> {
-        /// Smallest gap that is refused for any number of rows, degrees.
+        /// Smallest gap that is rejected for any number of rows, degrees.
         const HALF: f64 = 180.0;
         /// Gap, degrees, above which the rows cover only a part of the turn.
         const PART: f64 = 90.0;
@@ -252,7 +252,7 @@ impl Table<'_> {
         let mut sorted = gaps.clone();
         let (_, median, _) = sorted.select_nth_unstable_by(gaps.len() / 2, f64::total_cmp);
         let widest = *median / tolerance::TABLE_GAP.value;
-        // Allow for the digits to which a turn is written.
+        // Allows for the digits to which a turn is written.
         let half = HALF - tolerance::TURN_CLOSED.value * 360.0 / rows.len() as f64;
         let Some(index) = gaps.iter().position(|gap| *gap > widest || *gap > half) else {
             return Ok(());

@@ -1,8 +1,8 @@
-//! `[units]`: the units of a model file's numbers and of the answers.
+//! Table `[units]`: the units of a model file's numbers and of the results.
 //!
-//! Internally, masses are in kg, times in s and lengths in the file's own unit. So every position, velocity and matrix is computed
-//! in the units of the file. Stiffness and damping, kg/s^2 and kg/s, are N/m and N s/m whatever the length. Only
-//! forces, kg times that length over s^2, are converted for output.
+//! Internally, masses are in kg, times in s and lengths in the file's unit. So every position, velocity and matrix is computed in the units
+//! of the file. Stiffness and damping, kg/s^2 and kg/s, are N/m and N s/m for any unit of length. Only forces, kg times that length over
+//! s^2, are converted for output.
 
 use std::borrow::Cow;
 
@@ -10,7 +10,7 @@ use super::ModelError;
 use super::fields::Fields;
 use super::quantity::{Dimension, ModelNumber};
 
-/// A unit: its name, and its size in the internal unit as a quotient of whole numbers, which is exact.
+/// Unit: its name, and its size in the internal unit as an exact quotient of whole numbers.
 #[derive(Clone, Debug, PartialEq)]
 #[doc(hidden)]
 pub struct Unit {
@@ -23,7 +23,7 @@ impl Unit {
         Self { name: Cow::Borrowed(name), ratio: [above, below] }
     }
 
-    /// Name in files and answers.
+    /// Name in files and results.
     pub fn name(&self) -> &str {
         &self.name
     }
@@ -38,18 +38,18 @@ impl Unit {
         value * self.ratio[1] as f64 / self.ratio[0] as f64
     }
 
-    /// Exact factor from this unit to the internal unit; `None` where that is 1.
+    /// Exact factor from this unit to the internal unit; `None` for 1.
     pub(super) fn factor(&self) -> Option<[u128; 2]> {
         (self.ratio[0] != self.ratio[1]).then_some(self.ratio)
     }
 
-    /// This unit as a multiple of `other`, which then becomes the internal unit.
+    /// Returns this unit as a multiple of `other`, which then becomes the internal unit.
     pub(super) fn in_parts_of(&self, other: &Self) -> Self {
         let ratio = if self.ratio == other.ratio { [1; 2] } else { self.over(other) };
         Self { name: self.name.clone(), ratio }
     }
 
-    /// Whether it is so many decimal places of another unit: a thousandth for 3.
+    /// Whether it is another unit divided by this power of ten: a thousandth for 3.
     pub(super) fn is_part_of(&self, other: &Self, places: u32) -> bool {
         self.ratio == [other.ratio[0], other.ratio[1] * 10_u128.pow(places)]
     }
@@ -81,11 +81,11 @@ const FORCES: [Unit; 5] = [
     Unit::new("mN", 1, 1000),
     Unit::new("kN", 1000, 1),
     Unit::new("kgf", 980_665, 100_000),
-    // A pound times the standard acceleration of gravity.
+    // Pound times the standard acceleration of gravity.
     Unit::new("lbf", 44_482_216_152_605, 10_000_000_000_000),
 ];
 
-/// The units of a model file.
+/// Units of a model file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Units {
     /// Whether the file gives any unit.
@@ -104,15 +104,15 @@ pub struct Units {
     pub damping: Unit,
     /// Unit of gravity; internally the unit of length over s^2.
     pub gravity: Unit,
-    /// Whether answers give angles in degrees.
+    /// Whether results give angles in degrees.
     pub degrees: bool,
 }
 
-/// Converts an internal value for output.
+/// Function that converts an internal value for output.
 #[doc(hidden)]
 pub type Converted = fn(&Units, f64) -> f64;
 
-/// The unit from `table` that a field names; the first one if the field is missing.
+/// Reads the unit from `table` that a field names; the first one if the field is missing.
 fn simple(fields: &mut Fields, path: &str, table: &[Unit]) -> Result<Unit, ModelError> {
     let choices: Vec<(&str, usize)> = table.iter().enumerate().map(|(index, unit)| (unit.name(), index)).collect();
     if !fields.has(path) {
@@ -126,7 +126,7 @@ fn named(table: &[Unit], name: &str) -> Option<Unit> {
     table.iter().find(|unit| unit.name() == name.trim()).cloned()
 }
 
-/// The quotient of units that a field names; `part` looks up the units before and behind the slash.
+/// Reads the quotient of units that a field names; `part` looks up the units before and after the slash.
 fn quotient(
     fields: &mut Fields,
     path: &str,
@@ -174,8 +174,7 @@ impl Units {
         self.of(ModelNumber::of(&format!("follower.{name}"))?.dimension)
     }
 
-    /// Unit of the numbers of a dimension; `None` for those that are in one unit whatever the file says, and for lengths, which are in the
-    /// file's own.
+    /// Unit of the numbers of a dimension; `None` for dimensions with a fixed unit, and for lengths, which are in the file's unit.
     fn of(&self, dimension: Dimension) -> Option<&Unit> {
         match dimension {
             Dimension::Mass => Some(&self.mass),
@@ -197,8 +196,8 @@ impl Units {
         unit.map_or_else(|| self.spelled(number.dimension.si()), |unit| unit.name().into())
     }
 
-    /// Converts a value of a number of the model, by its dotted path, from a unit that was typed to the file's own; `None` where that is no unit
-    /// of such a number.
+    /// Converts a value of the number at a dotted path from a typed unit to the file's unit; `None` if such a number cannot have the typed
+    /// unit.
     #[doc(hidden)]
     pub fn in_own(&self, path: &str, value: f64, unit: &str) -> Option<f64> {
         let parts = |text: &str| {
@@ -225,7 +224,7 @@ impl Units {
         let path = format!("follower.{name}");
         let written = fields.number(&path)?;
         let number = self.of_follower(name).map_or(written, |unit| unit.inside(written));
-        // After conversion, a number may have overflowed, or become 0 where that is not allowed.
+        // After conversion, a number may have overflowed, or underflowed to 0 where that is not allowed.
         if ModelNumber::of(&path).is_none_or(|it| it.allowed.contains(number)) {
             Ok(number)
         } else {
@@ -233,13 +232,13 @@ impl Units {
         }
     }
 
-    /// Rewrites a unit of length, velocity or acceleration from metres to this file's length: `m/s` is `mm/s`.
+    /// Rewrites a unit of length, velocity or acceleration from metres to this file's length: `m/s` to `mm/s`.
     pub fn spelled(&self, unit: &str) -> String {
         let rest = unit.strip_prefix('m').filter(|rest| rest.is_empty() || rest.starts_with(['/', ' ']));
         rest.map_or_else(|| unit.to_owned(), |rest| format!("{}{rest}", self.length.name()))
     }
 
-    /// Name of a field or a column in these units: `gap_m` is `gap_mm`.
+    /// Name of a field or a column in these units: `gap_mm` for `gap_m`.
     pub fn field(&self, name: &str) -> String {
         let (head, unit) = ["_m_s", "_m", "_rad", "_n"]
             .into_iter()
@@ -261,12 +260,12 @@ impl Units {
         names.collect::<Vec<_>>().join(",") + "\n"
     }
 
-    /// An angle, rad, as answers give it.
+    /// Converts an angle, rad, to the unit of the results.
     pub fn angle(&self, angle: f64) -> f64 {
         if self.degrees { angle.to_degrees() } else { angle }
     }
 
-    /// Conversion of the values of a field or column by its name in SI units; `None` for lengths, which need none.
+    /// Conversion of the values of a field or column, by its name in SI units; `None` for lengths, which need none.
     pub fn converted(&self, name: &str) -> Option<Converted> {
         if name.ends_with("_rad") {
             Some(Self::angle)

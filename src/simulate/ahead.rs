@@ -1,33 +1,33 @@
-//! The next event of a flight, known before the run reaches it.
+//! Next event of a flight, found before the run reaches it.
 
 use crate::cam::Lift;
 use crate::flight::State;
 
-/// The next event of a flight.
+/// Next event of a flight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Ahead {
-    /// The previous impact repeats, one turn on.
+    /// Repetition of the previous impact, one turn later.
     Again(Again),
-    /// The flight comes down to the top of the cam.
+    /// Return of the flight to the top of the cam.
     Top {
-        /// Time until then, s.
+        /// Time until the return, s.
         time: f64,
-        /// State of the follower then.
+        /// State of the follower at the return.
         state: State,
     },
-    /// The flight clears some segments.
+    /// Flight that certainly clears some segments.
     Leap(Leap),
-    /// The flight goes over the rest of its segment.
+    /// Flight over the rest of its segment.
     Over {
-        /// Time that this takes, s.
+        /// Time over the rest of the segment, s.
         end: f64,
         passage: Passage,
     },
-    /// The flight never comes down to the top.
+    /// Flight that never returns to the top.
     Never,
 }
 
-/// An impact one turn on.
+/// Impact one turn later.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Again {
     pub time: f64,
@@ -36,14 +36,14 @@ pub(super) struct Again {
     pub lift: Lift,
 }
 
-/// The end of a leap.
+/// End of a leap.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Leap {
-    /// Last segment that the flight goes over.
+    /// Last segment that the flight clears.
     pub segment: usize,
-    /// Time when it reaches that segment's end, s.
+    /// Time of the flight to that segment's end, s.
     pub time: f64,
-    /// Whether it meets the cam on the next segment.
+    /// Whether the flight meets the cam on the next segment.
     pub lands: bool,
 }
 
@@ -52,10 +52,10 @@ pub(super) struct Leap {
 pub(super) enum Passage {
     /// No contact up to the end.
     Free { state: State, gap: Option<f64> },
-    /// The first contact, s after the start, with the velocity at that moment.
+    /// First contact, s after the start, with the velocity at that moment.
     Contact { time: f64, velocity: f64, lift: Lift },
-    /// More steps than a window may take; s after the start.
+    /// Search with more steps than allowed; s after the start.
     NoProgress { time: f64 },
-    /// A number is NaN or infinite.
+    /// NaN or infinite number.
     NotFinite,
 }

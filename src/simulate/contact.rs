@@ -1,10 +1,10 @@
-//! First root of the gap on one segment of the cam, certified: no impact is missed.
+//! Search for the first root of the gap on one segment of the cam, certified: no impact is missed.
 //!
-//! With `|g'''| <= M` ahead of an instant, `g + g' h + g'' h^2/2 - M h^3/6` lies below the gap. Repeated steps to the first root of that
+//! With `|g'''| <= M` after an instant, `g + g' h + g'' h^2/2 - M h^3/6` lies below the gap. Repeated steps to the first root of that
 //! minorant converge to the first contact from the left and never cross it, however short the dip. Close to a crossing each step triples
-//! the digits.
+//! the number of digits.
 
-/// Gap between follower and cam at an instant, with bounds from then on.
+/// Gap between follower and cam at an instant, with bounds for later times.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GapAt {
     /// g, m.
@@ -17,7 +17,7 @@ pub struct GapAt {
     pub rate_rounding: f64,
     /// g'', m/s^2.
     pub curvature: f64,
-    /// Estimate of `|g'''|` from here on, m/s^3: it sets which step is tried first, never which step is certain.
+    /// Estimate of `|g'''|` for later times, m/s^3. It sets only the first step that is tried; the proof uses the bound.
     pub third: f64,
 }
 
@@ -26,16 +26,16 @@ pub struct GapAt {
 pub enum Outcome {
     /// No contact up to the end.
     None,
-    /// The first contact, s after the start.
+    /// First contact, s after the start.
     Contact(f64),
-    /// More steps than a search may take, or a step that takes no time; s after the start.
+    /// Search with more steps than allowed, or a step that takes no time; s after the start.
     NoProgress(f64),
-    /// The gap is NaN or infinite; s after the start.
+    /// NaN or infinite gap; s after the start.
     NotFinite(f64),
 }
 
-/// Finds the first contact within `[0, end]`, s, of the gap `gap_at(time)`; `third_bound(time, reach)` bounds `|g'''|` over
-/// `[time, time + reach]`. A follower that is inside the cam and moves out of it leaves it as from its surface.
+/// Finds the first contact of the gap `gap_at(time)` within `[0, end]`, s; `third_bound(time, reach)` bounds `|g'''|` over
+/// `[time, time + reach]`. A follower that is inside the cam and moves out of it counts as one that leaves the surface.
 pub fn first_contact(
     gap_at: impl Fn(f64) -> GapAt,
     third_bound: impl Fn(f64, f64) -> f64,
@@ -56,7 +56,7 @@ pub fn first_contact(
             return Outcome::None;
         }
         if time + step == time {
-            // Contact to the last digit if the follower approaches it, or does not move away.
+            // Contact to the last digit if the follower approaches the cam, or does not move away.
             return if gap.rate <= gap.rate_rounding { Outcome::Contact(time) } else { Outcome::NoProgress(time) };
         }
         time += step;
@@ -64,38 +64,38 @@ pub fn first_contact(
     Outcome::NoProgress(time)
 }
 
-/// Takes one Newton step from a contact known to rounding, but not past the bottom of a graze, where the follower moves away already.
+/// Takes one Newton step from a contact found up to rounding, but not past the bottom of a graze, where the follower already moves away.
 fn polish(gap_at: impl Fn(f64) -> GapAt, time: f64, gap: &GapAt, end: f64) -> f64 {
     let better = (time - gap.value / gap.rate).clamp(0.0, end);
     let there = gap_at(better);
     if there.rate < 0.0 && there.value.abs() <= gap.value.abs() { better } else { time }
 }
 
-/// Returns a time, at most `end`, before which the gap is certainly open.
+/// Returns a time, at most `end`, before which the gap is certainly positive.
 fn free_time(gap: &GapAt, third_bound: impl Fn(f64) -> f64, end: f64) -> f64 {
     /// Ratio of root to reach above which the reach is too short.
     const FAR: f64 = 16.0;
-    // Down to a depth of its rounding the gap is open: a flight that leaves a tangency gets a first step out of it.
+    // A gap negative within its rounding counts as 0: a flight that leaves a tangency needs a first step out of it.
     let value = (gap.value + gap.rounding).max(0.0);
     // Over [0, reach] the cubic minorant lies above the parabola with curvature g'' - M reach/3.
     let root = |reach: f64, bound: f64| first_root(value, gap.rate, gap.curvature - bound * reach / 3.0);
     let mut reach = end;
-    // A shorter reach bends the parabola less: three rounds bring it within a part in eight of the cubic's own root.
+    // A shorter reach bends the parabola less: three rounds bring its root within an eighth of the cubic's root.
     for _ in 0..4 {
         let first = root(reach, gap.third);
         if first >= 0.5 * reach {
             break;
         }
-        // Leaving a tangency the parabola opens upwards for a time that its curvature sets.
+        // After a tangency the parabola opens upwards for a time that its curvature sets.
         let upwards = if gap.curvature > 0.0 { gap.curvature / gap.third } else { 0.0 };
         let shorter = reach.min((2.0 * first).max(upwards));
-        // Where its rate alone keeps the gap open, the root is the shorter the longer the reach, as R^2/reach: what is tried next
-        // is too short by as much as this was too long, and R is between the two.
+        // If the rate alone keeps the gap positive, the root shrinks as the reach grows, as R^2/reach. The next reach would then be too
+        // short by the factor by which this one was too long, and R is between them.
         let overshoots = root(shorter, gap.third) > FAR * shorter;
         reach = if overshoots { (shorter * reach).sqrt() } else { shorter };
     }
     let mut best: f64 = 0.0;
-    // What was a guess becomes certain: the bound over the reach, which shrinks until the bound lets a good part of it pass.
+    // The guessed reach becomes certain: it shrinks until the bound over it leaves a good part free.
     for _ in 0..24 {
         let open = root(reach, third_bound(reach)).min(reach);
         best = best.max(open);

@@ -1,4 +1,4 @@
-//! Events of a run, observers of a run, and the reasons why a run could not go on.
+//! Events of a run, observers of a run, and the errors that end it.
 
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
@@ -8,15 +8,15 @@ use serde::Serialize;
 use crate::cam::Lift;
 use crate::flight::{Flight, State};
 
-/// Kind of event.
+/// Kind of an event.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum EventKind {
-    /// The follower hits the cam.
+    /// Impact: the follower hits the cam.
     Impact,
-    /// The follower stays on the cam from here on: an impact left no relative velocity, or infinitely many impacts did.
+    /// Start of sticking, after one impact without relative velocity, or after infinitely many impacts.
     Stick,
-    /// The follower leaves the cam after sticking.
+    /// Release: the follower leaves the cam after sticking.
     Release,
 }
 
@@ -31,7 +31,7 @@ impl EventKind {
     }
 }
 
-/// An impact, the start of sticking, or its end.
+/// Impact, start of sticking, or release.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Event {
     /// Kind of event.
@@ -46,7 +46,7 @@ pub struct Event {
     pub velocity_before: f64,
     /// v+, m/s.
     pub velocity_after: f64,
-    /// c', m/s; at a corner, that of the segment which was hit.
+    /// c', m/s; at a corner, on the segment that was hit.
     pub cam_velocity: f64,
     /// Index of the segment of the cam.
     pub segment: usize,
@@ -68,24 +68,24 @@ pub struct Work {
     pub gaps: u64,
     /// Steps of Newton's or Halley's method.
     pub steps: u64,
-    /// Windows that were marched over, because their gap has no shape that certifies a contact.
+    /// Windows that were searched step by step, because the shape of their gap certifies no contact.
     pub marches: u64,
-    /// Impacts of a settled motion, found one turn on without a search.
+    /// Impacts of a settled motion, found one turn later without a search.
     pub repeats: u64,
 }
 
-/// An observer of a run. A closure that takes each event is one.
+/// Observer of a run. A closure that takes each event is an observer.
 pub trait Observer {
-    /// Whether `work` is called. A constant, so that a run without interest in its work spends nothing on counting it.
+    /// Whether `work` is called. It is a constant, so that other runs spend no time on counting.
     const COUNTS: bool = false;
 
     /// Receives an event; may end the run right after it.
     fn event(&mut self, event: &Event) -> ControlFlow<()>;
 
-    /// Receives the lift, of the segment that is hit, of the impact whose event comes next.
+    /// Receives the lift at the impact whose event follows, on the segment that is hit.
     fn strikes(&mut self, _lift: &Lift) {}
 
-    /// Receives a stretch of free flight that has just been flown: its start state and its duration, s.
+    /// Receives a completed part of free flight: its start state and its duration, s.
     fn flight(&mut self, _flight: &Flight, _from: State, _time: f64) {}
 
     /// Receives the work of one more search for a contact.
@@ -98,7 +98,7 @@ impl<F: FnMut(&Event) -> ControlFlow<()>> Observer for F {
     }
 }
 
-/// Impacts that occurred in a run.
+/// Number and greatest speed of impacts in a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[doc(hidden)]
 pub struct ImpactTally {
@@ -123,7 +123,7 @@ impl ImpactTally {
     }
 }
 
-/// An observer that ignores everything.
+/// Observer that ignores everything.
 #[derive(Clone, Copy, Debug)]
 pub struct Unobserved;
 
@@ -133,38 +133,38 @@ impl Observer for Unobserved {
     }
 }
 
-/// Why a run could not go on.
+/// Reason why a run cannot continue.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[expect(missing_docs, reason = "the message says what each number is")]
 pub enum SimulateError {
-    /// The follower is inside the cam: it started there, or a continued cam has a step.
+    /// Follower inside the cam: it started there, or a continued cam has a step.
     #[error(
         "simulate: the follower is below the cam by {depth:.3e} in the model's unit of length at cam angle {:.4} deg of revolution {revolution}",
         cam_angle.to_degrees()
     )]
     BelowCam { depth: f64, revolution: u64, cam_angle: f64 },
-    /// A flight has passed through the cam, which is impossible: a fault of this program.
+    /// Flight through the cam, which is impossible: a fault of this program.
     #[error(
         "simulate: a fault of this program: at {rpm} rpm the follower has passed through the cam by {depth:.3e} at cam angle \
          {:.4} deg of revolution {revolution}, at position {position} with velocity {velocity}, in the model's units",
         cam_angle.to_degrees()
     )]
     PassedThrough { depth: f64, revolution: u64, cam_angle: f64, position: f64, velocity: f64, rpm: f64 },
-    /// More events in one revolution, or steps from one event to the next, than a run may have.
+    /// More events in one revolution, or steps from one event to the next, than allowed.
     #[error(
         "simulate: no progress: {events} events or steps in revolution {revolution}, and still at cam angle {:.6} deg",
         cam_angle.to_degrees()
     )]
     NoProgress { events: u32, revolution: u64, cam_angle: f64 },
-    /// A start outside `[0, 2 pi)`.
+    /// Start outside `[0, 2 pi)`.
     #[error("simulate: a start at cam angle {cam_angle} rad: it must be 0 or more, and below 2 pi")]
     Start { cam_angle: f64 },
-    /// A cam that does not turn, or turns backwards.
+    /// Cam that does not turn, or turns backwards.
     #[error(
         "simulate: the cam turns by {angular_velocity} rad a second or for {turn} rad: both must be finite, and forwards"
     )]
     Turn { angular_velocity: f64, turn: f64 },
-    /// A number that is not finite entered the run.
+    /// State that is not finite.
     #[error(
         "simulate: a state that is not finite near cam angle {:.4} deg of revolution {revolution}",
         cam_angle.to_degrees()

@@ -1,4 +1,4 @@
-//! Growth of small deviations, from the variational flow: Lyapunov exponents in the limit.
+//! Growth of small deviations from the variational flow, which gives Lyapunov exponents in the limit.
 
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
@@ -15,24 +15,24 @@ use crate::impact::ImpactRates;
 /// Mean growth of a small deviation per revolution, as a natural logarithm: the largest Lyapunov exponent in the limit of many
 /// `revolutions`.
 ///
-/// Minus infinity if the follower sticks to the cam, be it once in thousands of revolutions: nothing remains of a deviation then, and the
-/// motion repeats what followed the stick before. Until such a stick a chaotic motion has the growth that it would have without. A start on
-/// the cam counts from its release on. Zero revolutions have zero growth.
+/// Minus infinity if the follower sticks to the cam, even if only once in thousands of revolutions: the deviation then vanishes, and the
+/// motion repeats its course after the stick. Before such a stick a chaotic motion has the same growth as without it. A start on the cam
+/// counts from its release. Zero revolutions have zero growth.
 #[doc(hidden)]
 pub fn growth(machine: &Machine, mut motion: Motion, revolutions: u64) -> Result<f64, SimulateError> {
     let mut record = Record::over(revolutions.max(1));
     record.take(machine, &mut motion, revolutions)?;
-    // One block of all revolutions, unless the follower sticks in it or there are none.
+    // One block of all revolutions, unless the follower sticks in it or there are no revolutions.
     Ok(match record.means.of_blocks.as_slice() {
         [mean] => *mean,
         _ => record.means.sum,
     })
 }
 
-/// Initial deviation, its angle in rad and its velocity over the angle in m/rad: any one has a part along the fastest growth.
+/// Initial deviation, its angle in rad and its velocity over the angle in m/rad: almost any direction has a part along the fastest growth.
 const ANY: Vector2<f64> = Vector2::new(0.6, 0.8);
 
-/// Data recorded from a run that does not repeat.
+/// Record of a run that does not repeat.
 #[derive(Clone, Debug)]
 #[doc(hidden)]
 pub struct Record {
@@ -46,12 +46,12 @@ pub struct Record {
 }
 
 impl Record {
-    /// An empty record, whose growth will be taken in blocks of `per_block` revolutions.
+    /// Returns an empty record, whose growth is computed in blocks of `per_block` revolutions.
     pub fn over(per_block: u64) -> Self {
         Self { means: Means::over(per_block), direction: ANY, met: ImpactTally::default(), revolutions: 0 }
     }
 
-    /// Continues the record for `revolutions`, or until the follower sticks, from `motion`, which must be where the record ended.
+    /// Continues the record for `revolutions`, or until the follower sticks; `motion` must be where the record ended.
     pub fn take(&mut self, machine: &Machine, motion: &mut Motion, revolutions: u64) -> Result<(), SimulateError> {
         let begun = motion.revolution;
         if revolutions > 0 && !is_released(machine, motion, revolutions)? {
@@ -62,7 +62,7 @@ impl Record {
                 let turns = left.min(self.means.per_block - self.means.seen);
                 let grown = self.carry(machine, motion, turns)?;
                 self.means.take(turns, grown);
-                // Nothing remains of a deviation.
+                // The deviation has vanished.
                 left = if grown == f64::NEG_INFINITY { 0 } else { left - turns };
             }
         }
@@ -70,7 +70,8 @@ impl Record {
         Ok(())
     }
 
-    /// Growth of the deviation over so many revolutions; minus infinity if the follower sticks, which ends the run after that revolution.
+    /// Growth of the deviation over this number of revolutions; minus infinity if the follower sticks, which ends the run after that
+    /// revolution.
     fn carry(&mut self, machine: &Machine, motion: &mut Motion, revolutions: u64) -> Result<f64, SimulateError> {
         let mut carried = Carried::new(machine, motion, self.direction, &mut self.met);
         let flow = machine.advance(motion, motion.after(revolutions), &mut carried)?;
@@ -94,7 +95,7 @@ impl Record {
     }
 
     /// Largest growth of a deviation from the beginning of any block to the end of any later one. A deviation that shrinks in the end may
-    /// have been as large as the motion on the way.
+    /// have been as large as the motion in between.
     pub fn most(&self) -> f64 {
         let grown = |(most, here): (f64, f64), block: &f64| {
             let here = (here + block * self.means.per_block as f64).max(0.0);
@@ -103,7 +104,7 @@ impl Record {
         self.means.of_blocks.iter().fold((0.0, 0.0), grown).0
     }
 
-    /// Growth of a deviation over the first half of the complete blocks, and over the second; a natural logarithm.
+    /// Growth of a deviation over the first and the second half of the complete blocks, as natural logarithms.
     pub fn halves(&self) -> [f64; 2] {
         let blocks = &self.means.of_blocks;
         let grown = |blocks: &[f64]| self.means.per_block as f64 * blocks.iter().sum::<f64>();
@@ -117,7 +118,7 @@ impl Record {
     }
 }
 
-/// Whether the follower is off the cam, or the cam releases it within so many revolutions; then `motion` is at the release.
+/// Whether the follower is off the cam, or the cam releases it within this number of revolutions; then `motion` is at the release.
 fn is_released(machine: &Machine, motion: &mut Motion, revolutions: u64) -> Result<bool, SimulateError> {
     if !motion.contact {
         return Ok(true);
@@ -129,19 +130,19 @@ fn is_released(machine: &Machine, motion: &mut Motion, revolutions: u64) -> Resu
     Ok(flow.is_break())
 }
 
-/// A small deviation on its way along a run, from impact to impact. It ends the run where the follower sticks.
+/// Small deviation that is carried along a run from impact to impact. It ends the run where the follower sticks.
 struct Carried<'a> {
     machine: &'a Machine,
     met: &'a mut ImpactTally,
     begun: Goal,
     /// Deviation of the position, and of the velocity over the angular velocity, after the last impact.
     deviation: Vector2<f64>,
-    /// Growth up to the last change of its scale, a natural logarithm.
+    /// Growth up to the last rescaling, a natural logarithm.
     grown: f64,
     /// Cam and follower right after the last impact.
     at: Goal,
     state: State,
-    /// Curvature of the lift at the impact that comes next, m/rad^2.
+    /// Curvature of the lift at the next impact, m/rad^2.
     curvature: f64,
 }
 
@@ -188,7 +189,7 @@ impl<'a> Carried<'a> {
     fn rescale(&mut self) {
         let size = self.deviation.norm();
         self.grown += elementary::ln(size);
-        // What is nothing stays so.
+        // A deviation of 0 stays 0.
         if size > 0.0 {
             self.deviation /= size;
         }
@@ -201,7 +202,7 @@ impl Observer for Carried<'_> {
     }
 
     fn event(&mut self, event: &Event) -> ControlFlow<()> {
-        /// Squared size beyond which the deviation is scaled, or below its inverse: far from the ends of a double's range.
+        /// Squared size above which, or below whose inverse, the deviation is rescaled; far from the limits of a double.
         const LARGE: f64 = 1e100;
         self.met.take(event);
         match event.kind {
@@ -248,7 +249,7 @@ impl Means {
         Self { per_block, of_blocks: Vec::new(), sum: 0.0, seen: 0 }
     }
 
-    /// Adds the growth over so many revolutions, which are no more than are left of the block.
+    /// Adds the growth over some revolutions, at most those left in the block.
     fn take(&mut self, revolutions: u64, grown: f64) {
         (self.sum, self.seen) = (self.sum + grown, self.seen + revolutions);
         if self.seen == self.per_block && self.sum > f64::NEG_INFINITY {

@@ -1,18 +1,18 @@
-//! Flies over many short segments at once, as in a cam given by a table.
+//! Flights over many short segments at once, as on a cam given by a table.
 //!
 //! A search for a contact on each of 360 segments costs more than all the flights of a revolution. If a lower bound of the flight stays
-//! above chords of the lift, segment after segment, one flight goes over all of them.
+//! above chords of the lift, segment after segment, one flight passes over all of them.
 
 use super::ahead::Leap;
 use super::{Machine, Motion};
 use crate::cam::Segment;
 
-/// Bound on the lift over one or several segments, as needed by a flight that clears them.
+/// Bound on the lift over one or several segments, used by flights that clear them.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Chord {
     /// End of the chord, rad.
     end: f64,
-    /// Lift at the end, m, and the slope of the straight line to it from the beginning of the chord, m/rad.
+    /// Lift at the end, m, and slope of the straight line from the beginning of the chord, m/rad.
     lift: f64,
     slope: f64,
     /// Largest height of the lift above that line, m.
@@ -21,17 +21,16 @@ pub(super) struct Chord {
     square: f64,
 }
 
-/// Chords of a cam with so many segments that going over them one by one is slow: from the start of each segment over 1, 4, 16 and 64
-/// segments.
+/// Chords of a cam with many segments: from the start of each segment over 1, 4, 16 and 64 segments.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Chords {
     from: Vec<[Chord; SIZES.len()]>,
 }
 
-/// Numbers of segments that chords go over.
+/// Numbers of segments that chords span.
 const SIZES: [usize; 4] = [1, 4, 16, 64];
 
-/// Consecutive segments without a chord so far.
+/// Consecutive segments that will get a chord.
 #[derive(Clone, Copy)]
 struct SegmentSpan {
     start: f64,
@@ -44,9 +43,9 @@ struct SegmentSpan {
 }
 
 impl Chords {
-    /// Builds the chords, or none for few segments. `kinks` says for each segment whether the slope falls or the lift steps at its start.
+    /// Builds the chords; none for few segments. `kinks` gives for each segment whether the slope falls or the lift steps at its start.
     pub fn of_many(segments: &[Segment], kinks: &[bool]) -> Self {
-        /// With fewer segments most flights pass only a handful.
+        /// Number of segments below which most flights pass only a handful.
         const MANY: usize = 64;
         if segments.len() < MANY {
             return Self::default();
@@ -61,7 +60,7 @@ impl Chords {
         let mut from = vec![[Chord::NONE; SIZES.len()]; segments.len()];
         let mut size = 1;
         for (level, longer) in SIZES.into_iter().enumerate() {
-            // Joins consecutive stretches of the level before; the last ones have no successors.
+            // Joins consecutive spans of the level before; the last ones have no successors.
             let joined = stretches.iter().enumerate().map_while(|(first, stretch)| {
                 let mut others = (first..first + longer).step_by(size).skip(1);
                 others.try_fold(*stretch, |all, next| Some(all.and(stretches.get(next)?, kinks[next])))
@@ -77,7 +76,7 @@ impl Chords {
 }
 
 impl Chord {
-    /// A chord that is never cleared.
+    /// Chord that is never cleared.
     const NONE: Self = Self { end: f64::INFINITY, lift: 0.0, slope: 0.0, rise: f64::INFINITY, square: 0.0 };
 }
 
@@ -98,14 +97,14 @@ impl SegmentSpan {
 }
 
 impl Machine {
-    /// Returns the segments that a flight off the cam certainly clears, from its present place to the end of one of them.
+    /// Returns the segments that a flight off the cam certainly clears, from its present position to the end of a segment.
     #[inline]
     pub(super) fn leap(&self, motion: &Motion) -> Option<Leap> {
         let chords = &self.terrain.chords.from;
         if chords.is_empty() || motion.gap == Some(0.0) {
             return None;
         }
-        // Nothing is gained where a contact is expected.
+        // A leap gains nothing where a contact is expected.
         let end = self.cam().segments()[motion.segment].end;
         if motion.expected.is_some_and(|angle| motion.cam_angle <= angle && angle < end) {
             return None;
@@ -122,14 +121,14 @@ impl Machine {
         let (mut segment, mut before, mut turned) = (motion.segment, state.position, 0.0);
         /// Index of the chord size that most leaps begin with.
         const FIRST: usize = 2;
-        // Longer chords as long as they are cleared, then shorter ones.
+        // Longer chords while they are cleared, then shorter ones.
         let (mut level, mut rises) = (FIRST, true);
         let mut lands = false;
         while let Some(chord) = chords.get(segment).map(|from| &from[level]) {
             let turn = chord.end - motion.cam_angle;
             let after = state.position + turn * (first + turn * (half + turn * (sixth - turn * last)));
             let gaps = [before - chord.lift + chord.slope * (turn - turned), after - chord.lift];
-            // By q'' + q''' x at most the bound is bent upwards, so that it is no further below its chord than that h^2/8.
+            // The bound bends upwards by at most q'' + q''' x, so that it is below its chord by at most h^2/8 times that.
             let bent = (2.0 * half + 6.0 * sixth.max(0.0) * turn).max(0.0);
             let least = rounding + chord.rise + bent * chord.square;
             if gaps[0] > least && gaps[1] > least {
@@ -139,7 +138,7 @@ impl Machine {
             } else if level > 0 {
                 (level, rises) = (level - 1, false);
             } else {
-                // The flight is above its bound by no more than |q''''| x^4/24 with either sign makes.
+                // The flight exceeds its bound at most by |q''''| x^4/24 with either sign.
                 lands = gaps[1] + 2.0 * last * turn.powi(4) < 0.0;
                 break;
             }

@@ -1,19 +1,19 @@
 //! The only event loop: fly to the first contact, resolve it, or follow the cam until the follower is released.
 //!
 //! A [`Machine`] is a cam, a follower over it and a speed; a [`Motion`] is the present state of both. [`Machine::advance`] takes a motion
-//! to a later angle and shows the events on the way to an [`Observer`]: impacts, the start of sticking, release. Time runs from the last
+//! to a later angle and reports the events on the way to an [`Observer`]: impacts, the start of sticking, release. Time runs from the last
 //! event and the cam angle stays in `[0, 2 pi)`, so neither a short hop nor the hundred-millionth revolution loses digits.
 //!
 //! | module | contents |
 //! |---|---|
-//! | `motion`, `event` | the state of cam and follower; the events on the way, and their observers |
+//! | `motion`, `event` | the state of cam and follower; the events of a run, and their observers |
 //! | `ahead` | the next event of a flight |
-//! | `terrain` | the cam as the loop sees it: seams, corners, bounds |
-//! | `window` | a stretch of flight over one segment: free, or its first contact |
-//! | `contact` | the first root of the gap in it, certified |
+//! | `terrain` | the cam with its seams, corners and bounds, as the loop uses it |
+//! | `window` | part of a flight over one segment: free, or with its first contact |
+//! | `contact` | the first root of the gap over a segment, certified |
 //! | `leap` | a flight over many short segments at once |
-//! | `repeat` | a settled motion's next impact, one turn on: checked, not searched |
-//! | `sticking` | infinitely many impacts, contact, release |
+//! | `repeat` | the next impact of a settled motion, one turn later: checked, not searched |
+//! | `sticking` | the end of chatter, contact, release |
 //! | `variation` | the propagation of a small deviation |
 //! | `growth` | the growth rate of a small deviation |
 
@@ -51,11 +51,11 @@ use terrain::CamBounds;
 pub use variation::Variation;
 use window::Window;
 
-/// Steps of one search for a contact or a release after which a run is given up. Examples: a follower that swings a million times over one
-/// segment, or that is pressed against it with a ten-millionth of the forces at work.
+/// Number of steps of one search for a contact or a release after which a run fails. Examples are a follower that swings a million times
+/// over one segment, or one pressed against it by a ten-millionth of the forces at work.
 const MOST_STEPS: u32 = 10_000_000;
 
-/// A cam, a follower over it, and the speed at which the cam turns.
+/// Cam, a follower over it, and the speed at which the cam turns.
 #[derive(Clone, Debug)]
 pub struct Machine {
     terrain: Arc<CamBounds>,
@@ -72,8 +72,8 @@ pub fn angular_velocity(rpm: f64) -> f64 {
 }
 
 impl Machine {
-    /// Events in one revolution after which a run is given up: a follower that chatters with restitution 0.99 makes thousands, one that
-    /// makes no progress makes endlessly many.
+    /// Number of events in one revolution after which a run fails. A follower that chatters with restitution 0.99 makes thousands of
+    /// events; one without progress makes infinitely many.
     const MOST_EVENTS: u32 = 1_000_000;
 
     /// Builds a machine that turns at `angular_velocity`, rad/s, positive.
@@ -94,18 +94,18 @@ impl Machine {
         Self { angular_velocity, turn: Turn::new(&self.flight, angular_velocity), ..self.clone() }
     }
 
-    /// Returns this follower at this speed over another cam.
+    /// Returns this machine with another cam.
     pub fn with_cam(&self, cam: Cam) -> Self {
         Self { terrain: Arc::new(CamBounds::new(cam)), ..self.clone() }
     }
 
-    /// Returns this machine with searches that are given up after so many steps.
+    /// Returns this machine with another limit on the steps of a search.
     #[doc(hidden)]
     pub fn giving_up_after(&self, most_steps: u32) -> Self {
         Self { most_steps, ..self.clone() }
     }
 
-    /// The lift profile.
+    /// Cam with its lift profile.
     pub fn cam(&self) -> &Cam {
         &self.terrain.cam
     }
@@ -115,12 +115,12 @@ impl Machine {
         &self.flight
     }
 
-    /// r, 0 to 1.
+    /// Coefficient of restitution r, 0 to 1.
     pub fn restitution(&self) -> f64 {
         self.restitution
     }
 
-    /// omega, rad/s.
+    /// Speed omega, rad/s.
     pub fn angular_velocity(&self) -> f64 {
         self.angular_velocity
     }
@@ -176,8 +176,8 @@ impl Machine {
         self.start(cam_angle, State { position: lift.value, velocity })
     }
 
-    /// Continues `motion` at its angle on this machine, which may turn at another speed. A follower that sticks remains sticking, unless
-    /// the cam releases it at this speed.
+    /// Continues `motion` at its angle on this machine, which may have another speed. A sticking follower remains sticking, unless the cam
+    /// releases it at this speed.
     pub fn resume(&self, motion: &Motion) -> Result<Motion, SimulateError> {
         match motion.contact {
             true => self.start_on_cam(motion.cam_angle, 0.0),
@@ -215,8 +215,8 @@ impl Machine {
 
     /// Advances `motion` until the cam reaches `goal`, or until the observer breaks right after an event.
     ///
-    /// An event in the last instant is left to the run that continues from there; a stick is shown with the impact that led to it. Stopping
-    /// a run anywhere changes no bit of its later course.
+    /// An event in the last instant belongs to the run that continues from there; a stick is reported with the impact that led to it.
+    /// Stopping a run anywhere changes no bit of its later course.
     pub fn advance(
         &self,
         motion: &mut Motion,
@@ -229,7 +229,7 @@ impl Machine {
         }
         let mut steps = 0_u32;
         loop {
-            // On the way in, and then from time to time.
+            // Checked at the start, and then every 64 steps.
             if steps.is_multiple_of(64) {
                 cancel::check();
             }
@@ -238,7 +238,7 @@ impl Machine {
                 stopped = None;
             }
             let left = motion.left(&goal);
-            // At the end of the last segment a corner is still to be passed.
+            // At the end of the last segment a corner still follows.
             if !(left > 0.0) && motion.cam_angle < TAU {
                 return Ok(ControlFlow::Continue(()));
             }
@@ -266,7 +266,7 @@ impl Machine {
         }
     }
 
-    /// Sets cam and follower to their state at `goal`, which is `left` rad on in the present stretch of flight or contact.
+    /// Sets cam and follower to their state at `goal`, `left` rad further in the present part of flight or contact.
     #[doc(hidden)]
     pub fn show_at(
         &self,
@@ -276,7 +276,7 @@ impl Machine {
         observer: &mut impl Observer,
     ) -> Result<(), SimulateError> {
         if motion.chatter == Chatter::Due {
-            // In the middle of infinitely many impacts: runs each of them up to here.
+            // Within chatter: simulates each of the infinitely many impacts up to the goal.
             let mut shown = motion.with_each_impact();
             let _ = self.advance(&mut shown, goal, &mut Unobserved)?;
             let Motion { revolution, cam_angle, state, contact, segment, gap, lift, .. } = shown;
@@ -302,14 +302,14 @@ impl Machine {
         self.above_cam(motion, || self.gap(motion))
     }
 
-    /// Shows an observer the part of a stretch of flight that it has not seen yet; the stretch starts at `motion` and takes `time`, s.
+    /// Reports the part of a flight that an observer has not seen yet; the flight starts at `motion` and takes `time`, s.
     #[inline(always)]
     fn flown(&self, motion: &mut Motion, time: f64, observer: &mut impl Observer) {
         let (state, seen) = motion.seen.take().unwrap_or((motion.state, 0.0));
         observer.flight(&self.flight, state, time - seen);
     }
 
-    /// Returns an error if a flight has passed through the cam. This is a fault of this program, and no run continues from it.
+    /// Returns an error if a flight has passed through the cam. This is a fault of this program, and no run continues after it.
     #[inline(always)]
     #[doc(hidden)]
     pub fn above_cam(&self, motion: &Motion, gap: impl Fn() -> f64) -> Result<(), SimulateError> {
@@ -325,7 +325,7 @@ impl Machine {
         Err(SimulateError::PassedThrough { depth: -gap, revolution, cam_angle, position, velocity, rpm })
     }
 
-    /// Counts an event; returns an error if one revolution has more events than a run may have.
+    /// Counts an event; returns an error if one revolution has more events than allowed.
     #[inline(always)]
     fn counted(&self, motion: &mut Motion) -> Result<(), SimulateError> {
         let Motion { revolution, cam_angle, events: (last, events), .. } = motion;
@@ -384,8 +384,8 @@ impl Machine {
         Ok(motion.state)
     }
 
-    /// Flies one stretch: over the top of the cam, or up to a contact or the end of a segment. The end of the stretch does not depend on
-    /// `left`, the rest of the run in rad. Its next event may be `known` from a run that was stopped in it.
+    /// Flies over the top of the cam, or up to a contact or the end of a segment. The end of this flight does not depend on `left`, the
+    /// rest of the run in rad. `known` is its next event if a run was stopped in it.
     #[inline(always)]
     fn fly<O: Observer>(
         &self,
@@ -429,7 +429,7 @@ impl Machine {
                 self.flown(motion, time, observer);
                 self.turn_over(motion, until);
                 (motion.state, motion.gap, motion.lift) = (state, None, None);
-                // A follower exactly at the top would count as above it once more.
+                // A follower exactly at the top would count as above it again.
                 if state.position <= self.terrain.top { Ok(Step::Moved) } else { Err(self.not_finite(motion)) }
             }
             Ahead::Never => Ok(Step::Reached { until, ahead: None }),
@@ -452,7 +452,7 @@ impl Machine {
                 }
                 Passage::Contact { time, velocity, lift } => {
                     self.flown(motion, time, observer);
-                    // A contact found at the segment's end belongs to it, whatever the last bit says.
+                    // A contact found at the segment's end belongs to this segment, regardless of rounding.
                     let last = self.cam().segments()[motion.segment].end;
                     motion.cam_angle = (motion.cam_angle + until).min(last);
                     Ok(self.strike(motion, velocity, &lift, after, observer))
@@ -463,7 +463,7 @@ impl Machine {
         }
     }
 
-    /// Finds the next event of a flight. It depends on `left`, the rest of the run in rad, only if each impact up to the goal is asked for.
+    /// Finds the next event of a flight. It depends on `left`, the rest of the run in rad, only if each impact of a chatter is simulated.
     #[inline(always)]
     fn ahead<O: Observer>(&self, motion: &mut Motion, left: f64, observer: &mut O) -> Ahead {
         let omega = self.angular_velocity;
@@ -500,7 +500,7 @@ impl Machine {
         Ahead::Over { end, passage }
     }
 
-    /// Error of a search that took all its steps from `angle`, rad, and ended `turn`, rad, further on.
+    /// Error of a search that used all its steps from `angle`, rad, and ended `turn`, rad, further on.
     fn no_progress(&self, revolution: u64, angle: f64, turn: f64) -> SimulateError {
         SimulateError::NoProgress { events: self.most_steps, revolution, cam_angle: angle + turn }
     }
@@ -509,7 +509,7 @@ impl Machine {
         SimulateError::NotFinite { revolution: motion.revolution, cam_angle: motion.cam_angle }
     }
 
-    /// Returns a bound of the jerk, m/s^3, if the follower has just left the cam and is certain to rise above all of it without another
+    /// Returns a bound on the jerk, m/s^3, if the follower has just left the cam and certainly rises above the whole cam without another
     /// contact.
     #[inline(always)]
     fn clears(&self, motion: &Motion, top: f64) -> Option<f64> {
@@ -518,12 +518,12 @@ impl Machine {
             return None;
         }
         let relative_velocity = velocity - motion.lift.map_or(f64::INFINITY, |lift| omega * lift.slope);
-        // While it rises q >= q0 + v0 t + (a0 - J t) t^2/2, with |q'''| <= J: this time is enough to be above the top,
+        // While it rises q >= q0 + v0 t + (a0 - J t) t^2/2, with |q'''| <= J. Within this time it must be above the top,
         let time = 1.25 * (top - position) / velocity;
         let jerk = self.flight.jerk_bound(motion.state);
         let slowest = self.flight.acceleration(motion.state) - jerk * time;
         let rises = position + time * (velocity + 0.5 * slowest * time) > top;
-        // and the gap, with g' >= u at the start and g'' >= a - w^2 max c'', stays open that long.
+        // and the gap, with g' >= u at the start and g'' >= a - w^2 max c'', must stay positive that long.
         let closing = slowest - omega * omega * self.terrain.largest_curvature;
         (rises && relative_velocity + 0.5 * closing * time > 0.0).then_some(jerk)
     }
@@ -541,7 +541,7 @@ impl Machine {
             }
         }
         motion.cam_angle = angle;
-        // Most flights come down on the segment of the flight before.
+        // Most flights land on the segment where the flight before landed.
         let here = &self.cam().segments()[motion.segment];
         if !(here.start <= angle && angle < here.end) {
             motion.segment = self.cam().segment_at(angle);
@@ -576,7 +576,7 @@ impl Machine {
         self.above_cam(motion, || motion.gap.unwrap_or(motion.state.position - entry.lift))
     }
 
-    /// Moves a motion that an observer has stopped at a whole turn to the start of the next turn, where no lift steps.
+    /// Moves a motion that an observer has stopped at a whole turn to the start of the next turn, where the lift has no step.
     fn wrap(&self, motion: &mut Motion, observer: &mut impl Observer) -> Result<(), SimulateError> {
         if motion.cam_angle < TAU {
             return Ok(());
@@ -584,7 +584,7 @@ impl Machine {
         self.enter_next(motion)?;
         let slope_jump = self.terrain.entries[motion.segment].slope_jump;
         if motion.contact && slope_jump != 0.0 {
-            // A release is shown with the event that led to it; a strike by the cam is found when the motion continues.
+            // A release is reported with the event that led to it; a strike by the cam is found when the motion continues.
             (motion.contact, motion.followed) = (false, 0);
             if slope_jump < 0.0 {
                 self.report(motion, EventKind::Release, observer);
@@ -612,8 +612,8 @@ impl Machine {
         self.leave(motion, lift, relative_rebound(self.restitution, velocity_before, cam_velocity));
         let impact = self.event(motion, EventKind::Impact, velocity_before, cam_velocity);
         observer.strikes(lift);
-        // A stick that follows from the impact belongs to it, also for an observer that has seen enough: the run continues from there as if
-        // it had not been split.
+        // A stick that follows from the impact belongs to it, also if the observer ends the run here: the run continues as if it had not
+        // been split.
         let enough = observer.event(&impact).is_break();
         let step = if motion.contact {
             self.report(motion, EventKind::Stick, observer)
@@ -637,7 +637,7 @@ impl Machine {
         }
     }
 
-    /// Reports a stick or release: an event without a change of velocity.
+    /// Reports a stick or a release: an event without a change of velocity.
     fn report(&self, motion: &Motion, kind: EventKind, observer: &mut impl Observer) -> Step {
         let velocity = motion.state.velocity;
         let event = self.event(motion, kind, velocity, velocity);
@@ -654,11 +654,11 @@ fn on_cam(lift: &Lift, omega: f64) -> State {
 enum Step {
     Moved,
     Event,
-    /// The run ends in a stretch of flight or contact that lasts until `until`, rad after its beginning.
+    /// End of the run in a flight or contact that lasts until `until`, rad after its beginning.
     Reached {
         until: f64,
         ahead: Option<Ahead>,
     },
-    /// The observer ended the run.
+    /// End of the run by the observer.
     Broken,
 }

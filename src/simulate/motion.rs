@@ -18,44 +18,43 @@ pub struct Motion {
     /// Whether the follower sticks to the cam.
     pub contact: bool,
     pub(super) segment: usize,
-    /// The gap, m, if it is known better than as a difference of two positions.
+    /// Gap, m, if it is stored more accurately than the difference of two positions.
     #[doc(hidden)]
     pub gap: Option<f64>,
-    /// The lift under the follower, if it is known.
+    /// Lift under the follower, if it was computed.
     pub(super) lift: Option<Lift>,
-    /// Angle, rad, at which the next impact is looked for first: the last impact if the one before it was close by, or a contact that a
-    /// leap found.
+    /// Angle, rad, where the next impact is searched first: the last impact if the one before it was close, or a contact found by a leap.
     pub(super) expected: Option<f64>,
-    /// Whether the last two impacts were at the same place to within the step that `again` takes.
+    /// Whether the last two impacts were at the same angle, to within the step that `again` takes.
     pub(super) settled: bool,
     pub(super) last_impact: f64,
     pub(super) known: LastLift,
     pub(super) chatter: Chatter,
-    /// Stretch from which the run continues, if it was stopped between two events.
+    /// Part of the motion from which the run continues, if it was stopped between two events.
     pub(super) stopped: Option<Stopped>,
-    /// State up to which an observer has seen the present stretch of flight, and the time of that part, s.
+    /// State up to which an observer has seen the present flight, and the duration of that part, s.
     pub(super) seen: Option<(State, f64)>,
-    /// Revolution of the last event, and the events in it so far, however often the run was split.
+    /// Revolution of the last event, and the number of events in it so far, however often the run was split.
     pub(super) events: (u64, u32),
-    /// Segments of the cam that the follower has followed from end to end since it has been on it, up to one more than there are.
+    /// Number of segments that the follower has followed from end to end in this contact, up to one more than the cam has.
     pub(super) followed: usize,
 }
 
-/// When the sum of infinitely many impacts is taken.
+/// Time at which the sum of infinitely many impacts is used.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Chatter {
-    /// Once it is known, whether it ends before the run does or not.
+    /// Sum that is used once it is accurate, whether the chatter ends before the run or after it.
     Anywhere,
-    /// In the next step.
+    /// Sum that is used in the next step.
     Due,
-    /// Only if it ends before the run does; otherwise each impact up to the goal is looked for, and none beyond.
+    /// Sum that is used only if the chatter ends before the run; otherwise each impact up to the goal is simulated, and none beyond.
     WithinRun,
 }
 
-/// The stretch of flight or contact in which a run was stopped.
+/// Flight or contact in which a run was stopped.
 ///
-/// A stopped motion shows cam and follower at the stop, and continues from the beginning of the stretch. So a run has the same events, bit
-/// for bit, wherever it is stopped.
+/// A stopped motion shows cam and follower at the stop, and continues from the beginning of that flight or contact. So a run has the same
+/// events, bit for bit, wherever it is stopped.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Stopped {
     turns: u64,
@@ -66,16 +65,16 @@ pub(super) struct Stopped {
     lift: Option<Lift>,
     contact: bool,
     chatter: Chatter,
-    /// Angle from the beginning of the stretch to the next event or segment, rad.
+    /// Angle from the beginning of the part to the next event or segment, rad.
     until: f64,
-    /// The next event, if the stretch is a flight.
+    /// Next event, if the part is a flight.
     ahead: Option<Ahead>,
-    /// Angle, state and contact that the motion shows.
+    /// Angle, state and contact shown at the stop.
     shown: (f64, State, bool),
 }
 
 impl Stopped {
-    /// The stretch that begins at `motion` and lasts until `until`, rad.
+    /// Part that begins at `motion` and lasts until `until`, rad.
     #[inline(always)]
     pub fn of(motion: &Motion, (until, ahead): (f64, Option<Ahead>)) -> Self {
         let Motion { revolution, cam_angle, state, segment, gap, lift, contact, chatter, .. } = *motion;
@@ -83,7 +82,7 @@ impl Stopped {
         Self { turns: revolution, cam_angle, state, segment, gap, lift, contact, chatter, until, ahead, shown }
     }
 
-    /// Marks the stretch as stopped where `motion` shows it.
+    /// Records that the run was stopped in this part where `motion` shows it.
     #[inline(always)]
     pub fn shown_by(mut self, motion: &Motion) -> Self {
         self.turns = motion.revolution - self.turns;
@@ -91,8 +90,8 @@ impl Stopped {
         self
     }
 
-    /// Takes `motion` back to the beginning of the stretch, and returns the length of the stretch and the event at its end. Does nothing to
-    /// a motion that was changed since.
+    /// Returns `motion` to the beginning of the part; gives the length of the part and the event at its end. A motion that was changed
+    /// since the stop is left as it is.
     pub fn undo(self, motion: &mut Motion, omega: f64) -> Option<(f64, Option<Ahead>)> {
         let Self { cam_angle, state, segment, gap, lift, contact, chatter, until, ahead, shown, .. } = self;
         let revolution = motion.revolution.checked_sub(self.turns)?;
@@ -108,7 +107,7 @@ impl Stopped {
     }
 }
 
-/// An angle, rad, and a segment's lift there, evaluated directly: the impacts of a settled motion are close to it.
+/// Lift of a segment at an angle, rad, evaluated directly: the impacts of a settled motion are close to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct LastLift {
     pub segment: usize,
@@ -116,7 +115,7 @@ pub(super) struct LastLift {
     pub lift: Lift,
 }
 
-/// The goal of a run.
+/// Goal of a run.
 ///
 /// Later goals are greater.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
@@ -128,30 +127,30 @@ pub struct Goal {
 }
 
 impl Goal {
-    /// The goal after the cam has turned by `angle` from angle 0, rad, 0 or more.
+    /// Goal after the cam has turned by `angle` from angle 0, rad, 0 or more.
     pub(crate) fn turned(angle: f64) -> Self {
         Self { revolution: (angle / TAU) as u64, cam_angle: angle % TAU }
     }
 }
 
 impl Motion {
-    /// Runs each impact up to the goal of a run, also if infinitely many of them end soon after it. Such a run depends on its goal to
-    /// rounding, and hops lower than the rounding of a gap are resolved better near it.
+    /// Returns a motion that simulates each impact up to the goal of a run, even if a chatter ends soon after the goal. Such a run depends
+    /// on its goal up to rounding. Near the goal it resolves hops lower than the rounding of a gap better.
     pub(crate) fn with_each_impact(self) -> Self {
         Self { chatter: Chatter::WithinRun, ..self }
     }
 
-    /// The goal `revolutions` further on, at the present angle of the cam.
+    /// Goal `revolutions` later, at the present angle of the cam.
     pub fn after(&self, revolutions: u64) -> Goal {
         Goal { revolution: self.revolution.saturating_add(revolutions), cam_angle: self.cam_angle }
     }
 
-    /// The next passage of `cam_angle`, rad, in `[0, 2 pi)`; a whole turn if the cam is there now.
+    /// Next passage of `cam_angle`, rad, in `[0, 2 pi)`; a whole turn later if the cam is there now.
     pub fn next(&self, cam_angle: f64) -> Goal {
         Goal { revolution: self.revolution + u64::from(cam_angle <= self.cam_angle), cam_angle }
     }
 
-    /// Angle left to turn, rad; not above 0 when the goal is passed.
+    /// Remaining angle, rad; not above 0 after the goal.
     pub(super) fn left(&self, goal: &Goal) -> f64 {
         let turns = goal.revolution as f64 - self.revolution as f64;
         let within = goal.cam_angle - self.cam_angle;

@@ -1,6 +1,6 @@
-//! Finds the next impact of a settled motion: one turn later, at the same place but for the last digits.
+//! Next impact of a settled motion: one turn later, at the same place up to the last digits.
 //!
-//! A flight of one turn is the same linear map each time, and the cam is back in its place. So position and velocity one turn later cost a
+//! A flight of one turn is the same linear map each time, and the cam is at the same angle. So position and velocity one turn later cost a
 //! few products. The next impact is found by checking that guess, without the general search.
 
 use std::f64::consts::{PI, TAU};
@@ -16,7 +16,7 @@ use crate::tolerance;
 pub(super) struct Turn {
     time: f64,
     response: Response,
-    /// Whether a flight that starts upwards has only one turning point in that time, its highest point.
+    /// Whether a flight that starts upwards has only one turning point in a turn, its highest point.
     rises_once: bool,
 }
 
@@ -30,8 +30,8 @@ impl Turn {
 }
 
 impl Machine {
-    /// Returns the next impact of a motion that has just left the cam and is certain to rise above its top. Returns none unless the impact
-    /// is one turn on, to within the last Taylor step, and certainly the first.
+    /// Returns the next impact of a motion that has just left the cam and certainly rises above its top. `None` unless the impact is one
+    /// turn later, to within the last Taylor step, and certainly the first.
     #[inline(always)]
     pub(super) fn again(&self, motion: &mut Motion, jerk: f64) -> Option<Again> {
         let Turn { time, response, rises_once } = self.turn;
@@ -47,8 +47,8 @@ impl Machine {
         };
         let rate = end.velocity - omega * lift.slope;
         let acceleration = self.flight.acceleration(end);
-        // Halley's step from one turn on, -(g/g')/(1 - g g''/(2 g'^2)), with both fractions times g'^2; where the gap hardly
-        // changes it would be short however far the contact is.
+        // Halley's step from one turn later, -(g/g')/(1 - g g''/(2 g'^2)), with both fractions times g'^2. If the gap hardly changes, the
+        // step would be short however far the contact is.
         let square = rate * rate;
         let bend = 0.5 * gap * (acceleration - omega * omega * lift.curvature);
         let step = -gap * rate / (square - bend);
@@ -60,19 +60,19 @@ impl Machine {
         {
             return None;
         }
-        // It comes from above the top: this long before, it was there,
+        // The flight descends from above the top: it was there at this time before,
         let segment = &self.cam().segments()[motion.segment];
         let before = 1.25 * (self.terrain.top - end.position) / -end.velocity;
         let steepest = acceleration.abs() + jerk * before;
         let from_top = end.position + before * (-end.velocity - 0.5 * steepest * before) > self.terrain.top;
-        // and since then, over one segment, the gap only shrank. Before, one highest point lies between two above the top.
+        // and since then the gap only shrank over one segment. Earlier, the only highest point lies between two points above the top.
         let shrinks = end.velocity + steepest * before < omega * segment.bounds.slope[0];
         let cam_angle = motion.cam_angle + shift;
         let inside = cam_angle - omega * before >= segment.start && cam_angle < segment.end;
         if !(from_top && shrinks && inside) {
             return None;
         }
-        // Near a place of known lift, its Taylor sum is as accurate as an evaluation.
+        // Near an angle with a stored lift, its Taylor sum is as accurate as an evaluation.
         let is_near = (cam_angle - motion.known.angle).abs() <= tolerance::LAST_TURN.value;
         if !(is_near && motion.known.segment == motion.segment) {
             motion.known = LastLift { segment: motion.segment, angle: cam_angle, lift: segment.law.lift(cam_angle) };

@@ -1,4 +1,4 @@
-//! Follows the cam: the end of infinitely many impacts, and release.
+//! Sticking: the end of infinitely many impacts, motion on the cam, and release.
 
 use std::f64::consts::TAU;
 
@@ -9,10 +9,10 @@ use crate::cam::{Lift, Segment};
 use crate::flight::State;
 use crate::tolerance;
 
-/// Time, s, in which infinitely many impacts end, and its relative uncertainty.
+/// Returns the duration of infinitely many impacts, s, and its relative uncertainty.
 ///
 /// After an impact with relative velocity u and restitution r, let the gap of a follower that moves with the cam accelerate at
-/// `g'' = -A + J t` (damping: `zeta`). Then the hops are geometric up to the second order. With `y = u/A`, `k = J/A - zeta`: a hop takes
+/// `g'' = -A + J t` (damping: `zeta`). Then the hops are geometric up to the second order. With `y = u/A` and `k = J/A - zeta`, a hop takes
 /// `2y (1 + 2ky/3)` and leaves `y' = r y (1 + 4ky/3)`, so their sum is
 ///
 /// ```text
@@ -34,7 +34,7 @@ impl Machine {
         self.flight.acceleration(on_cam(lift, omega)) - omega * omega * lift.curvature
     }
 
-    /// Whether the cam releases a follower that moves with it: the acceleration of the gap is above 0 by more than rounding. A follower
+    /// Whether the cam releases a follower that moves with it: the acceleration of the gap exceeds 0 by more than rounding. A follower
     /// without any force stays.
     #[inline]
     pub(super) fn lets_go(&self, lift: &Lift) -> bool {
@@ -51,18 +51,18 @@ impl Machine {
             + w * lift.value.abs()
             + 2.0 * zeta * omega * lift.slope.abs()
             + omega * omega * lift.curvature.abs()
-            // A spring that carries the weight cancels it.
+            // A spring that carries the weight cancels gravity.
             + self.flight.gravity().abs();
         (rate, tolerance::GAP_ROUNDING.value * terms)
     }
 
-    /// After an impact, moves to the end of infinitely many further ones, if it is so near that two terms of their sum are all of it.
+    /// Jumps after an impact to the end of infinitely many further ones, if it is so near that two terms of their sum suffice.
     pub(super) fn end_chatter(&self, motion: &mut Motion, left: f64, observer: &mut impl Observer) -> Step {
         let segment = &self.cam().segments()[motion.segment];
         let lift = motion.lift.unwrap_or_else(|| segment.law.lift(motion.cam_angle));
         let pressing = -self.lifting(&lift);
         let relative_velocity = motion.state.velocity - self.angular_velocity * lift.slope;
-        // The cheap test first: most impacts are far from the last one, and without pressing force or loss all are.
+        // The cheap test first: most impacts are far from a chatter's end; without pressing force or loss all are.
         let first = 2.0 * relative_velocity * self.angular_velocity;
         if first > tolerance::CHATTER_TURN.value * pressing * (1.0 - self.restitution) {
             return Step::Event;
@@ -98,7 +98,7 @@ impl Machine {
     /// Moves a follower that never leaves the cam to the start of the goal's segment, over any number of turns: a whole turn on the cam
     /// without an event repeats to the last bit. Returns whether it moved.
     pub(super) fn stays(&self, motion: &mut Motion, goal: &Goal) -> bool {
-        // The first may have been followed in part.
+        // The first segment may have been followed only in part.
         if motion.followed <= self.cam().segments().len() {
             return false;
         }
@@ -113,7 +113,7 @@ impl Machine {
         true
     }
 
-    /// Follows one stretch on the cam: to a release, to the end of the segment, or to the end of the run.
+    /// Follows the cam to a release, to the end of the segment, or to the end of the run.
     pub(super) fn follow(
         &self,
         motion: &mut Motion,
@@ -151,7 +151,7 @@ impl Machine {
         }
         if entry.slope_jump < 0.0 || entry.lift_step < 0.0 {
             let gap = motion.gap;
-            // The difference between the two sides of a seam must not become a gap.
+            // The difference between the two lifts at a seam must not become a gap.
             let position = if entry.lift_step == 0.0 { lift.value } else { before.position };
             let step = self.let_go(motion, &lift, State { position, ..before }, observer);
             motion.gap = gap;
@@ -173,8 +173,8 @@ impl Machine {
         self.report(motion, EventKind::Release, observer)
     }
 
-    /// Stretches of cam angle, rad, on which a follower can rest: from where it begins to be pressed against the cam to where the cam
-    /// releases or strikes it. A stretch through angle 0 begins below 0; a whole turn is the only stretch.
+    /// Ranges of cam angle, rad, on which a follower can rest: from the angle where the cam begins to press it to the angle where the cam
+    /// releases or strikes it. A range through angle 0 begins below 0. If the follower can rest everywhere, the only range is a whole turn.
     pub fn rests(&self) -> Result<Vec<[f64; 2]>, SimulateError> {
         let mut rests: Vec<[f64; 2]> = Vec::new();
         let mut from = None;
@@ -212,12 +212,12 @@ impl Machine {
         Ok(rests)
     }
 
-    /// Returns the turn, rad, after which [`Machine::lifting`] has the sign of `sign`, 1 or -1, within `span`, rad, from an angle of a
-    /// segment; `None` if it does not get that sign. With 1, this is the release. The error is the turn at which the search was given up.
+    /// Returns the turn, rad, within `span` from an angle of a segment, after which [`Machine::lifting`] has the sign of `sign`, 1 or -1;
+    /// `None` if it never has. With 1, this is the release. The error is the turn at which the search failed.
     ///
-    /// With `|d lifting/dt| <= L` over a stretch, `lifting` stays below 0 for `-lifting/L`, so marching by this time never passes a
-    /// release. As the stretches shrink, L becomes the slope itself. The slope's terms may cancel all round, if cam and spring swing alike.
-    /// Then L is the slope here, plus the largest change by its own derivative over the stretch,
+    /// With `|d lifting/dt| <= L` over a range, `lifting` stays below 0 for `-lifting/L`, so a step of this time never passes a release. As
+    /// the steps shrink, L tends to the slope itself. The slope's terms may cancel everywhere, if cam and spring swing alike. Then L is the
+    /// present slope plus the largest change by its derivative over the range,
     ///
     /// ```text
     /// |d^2 lifting/dt^2| <= 2 zeta w^3 |c'''| + w0^2 w^2 |c''| + w^4 |c''''|
@@ -226,11 +226,11 @@ impl Machine {
         let omega = self.angular_velocity;
         let (w, zeta) = (self.flight.omega0_squared(), self.flight.zeta());
         let bounds = &segment.bounds;
-        // On a dwell the force is the same as at its start.
+        // On a dwell the force is constant.
         if bounds.slope == [0.0; 2] {
             return Ok(None);
         }
-        // The whole segment at once: each term at its largest.
+        // Bound over the whole segment: each term at its largest.
         let end = usize::from(sign < 0.0);
         let forces = bounds.lift.map(|lift| sign * self.flight.force(lift));
         let largest = forces[0].max(forces[1])
@@ -258,7 +258,7 @@ impl Machine {
                 let sum = 2.0 * zeta * omega * omega * curvature + w * omega * slope + omega.powi(3) * third;
                 (sum, third, curvature, to)
             };
-            // |d lifting/dt| over a reach: its terms at their largest, or from here by the second derivative where less.
+            // |d lifting/dt| over a reach: its terms at their largest, or from the start by the second derivative if that is less.
             let fastest = |reach: f64| {
                 let (sum, third, curvature, to) = steepest(reach);
                 let fourth = segment.law.fourth_bound(from, to);
@@ -270,7 +270,7 @@ impl Machine {
                 return Ok(Some(turned));
             }
             if lifting > -rounding {
-                // Where rounding decides, look further ahead each time: it may only touch 0, or stay there.
+                // Where rounding decides, each step doubles: the acceleration may only touch 0, or stay there.
                 hover = if hover > 0.0 { 2.0 * hover } else { 2.0 * rounding / steepest(0.0).0 };
                 time += hover.max(tolerance::ULP.value * end);
                 continue;
@@ -284,10 +284,10 @@ impl Machine {
                 if free >= 0.5 * reach {
                     break;
                 }
-                // Not at once: if the bound itself grows with the reach, far less would be found free than is.
+                // Reduced step by step: if the bound itself grows with the reach, one step would find far less than is free.
                 reach = (2.0 * free).max(0.25 * reach);
             }
-            // Tried first the next time: the free reach here suggests the reach there.
+            // Tried first at the next step: the free reach here suggests the next one.
             widest = 4.0 * reach;
             time += safe.max(tolerance::ULP.value * end);
         }

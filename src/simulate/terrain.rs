@@ -1,10 +1,10 @@
-//! The cam as the event loop sees it: changes from one segment to the next, and bounds over the whole cam.
+//! Cam as used by the event loop: changes from one segment to the next, and bounds over the whole cam.
 
 use super::leap::Chords;
 use crate::cam::{Cam, Segment};
 use crate::tolerance;
 
-/// A cam, with quantities used at every step that are computed once.
+/// Cam with quantities used at every step, computed once.
 #[derive(Clone, Debug)]
 pub(super) struct CamBounds {
     pub cam: Cam,
@@ -12,22 +12,22 @@ pub(super) struct CamBounds {
     pub entries: Vec<Entry>,
     /// Upper bound of the lift, m.
     pub top: f64,
-    /// Upper bound of the absolute lift, m: the scale for the rounding of any lift, also where the lift passes 0.
+    /// Upper bound of the absolute lift, m: the scale for the rounding of any lift, even where the lift passes 0.
     pub size: f64,
     /// Upper bound of `|dc/dtheta|`, m/rad: the scale for the rounding of slopes.
     pub steepest: f64,
     /// Upper bound of `d^2c/dtheta^2`, m/rad^2; infinite if a velocity jumps upwards.
     pub largest_curvature: f64,
-    /// Chords to be cleared by a flight over many short segments; none for a cam with few segments.
+    /// Chords that flights over many short segments must clear; none for a cam with few segments.
     pub chords: Chords,
 }
 
-/// Changes from the end of the segment before to the start of this one; 0 within rounding.
+/// Changes from the end of the segment before to the start of this one; 0 if within rounding.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Entry {
-    /// Step of the lift, m. Only a continued law leaves one, at its far end.
+    /// Step of the lift, m; not 0 only at the far end of a continued law.
     pub lift_step: f64,
-    /// Lift before the start, m, if the two lifts differ by more than rounding but count as the same. This happens for a cam whose numbers
+    /// Lift before the start, m, if the two lifts differ by more than rounding but count as equal. This happens for a cam whose numbers
     /// were typed to ten digits, or whose lift is 0 there.
     pub seam: Option<f64>,
     /// Lift at the start of this segment, m.
@@ -56,21 +56,21 @@ impl CamBounds {
     }
 }
 
-/// Changes between two segments of a cam, whose largest slope is `steepest`, m/rad. The lift changes only at the end of a law that is
+/// Changes between two segments of a cam, whose largest slope is `steepest`, m/rad. The lift has a step only at the end of a law that is
 /// continued past its segment.
 fn entry(before: &Segment, after: &Segment, may_step: bool, steepest: f64) -> Entry {
     let (minus, plus) = (before.law.lift(before.end), after.law.lift(after.start));
     let jump = |minus: f64, plus: f64, rounding: f64| {
         if (plus - minus).abs() <= rounding { 0.0 } else { plus - minus }
     };
-    // Where segments meet, two evaluations of one lift differ by rounding, which a follower that has just left the cam
-    // there must not be measured by.
+    // Two evaluations of one lift where segments meet differ by rounding. This difference must not change the gap of a follower that has
+    // just left the cam there.
     let lift_rounding = tolerance::GAP_ROUNDING.value * (minus.value.abs() + plus.value.abs());
     let step = jump(minus.value, plus.value, lift_rounding);
     let scale = [minus, plus]
         .iter()
         .fold(0.0_f64, |scale, lift| scale.max(lift.value.abs()).max(lift.slope.abs()).max(lift.curvature.abs()));
-    // On a dwell at 0 a spline may end in numbers that are next to nothing, and so is their scale.
+    // On a dwell at 0 the numbers of a spline may be nearly 0, and so is their scale.
     let slope_rounding = (tolerance::CAM_JUMP.value * scale).max(tolerance::ULP.value * steepest);
     Entry {
         lift_step: if may_step { step } else { 0.0 },

@@ -9,20 +9,20 @@ use super::{Event, EventKind, Machine, Motion, Observer};
 use crate::flight::{Flight, State};
 use crate::impact::ImpactRates;
 
-/// An [`Observer`] that multiplies propagators of flights and saltation matrices of impacts.
+/// [`Observer`] that multiplies propagators of flights and saltation matrices of impacts.
 ///
-/// Sticking erases the deviation: once the follower stays on the cam, its state depends on the cam alone, and the matrix is 0.
+/// Sticking erases the deviation: a sticking follower's state depends on the cam alone, so the matrix is 0.
 #[derive(Clone, Copy, Debug)]
 #[doc(hidden)]
 pub struct Variation<'a> {
     machine: &'a Machine,
     matrix: Matrix2<f64>,
-    /// Time flown since `matrix` was set, s: a flight over several segments counts as one.
+    /// Time flown since `matrix` was set, s; a flight over several segments counts as one.
     flown: f64,
 }
 
 impl<'a> Variation<'a> {
-    /// Starts from the identity at the start of `motion`, or from 0 if the follower sticks to the cam.
+    /// Starts with the identity at the start of `motion`, or with 0 if the follower sticks to the cam.
     pub fn new(machine: &'a Machine, motion: &Motion) -> Self {
         let matrix = if motion.contact { Matrix2::zeros() } else { Matrix2::identity() };
         Self { machine, matrix, flown: 0.0 }

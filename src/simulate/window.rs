@@ -1,9 +1,9 @@
-//! Finds the first contact, if there is one, in a stretch of flight over one segment of the cam.
+//! Search for the first contact in a flight over one segment of the cam.
 //!
 //! Four shapes of the gap g need no search. A gap that only shrinks (`g' < 0`) or is bent downwards (`g'' < 0`) meets the cam at most once,
 //! so that any root is the first. A gap that is bent upwards (`g'' > 0`) meets the cam at most once while it shrinks, and that root is the
-//! first. A gap that grows at first and has a positive cubic lower bound has no contact. The shape of a window follows from the gap at its
-//! start and from bounds of the flight's jerk and of the segment. Windows of any other shape go to [`super::contact`], which marches.
+//! first. A gap that grows at first and has a positive cubic lower bound has no contact. The shape follows from the gap at the start and
+//! from bounds of the flight's jerk and of the segment. Windows of any other shape are searched step by step by [`super::contact`].
 
 use std::cell::Cell;
 
@@ -14,7 +14,7 @@ use crate::cam::{Lift, Segment};
 use crate::flight::{Flight, Flown, State};
 use crate::tolerance;
 
-/// Counter of a window's work: a cell, or none.
+/// Counter of a window's work; `()` counts nothing.
 pub(super) trait Tally: Copy {
     fn add(self, gaps: u64, steps: u64, marches: u64);
 }
@@ -32,7 +32,7 @@ impl Tally for &Cell<Work> {
     }
 }
 
-/// A flight over a segment, from its present angle on.
+/// Flight over a segment, from its present angle on.
 pub(super) struct Window<'a, T> {
     tally: T,
     machine: &'a Machine,
@@ -41,9 +41,9 @@ pub(super) struct Window<'a, T> {
     omega: f64,
     start: State,
     angle: f64,
-    /// Gap at the start, m, if it is known better than as a difference of two positions.
+    /// Gap at the start, m, if it is stored more accurately than the difference of two positions.
     gap: Option<f64>,
-    /// Lift at the start, if it is known.
+    /// Lift at the start, if it was computed.
     lift: Option<Lift>,
 }
 
@@ -92,7 +92,8 @@ impl<'a, T: Tally> Window<'a, T> {
             return Passage::NotFinite;
         }
         let third = jerk + self.omega.powi(3) * bounds.third;
-        // g >= g0 + g' t + g'' t^2/2 - |g'''| t^3/6, which from g' >= 0 rises and then falls: open at both ends is open.
+        // g >= g0 + g' t + g'' t^2/2 - |g'''| t^3/6, which from g' >= 0 rises and then falls: positive at both ends means positive between
+        // them.
         let least = now.value + end * (now.rate + end * (0.5 * now.curvature - end * third / 6.0));
         if now.value >= 0.0 && now.rate >= 0.0 && least > 0.0 {
             return self.free(end);
@@ -105,7 +106,7 @@ impl<'a, T: Tally> Window<'a, T> {
             let reach = end.min(2.0 * back);
             self.forget_gap(now.rate.abs());
             if now.curvature + third * reach < 0.0 {
-                // From the cam, g >= u t - (|g''| + third reach) t^2/2: the contact left behind is not found again.
+                // From the cam, g >= u t - (|g''| + third reach) t^2/2: the contact just left is not found again.
                 let low = if now.value == 0.0 { 2.0 * now.rate / (third * reach - now.curvature) } else { 0.0 };
                 return self.only_contact(low.min(reach), reach, self.bent(&now, back), end);
             }
@@ -115,15 +116,15 @@ impl<'a, T: Tally> Window<'a, T> {
         if least > 0.0 && now.value > 0.0 { self.hollow(now, end, least) } else { self.march(end) }
     }
 
-    /// Passes a window whose gap is open at the start and bent upwards by at least `least`, m/s^2. While such a gap shrinks it has shrunk
-    /// from the start, so a point with an open gap has no contact before it. Its first contact is where it still shrinks. A gap that only
-    /// touches is marched.
+    /// Passes a window whose gap is positive at the start and bent upwards by at least `least`, m/s^2. While such a gap shrinks, it has
+    /// shrunk since the start, so that no contact precedes a point with a positive gap. Its first contact is where it still shrinks. A gap
+    /// that only touches 0 is searched step by step.
     fn hollow(&self, mut now: Seen, end: f64, least: f64) -> Passage {
         let mut time = 0.0;
-        // Steps triple the digits.
+        // Each step triples the number of digits.
         for _ in 0..8 {
             let left = end - time;
-            // g + g' t + g'' t^2/2 with the least g'' lies below: over what is left it is lowest at the end or where it turns.
+            // g + g' t + g'' t^2/2 with the least g'' is a lower bound: over the rest it is lowest at the end or where it turns.
             let lowest = left.min(-now.rate / least);
             let depth = now.value + lowest * (now.rate + 0.5 * least * lowest);
             if !(now.rate < 0.0) {
@@ -135,7 +136,7 @@ impl<'a, T: Tally> Window<'a, T> {
             self.tally.add(0, 1, 0);
             let newton = -now.value / now.rate;
             let bend = 0.5 * newton * now.curvature / now.rate;
-            // Far from touching, where -g g''/(2 g'^2) is -1/4.
+            // Far from a tangency, where -g g''/(2 g'^2) is -1/4.
             if !(bend.abs() <= 0.125) {
                 if now.value < 0.0 {
                     break;
@@ -157,8 +158,8 @@ impl<'a, T: Tally> Window<'a, T> {
         self.march(end)
     }
 
-    /// Drops the separate gap if the gap changes so fast that the last bit of a position matters less than that of an angle. The difference
-    /// of two positions is then as accurate, and cheaper.
+    /// Drops the separate gap if the gap changes so fast that the last bit of a position matters less than the last bit of an angle. Then
+    /// the difference of two positions is as accurate, and cheaper.
     fn forget_gap(&mut self, rate: f64) {
         if rate > self.omega * self.start.position.abs() {
             self.gap = None;
@@ -181,7 +182,7 @@ impl<'a, T: Tally> Window<'a, T> {
         let mut time = if low < first && first < reach { first } else { low };
         const LAST_TURN: f64 = tolerance::LAST_TURN.value;
         let mut known = Flown::not_yet(self.start);
-        // Each halving of the bracket gains a bit.
+        // Each halving of the bracket gains one bit.
         for _ in 0..128 {
             let now = if time == 0.0 { self.at_start() } else { self.near(&known, time) };
             known = now.flown;
@@ -194,7 +195,7 @@ impl<'a, T: Tally> Window<'a, T> {
             let bend = 0.5 * newton * now.curvature / now.rate;
             // If the gap hardly changes, Halley's step is short however far the contact is.
             let step = if bend.abs() <= 0.5 { newton / (1.0 + bend) } else { newton };
-            // At the start no time has passed to compare with; even Newton's step errs only by this bend of it.
+            // At the start no time has passed as a scale; the relative error of even Newton's step is only this bend.
             let is_at_once =
                 time == 0.0 && (self.omega * step).abs() <= LAST_TURN * LAST_TURN && bend.abs() <= LAST_TURN;
             let is_last = is_at_once || self.is_small(step, time, &now.lift);
@@ -203,8 +204,8 @@ impl<'a, T: Tally> Window<'a, T> {
             }
             if now.value > 0.0 {
                 if time >= reach {
-                    // Short of the window's end, twice the root b of a parabola bent down by A: g <= -A b^2 + third (2b)^3/6 < -A b^2/3.
-                    // Only by rounding is the gap still open there.
+                    // Before the window's end, at twice the root b of a parabola bent down by A: g <= -A b^2 + third (2b)^3/6 < -A b^2/3.
+                    // Only rounding can make the gap positive there.
                     let (state, gap) = (now.flown.state, self.gap.map(|_| now.value));
                     return if reach < end { self.march(end) } else { Passage::Free { state, gap } };
                 }
@@ -213,7 +214,7 @@ impl<'a, T: Tally> Window<'a, T> {
                 (high, high_is_closed) = (time, true);
             }
             let next = time + step;
-            // Where the gap opens the step leads out of the bracket.
+            // Where the gap grows, the step leads out of the bracket.
             time = if low < next && next < high {
                 next
             } else if !high_is_closed {
@@ -228,7 +229,7 @@ impl<'a, T: Tally> Window<'a, T> {
         if high_is_closed { self.met(high, 0.0, &self.at(high)) } else { self.march(end) }
     }
 
-    /// Whether the last step is so small that Taylor sums carry follower and cam through it.
+    /// Whether the last step is so small that Taylor sums give follower and cam after it.
     fn is_small(&self, step: f64, time: f64, lift: &Lift) -> bool {
         let turn = self.omega * step;
         step.abs() <= tolerance::LAST_STEP.value * time
@@ -237,7 +238,7 @@ impl<'a, T: Tally> Window<'a, T> {
             || step.abs() <= 2.0 * tolerance::ULP.value * time
     }
 
-    /// The contact `step` after an instant.
+    /// Contact at `step` after an instant.
     fn met(&self, time: f64, step: f64, now: &Seen) -> Passage {
         let lift = now.lift.after(self.omega * step);
         let jerk = self.flight.jerk(now.flown.state);
@@ -261,7 +262,7 @@ impl<'a, T: Tally> Window<'a, T> {
         self.near(&Flown::not_yet(self.start), time)
     }
 
-    /// The gap at `time`, s, from a place of the flight that is known.
+    /// Gap at `time`, s, from the state of the flight at another time.
     #[inline]
     fn near(&self, known: &Flown, time: f64) -> Seen {
         let flown = self.flight.fly_near(self.start, known, time);
@@ -287,7 +288,7 @@ impl<'a, T: Tally> Window<'a, T> {
         }
     }
 
-    /// Passes a window with any shape of gap, by marching.
+    /// Searches a window with any shape of gap, step by step.
     #[cold]
     fn march(&self, end: f64) -> Passage {
         self.tally.add(0, 0, 1);
@@ -295,7 +296,7 @@ impl<'a, T: Tally> Window<'a, T> {
         let gap_at = |time: f64| {
             let now = if time == 0.0 { self.at_start() } else { self.at(time) };
             let third = 2.0 * (self.flight.jerk(now.flown.state) - omega.powi(3) * now.lift.third).abs();
-            // Rounding of the two positions, however well their difference is known: no dip below that is an impact.
+            // Rounding of the two positions, however accurate their difference is: no dip below it is an impact.
             let rounding = self.machine.gap_rounding(now.flown.state.position);
             let rate_rounding = self.machine.velocity_rounding();
             GapAt { value: now.value, rounding, rate: now.rate, rate_rounding, curvature: now.curvature, third }

@@ -1,4 +1,4 @@
-//! The one function from question to answer.
+//! Function from question to answer.
 
 use corner_impact::cam::Cam;
 use corner_impact::command::{command, shell_word};
@@ -25,26 +25,26 @@ use crate::motion::{LongRunFound, MotionFound};
 use crate::question::{AxisRequest, BasinsRequest, PageQuestion, View};
 use crate::{ChangedModel, PageRefusal};
 
-/// An answer: what was found and how it is known, or the reason why there is nothing.
+/// Answer: results and their evidence, or the reason why there are none.
 #[derive(Serialize)]
 pub struct PageAnswer {
-    /// The view of the question.
+    /// View of the question.
     pub view: &'static str,
-    /// Command line that computes it again; none where no command does.
+    /// Command line that computes the same results; `None` if no command does.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub command: Option<String>,
-    /// Evidence for the answer as a whole; parts may have their own.
+    /// Evidence for the answer as a whole; parts may have separate evidence.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub known: Option<Evidence>,
-    /// Findings of the view.
+    /// Results of the view.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub found: Option<Found>,
-    /// Why nothing was found.
+    /// Reason why there are no results.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error: Option<PageRefusal>,
 }
 
-/// Findings of a view: the document of the command with the same subject, if there is one.
+/// Results of a view: the document of the command with the same subject, if there is one.
 #[derive(Serialize)]
 #[serde(untagged)]
 pub enum Found {
@@ -63,13 +63,13 @@ pub enum Found {
 }
 
 impl PageAnswer {
-    /// An answer that has a reason alone.
+    /// Builds an answer with only a reason.
     pub(crate) fn refused(view: &'static str, error: PageRefusal) -> Self {
         Self { view, command: None, known: None, found: None, error: Some(error) }
     }
 }
 
-/// Answers a question; the units are those in which the answer is to be written.
+/// Answers a question, and returns the units in which the answer is to be written.
 pub fn answer(question: &PageQuestion) -> (PageAnswer, Units) {
     let view = question.view.name();
     if let View::Template { law } = &question.view {
@@ -97,7 +97,7 @@ fn whole(view: &'static str, command: Option<String>, known: Evidence, found: Fo
     PageAnswer { view, command, known: Some(known), found: Some(found), error: None }
 }
 
-/// Findings of a view, the command with its options, and the evidence.
+/// Results of a view, the command with its options, and the evidence.
 type Finding = (Found, Option<(&'static str, String)>, Evidence);
 
 fn find(changed: &ChangedModel, given: &Model, model: &Model, view: &View) -> Result<Finding, PageRefusal> {
@@ -179,7 +179,7 @@ fn need(text: &str) -> impl Fn(String) -> PageRefusal {
     move |words| PageRefusal::of_words(format!("need \"{text}\": {words}"))
 }
 
-/// Attractors over an axis, as the command `speeds` has them.
+/// Attractors over an axis, as in the command `speeds`.
 fn survey(
     model: &Model,
     rpm: Option<f64>,
@@ -194,10 +194,10 @@ fn survey(
     Ok(speeds(&Over::new(model, parameter, rpm)?, range, &resolution, &Unwatched)?)
 }
 
-/// Most cells of a grid on the page.
+/// Largest number of cells of a grid on the page.
 const MOST_CELLS: usize = 100_000;
 
-/// Basins of a grid, as the command `basins` has them.
+/// Basins of a grid, as in the command `basins`.
 fn basins(model: &Model, asked: &BasinsRequest) -> Result<GridBasins, PageRefusal> {
     if asked.grid[0].saturating_mul(asked.grid[1]) > MOST_CELLS || asked.grid.contains(&0) {
         return Err(PageRefusal::of_words(format!("basins: grid: at least one cell, and at most {MOST_CELLS}")));

@@ -1,4 +1,4 @@
-//! Impacts over a number, and basins of a grid, as columns.
+//! Impacts as a function of a number, and basins of a grid, in columns.
 
 use std::sync::Arc;
 
@@ -16,12 +16,12 @@ use serde::Serialize;
 use crate::PageRefusal;
 use crate::question::DiagramRequest;
 
-/// Impacts at each value, as columns: those of `diagram --out` for impacts.
+/// Impacts at each value, as columns: the columns of `diagram --out` for impacts.
 #[derive(Default, Serialize)]
 pub struct Diagram {
-    /// Path of the number that varies, or `rpm`.
+    /// Path of the varied number, or `rpm`.
     over: String,
-    /// The values that were run.
+    /// Values that were run.
     values: Vec<f64>,
     /// Value of each impact.
     value: Vec<f64>,
@@ -31,17 +31,17 @@ pub struct Diagram {
     velocity_after_m_s: Vec<f64>,
     /// Attractor of each impact, from 0 at each value; empty for runs from one start.
     attractor: Vec<usize>,
-    /// Values whose runs cannot go on.
+    /// Values at which the run failed.
     failed: Vec<f64>,
 }
 
-/// Most starts of a value's attractors.
+/// Number of starts for a value's attractors.
 const SAMPLED: usize = 64;
-/// Most revolutions of a diagram on the page, recorded or not, of all values together.
+/// Largest total number of revolutions of a diagram on the page, recorded or not.
 const MOST_REVOLUTIONS: u64 = 100_000_000;
 
 impl Diagram {
-    /// Runs each value.
+    /// Simulates each value.
     pub(crate) fn of(model: &Model, asked: &DiagramRequest) -> Result<Self, PageRefusal> {
         let axis = asked.over.axis(model)?;
         let (over, values) = (axis.parameter.name().to_owned(), axis.values.to_vec());
@@ -112,18 +112,18 @@ impl RecordBlock for Impacts {
     }
 }
 
-/// Basins with the motion of each cell, and what separates them.
+/// Basins with the motion of each cell, and the curves that separate them.
 #[derive(Serialize)]
 pub struct GridBasins {
     #[serde(flatten)]
     basins: Basins,
-    /// Place in `endings` of the motion that each cell ends on, row by row from the lowest velocity; -1 below the cam.
+    /// Index in `endings` of the motion on which each cell ends, row by row from the lowest velocity; -1 below the cam.
     cell_endings: Vec<i64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     boundary: Option<Boundary>,
 }
 
-/// Position and velocity on the section, in turns.
+/// Curve of positions and velocities on the section, alternately.
 #[derive(Serialize)]
 struct Boundary {
     stable: Vec<[f64; 2]>,
@@ -132,7 +132,7 @@ struct Boundary {
 }
 
 impl GridBasins {
-    /// Takes what was found on a grid.
+    /// Builds the document from the results on a grid.
     pub(crate) fn of(basins: Basins, grid: &Grid, border: Option<&BasinBoundary>) -> Self {
         let place = |part: &Option<usize>| part.and_then(|part| i64::try_from(part).ok()).unwrap_or(-1);
         let cell_endings = basins.cells.iter().map(place).collect();
@@ -151,11 +151,11 @@ impl Boundary {
     }
 }
 
-/// Pieces of a curve inside the ranges of a grid, with the points that a screen can tell apart.
+/// Parts of a curve inside the ranges of a grid, with only the points that a screen can resolve.
 fn drawn(curve: &Curve, grid: &Grid) -> Vec<Vec<[f64; 2]>> {
     /// Smallest distance of neighbouring points, as a share of the ranges.
     const STEP: f64 = 1.0 / 500.0;
-    /// Distance beyond which two points have no line between them.
+    /// Distance above which two points are not joined by a line.
     const LEAP: f64 = 0.1;
     let place = |value: f64, [low, high]: [f64; 2]| (value - low) / (high - low);
     let mut pieces: Vec<Vec<[f64; 2]>> = vec![Vec::new()];

@@ -1,7 +1,7 @@
-//! The live page of corner-impact: one pure function from question to answer, and the page that asks.
+//! Live page of corner-impact: one pure function from question to answer, and the page that sends the questions.
 //!
-//! A question names a model with changed numbers, and a view of it; the answer has what the library finds, in the model's units. The
-//! function reads no file and no clock, so it gives the same answer behind a server and in a browser. [`respond`] takes and returns JSON.
+//! A question names a model with changed numbers, and a view of it; the answer has the library's results, in the model's units. The
+//! function reads no file and no clock, so it gives the same answer on a server and in a browser. [`respond`] takes and returns JSON.
 //!
 //! ```text
 //!  page (HTML, CSS, JavaScript)
@@ -9,7 +9,7 @@
 //!    ▼
 //!  server of the program   or   WebAssembly inside the page
 //!    ▼
-//!  respond → answer        the model, then the study of the library that the view names
+//!  respond → answer        the model, then the study of the library for the view
 //! ```
 
 mod answer;
@@ -29,12 +29,12 @@ pub use refusal::PageRefusal;
 use corner_impact::json;
 use corner_impact::model::Units;
 
-/// Answers a question, both as JSON. A question that cannot be read has an answer with the reason.
+/// Answers a question, both as JSON. A question that cannot be read gets an answer with the reason.
 pub fn respond(question: &str) -> String {
     let (answer, units) = match serde_json::from_str::<PageQuestion>(question) {
         Ok(question) => answer(&question),
         Err(error) => (PageAnswer::refused("", PageRefusal::of_words(format!("question: {error}"))), Units::default()),
     };
-    // Answers hold nothing that JSON cannot write.
+    // Answers contain only values that JSON can represent.
     json::compact(&answer, &units).unwrap_or_default()
 }

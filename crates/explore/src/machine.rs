@@ -1,4 +1,4 @@
-//! The cam: its lift, its shape, and what lists it.
+//! Cam of a model: its lift, its shape, and its document.
 
 use std::f64::consts::TAU;
 
@@ -20,7 +20,7 @@ pub struct CamShape {
     sheet: CamSheet,
 }
 
-/// Angles of a whole turn.
+/// Number of angles in a whole turn.
 const ANGLES: usize = 721;
 
 impl CamShape {

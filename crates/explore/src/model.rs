@@ -1,4 +1,4 @@
-//! The model as the page shows it: its numbers with ranges for sliders, its notes, and templates to begin with.
+//! Model as the page shows it: its numbers with ranges for sliders, its notes, and templates as starting points.
 
 use corner_impact::cam::{Cam, Jet};
 use corner_impact::model::{Dimension, FollowerContact, Model, ModelNumber, ModelTemplate, TEMPLATES, Unit};
@@ -11,13 +11,13 @@ use serde::Serialize;
 
 use crate::{ChangedModel, PageRefusal};
 
-/// A model with its numbers.
+/// Model with its numbers.
 #[derive(Serialize)]
 pub struct ModelPage {
     name: String,
     source: String,
     file: String,
-    /// The whole model file with the changes in it.
+    /// Whole model file, with the changes.
     text: String,
     notes: Vec<String>,
     law: &'static str,
@@ -25,15 +25,15 @@ pub struct ModelPage {
     laws: Vec<&'static str>,
     units: UnitNames,
     numbers: Vec<SliderNumber>,
-    /// Lowest and highest speed that are usually looked at, rpm.
+    /// Lowest and highest speed of interest, rpm.
     speeds: [f64; 2],
-    /// Speeds between which a corner impact is looked for, rpm.
+    /// Range of speeds in which corner impacts are searched, rpm.
     study: Option<[f64; 2]>,
     separation: Option<SeparationFound>,
     corners: Vec<CornerFound>,
 }
 
-/// Names of the units in which answers are.
+/// Names of the units of answers.
 #[derive(Serialize)]
 struct UnitNames {
     length: String,
@@ -46,7 +46,7 @@ struct UnitNames {
     degrees: bool,
 }
 
-/// A number of the model with the range of its slider.
+/// Number of the model with the range of its slider.
 #[derive(Serialize)]
 struct SliderNumber {
     path: String,
@@ -55,9 +55,9 @@ struct SliderNumber {
     meaning: &'static str,
     unit: String,
     value: f64,
-    /// Its value in the text.
+    /// Value in the text.
     given: f64,
-    /// One standard deviation.
+    /// Standard deviation.
     error: Option<f64>,
     /// Allowed values in words.
     allowed: String,
@@ -73,7 +73,7 @@ struct SeparationFound {
     cam_angle_deg: f64,
 }
 
-/// A corner of the cam.
+/// Corner of the cam.
 #[derive(Serialize)]
 struct CornerFound {
     angle_deg: f64,
@@ -82,7 +82,7 @@ struct CornerFound {
 }
 
 impl ModelPage {
-    /// Lists a model; `given` is the same without changes.
+    /// Builds the page of a model; `given` is the model without changes.
     pub(crate) fn of(changed: &ChangedModel, given: &Model, model: &Model) -> Result<Self, PageRefusal> {
         let cam = Cam::new(model)?;
         let machines = PlausibleMachines::of(model, &cam)?;
@@ -162,13 +162,13 @@ impl UnitNames {
     }
 }
 
-/// Sizes from which ranges of sliders follow, in the units of the file.
+/// Sizes that determine the ranges of sliders, in the units of the file.
 struct Scales {
     /// Difference between highest and lowest lift.
     stroke: f64,
     /// Critical damping, in the file's unit; 0 without a spring.
     critical: f64,
-    /// Acceleration of gravity on the ground, in the file's unit.
+    /// Acceleration of gravity on Earth, in the file's unit.
     gravity: f64,
 }
 
@@ -183,8 +183,8 @@ impl Scales {
         }
     }
 
-    /// Range and scale of the slider of a number with this value in the file: a quarter to four times of what cannot be negative, else around
-    /// the value as far as the number's kind reaches.
+    /// Range and scale of the slider of a number with this value in the file: from a quarter to four times the value if it cannot be
+    /// negative, else around the value within the range of the number's kind.
     fn slider(&self, number: &ModelNumber, value: f64) -> ([f64; 2], &'static str) {
         const TIMES: f64 = 4.0;
         const DEGREES: f64 = 30.0;
@@ -206,14 +206,14 @@ impl Scales {
     }
 }
 
-/// A model file to begin with.
+/// Model file as a starting point.
 #[derive(Serialize)]
 pub struct Template {
     text: String,
 }
 
 impl Template {
-    /// The file of a law.
+    /// Builds the file of a law.
     pub(crate) fn of(law: &str) -> Result<Self, PageRefusal> {
         let laws = || TEMPLATES.iter().map(|template| template.law).collect::<Vec<_>>().join(", ");
         let template = ModelTemplate::of(law);

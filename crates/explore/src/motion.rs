@@ -1,4 +1,4 @@
-//! One run: its moments, its events, and what it comes to.
+//! One run: its moments, its events, and its long-run motion.
 
 use corner_impact::model::Model;
 use corner_impact::orbit::long_run::Kind;
@@ -11,7 +11,7 @@ use serde::Serialize;
 use crate::PageRefusal;
 use crate::question::MotionRequest;
 
-/// Moments and events of a run, as columns: those of `simulate --out` and of `simulate --events`.
+/// Moments and events of a run, as columns: the columns of `simulate --out` and of `simulate --events`.
 #[derive(Serialize)]
 pub struct MotionFound {
     rpm: f64,
@@ -40,12 +40,12 @@ struct EventColumns {
     cam_velocity_m_s: Vec<f64>,
 }
 
-/// Most revolutions, moments and their product that the page may ask for.
+/// Largest number of revolutions, of moments and of their product that the page may request.
 const MOST_REVOLUTIONS: u64 = 1_000_000;
 const MOST_MOMENTS: u64 = 200_000;
 
 impl MotionFound {
-    /// Runs the transient and then records.
+    /// Simulates the transient and then records.
     pub(crate) fn of(model: &Model, asked: &MotionRequest) -> Result<Self, PageRefusal> {
         let moments = asked.revolutions.saturating_mul(u64::from(asked.samples));
         if asked.revolutions.max(asked.transient) > MOST_REVOLUTIONS || moments > MOST_MOMENTS {
@@ -99,7 +99,7 @@ impl EventColumns {
     }
 }
 
-/// The motion that a run comes to, with the names of `simulate --lyapunov --json`.
+/// Motion on which a run settles, with the names of `simulate --lyapunov --json`.
 #[derive(Serialize)]
 pub struct LongRunFound {
     kind: Kind,
@@ -113,7 +113,7 @@ pub struct LongRunFound {
 }
 
 impl LongRunFound {
-    /// Takes what was judged.
+    /// Builds the document from the judged motion.
     pub(crate) fn of(judged: Judged) -> Self {
         let Judged { ending, followed, .. } = judged;
         let (growth, period) = (ending.growth(), ending.period());

@@ -1,32 +1,32 @@
-//! The page: its script and style, as one HTML file or as a part of another page.
+//! Page with its script and style, as one HTML file or as a part of another page.
 
 use std::collections::BTreeMap;
 
 use corner_impact::model::{ModelTemplate, TEMPLATE_NAME};
 use serde::Serialize;
 
-/// Way of the page's questions to the answers.
+/// Connection from the page's questions to the answers.
 #[derive(Clone, Copy, Debug)]
 pub enum Transport<'a> {
-    /// To the server that the page came from.
+    /// Server from which the page came.
     Server {
-        /// Address that the questions go below.
+        /// Base of the address for questions.
         base: &'a str,
-        /// Word that the server's `Content-Security-Policy` has for the scripts and styles of this page.
+        /// Nonce of the server's `Content-Security-Policy` for the scripts and styles of this page.
         nonce: &'a str,
     },
-    /// To a WebAssembly module inside the page: the module, compressed by gzip, in base64.
+    /// WebAssembly module inside the page: compressed by gzip, in base64.
     Module(&'a str),
-    /// To the same as the text of the element with this identifier.
+    /// WebAssembly module in the text of the element with this identifier, in the same form.
     Element(&'a str),
 }
 
-/// The model that the page begins with; the paper's without a text.
+/// Initial model of the page; the paper's if it has no text.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct PageModel {
     /// Name of the file in commands.
     pub file: Option<String>,
-    /// Text of a model file that needs no other.
+    /// Text of a self-contained model file.
     pub text: Option<String>,
 }
 
@@ -37,7 +37,7 @@ pub struct PageWords<'a> {
     pub title: &'a str,
     /// Version of the program.
     pub version: &'a str,
-    /// HTML that stands there without JavaScript.
+    /// HTML that is shown without JavaScript.
     pub still: &'a str,
     /// HTML below the page.
     pub footer: &'a str,
@@ -48,7 +48,7 @@ const PAGE: &str = include_str!("page/index.html");
 /// Style of the live part; all of it applies below the class `explore`.
 pub const STYLE: &str = concat!(include_str!("page/page.css"), include_str!("page/views-more.css"));
 
-/// Scripts in the order in which they use each other.
+/// Scripts, in the order of their dependencies.
 pub const SCRIPTS: &str = concat!(
     include_str!("page/draw.js"),
     include_str!("page/plot.js"),
@@ -69,7 +69,7 @@ pub const SCRIPTS: &str = concat!(
     include_str!("page/explore.js"),
 );
 
-/// Script that puts the live part into the element with an identifier.
+/// Script that inserts the live part into the element with an identifier.
 pub fn mounting(element: &str, transport: Transport<'_>, model: &PageModel) -> String {
     let transport = match transport {
         Transport::Server { base, .. } => format!("Explore.server(\"{base}\")"),
@@ -83,12 +83,12 @@ pub fn mounting(element: &str, transport: Transport<'_>, model: &PageModel) -> S
     )
 }
 
-/// A value as a script has it. The text of a model must not end the script.
+/// Writes a value for a script. The text of a model must not end the script.
 fn in_script(value: &impl Serialize) -> String {
     serde_json::to_string(value).unwrap_or_default().replace('<', "\\u003c")
 }
 
-/// Texts of the models that the guided tours go through besides the paper's, by file name.
+/// Texts of the models in the guided tours, besides the paper's, by file name.
 pub fn tour_models() -> BTreeMap<&'static str, String> {
     let valve = ModelTemplate::of("table").map(|template| template.whole().replace(TEMPLATE_NAME, "valve"));
     BTreeMap::from([
@@ -97,7 +97,7 @@ pub fn tour_models() -> BTreeMap<&'static str, String> {
     ])
 }
 
-/// The whole page.
+/// Builds the whole page.
 pub fn page(transport: Transport<'_>, model: &PageModel, words: PageWords<'_>) -> String {
     let title = words.title.replace('&', "&amp;").replace('<', "&lt;");
     let nonce = match transport {
@@ -117,7 +117,7 @@ pub fn page(transport: Transport<'_>, model: &PageModel, words: PageWords<'_>) -
     filled(PAGE, &parts)
 }
 
-/// A text with each `{{name}}` replaced, once: what is put in is not looked through again.
+/// Replaces each `{{name}}` in a text once; inserted text is not searched again.
 fn filled(text: &str, parts: &[(&str, &str)]) -> String {
     let mut pieces = text.split("{{");
     let mut page = pieces.next().unwrap_or_default().to_owned();

@@ -11,22 +11,22 @@ use serde::Deserialize;
 
 use crate::PageRefusal;
 
-/// A question of the page.
+/// Question of the page.
 #[derive(Clone, Debug, Deserialize)]
 pub struct PageQuestion {
-    /// The model.
+    /// Model of the question.
     #[serde(default)]
     pub model: ChangedModel,
-    /// The view that is asked for.
+    /// Requested view.
     #[serde(flatten)]
     pub view: View,
 }
 
-/// The text of a model file with changed numbers; the paper's model without a text.
+/// Text of a model file with changed numbers; the paper's model if it has no text.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ChangedModel {
-    /// Name of the file in commands and in complaints.
+    /// Name of the file in commands and error messages.
     #[serde(default)]
     pub file: Option<String>,
     /// Text of the file.
@@ -38,10 +38,10 @@ pub struct ChangedModel {
 }
 
 impl ChangedModel {
-    /// The model as its file has it, and with its changes.
+    /// Reads the model as in its file, and with its changes.
     pub(crate) fn read(&self) -> Result<[Model; 2], PageRefusal> {
         let given = match (&self.file, &self.text) {
-            // Whoever asks gets no other file of this machine.
+            // A question cannot read any other file of this machine.
             (Some(file), Some(text)) => Model::parse_alone(file, text)?,
             (None, Some(text)) => Model::parse_alone("model.toml", text)?,
             (Some(file), None) => Model::parse(file, OSORIO_2008)?,
@@ -53,20 +53,20 @@ impl ChangedModel {
     }
 }
 
-/// A view of a model.
+/// View of a model.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(tag = "view", rename_all = "snake_case")]
 pub enum View {
-    /// Its numbers, notes and corners.
+    /// Numbers, notes and corners of the model.
     Model,
-    /// Text of a model file to begin with.
+    /// Text of a model file as a starting point.
     Template {
         /// Law of the cam.
         law: String,
     },
     /// Lift and shape of the cam.
     Cam,
-    /// A run at one speed, moment by moment.
+    /// Run at one speed, moment by moment.
     Motion(MotionRequest),
     /// Long-run motion of a run.
     LongRun {
@@ -79,16 +79,16 @@ pub enum View {
         #[serde(default)]
         budget: BudgetName,
     },
-    /// Impacts over the speed or another number.
+    /// Impacts as a function of the speed or another number.
     Diagram(DiagramRequest),
-    /// Attractors over the speed or another number, and where each begins and ends.
+    /// Attractors as a function of the speed or another number, with the beginning and end of each.
     Speeds {
-        /// Speed, rpm, where another number varies.
+        /// Speed, rpm, if another number varies.
         #[serde(default)]
         rpm: Option<f64>,
-        /// The number that varies.
+        /// Number that varies.
         over: AxisRequest,
-        /// Starts at each value.
+        /// Number of starts at each value.
         #[serde(default = "few_starts")]
         starts: usize,
         /// Budget of the runs at each value.
@@ -99,22 +99,22 @@ pub enum View {
     Orbit {
         /// Speed, rpm.
         rpm: f64,
-        /// Revolutions of a period.
+        /// Number of revolutions in a period.
         #[serde(default = "one")]
         revolutions: u64,
-        /// Impacts of a period; any number without it.
+        /// Number of impacts in a period; any number if absent.
         #[serde(default)]
         impacts: Option<usize>,
     },
-    /// The motion that each start of a grid ends on.
+    /// Motion on which each start of a grid ends.
     Basins(BasinsRequest),
-    /// The corner impact, its map and what happens there.
+    /// Corner impact, its map and its scenario.
     Verify,
-    /// Orbits of the local map beside those of the machine.
+    /// Orbits of the local map, compared with those of the machine.
     Local,
     /// Contact forces, separation and needs.
     Design {
-        /// Lowest and highest speed, rpm; around the separation without them.
+        /// Lowest and highest speed, rpm; around the separation if absent.
         #[serde(default)]
         rpm: Option<[f64; 2]>,
         /// Number of speeds.
@@ -165,12 +165,12 @@ pub enum BudgetName {
     /// Budget of `simulate` and `speeds`.
     #[default]
     Whole,
-    /// Budget of `chart`, for answers while a number is being dragged and for events of many values.
+    /// Budget of `chart`, for answers while a number is dragged and for events of many values.
     Quick,
 }
 
 impl BudgetName {
-    /// The budget.
+    /// Returns the budget.
     pub(crate) fn budget(self) -> Budget {
         match self {
             Self::Whole => Budget::SURVEY,
@@ -185,7 +185,7 @@ impl BudgetName {
     }
 }
 
-/// Start of a run: on the cam at rest without any field.
+/// Start of a run: at rest on the cam if no field is given.
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StartRequest {
@@ -198,13 +198,13 @@ pub struct StartRequest {
     /// Velocity.
     #[serde(default)]
     pub velocity: Option<f64>,
-    /// Velocity relative to the cam at which the follower leaves it, in the place of both.
+    /// Velocity relative to the cam with which the follower leaves it, instead of position and velocity.
     #[serde(default)]
     pub relative_velocity: Option<f64>,
 }
 
 impl StartRequest {
-    /// The start.
+    /// Builds the start.
     pub(crate) fn start(self) -> Result<Start, PageRefusal> {
         let cam_angle = self.cam_angle_rad;
         match (self.position, self.velocity, self.relative_velocity) {
@@ -229,7 +229,7 @@ impl StartRequest {
     }
 }
 
-/// A run at one speed.
+/// Run at one speed.
 #[derive(Clone, Copy, Debug, Deserialize)]
 pub struct MotionRequest {
     /// Speed, rpm.
@@ -237,13 +237,13 @@ pub struct MotionRequest {
     /// Start of the run.
     #[serde(default)]
     pub start: StartRequest,
-    /// Revolutions before those that are shown.
+    /// Number of revolutions before those that are shown.
     #[serde(default = "usual_transient")]
     pub transient: u64,
-    /// Revolutions that are shown.
+    /// Number of revolutions that are shown.
     #[serde(default = "two")]
     pub revolutions: u64,
-    /// Moments of each revolution; 0 for the events alone.
+    /// Number of moments in each revolution; 0 for the events alone.
     #[serde(default = "each_degree")]
     pub samples: u32,
 }
@@ -260,27 +260,27 @@ fn each_degree() -> u32 {
     360
 }
 
-/// A diagram over one number.
+/// Diagram as a function of one number.
 #[derive(Clone, Debug, Deserialize)]
 pub struct DiagramRequest {
-    /// Speed, rpm, where another number varies.
+    /// Speed, rpm, if another number varies.
     #[serde(default)]
     pub rpm: Option<f64>,
-    /// The number that varies.
+    /// Number that varies.
     pub over: AxisRequest,
     /// Start of the run at each value.
     #[serde(default)]
     pub start: StartRequest,
-    /// Revolutions before those that are recorded.
+    /// Number of revolutions before those that are recorded.
     #[serde(default = "usual_transient")]
     pub transient: u64,
-    /// Revolutions that are recorded.
+    /// Number of revolutions that are recorded.
     #[serde(default = "hundred")]
     pub record: u64,
-    /// Whether every attractor that 64 starts find is recorded.
+    /// Whether to record all attractors found from 64 starts.
     #[serde(default)]
     pub attractors: bool,
-    /// Revolutions that runs which settle on nothing are followed for before that is called chaos, where attractors are recorded.
+    /// Number of revolutions for which runs that do not settle are followed before they are called chaotic, if attractors are recorded.
     #[serde(default = "usual_patience")]
     pub patience: u64,
 }
@@ -316,15 +316,15 @@ fn many() -> usize {
 }
 
 impl AxisRequest {
-    /// Most values of a diagram on the page.
+    /// Largest number of values of a diagram on the page.
     const MOST: usize = 20_000;
 
-    /// The parameter and its values.
+    /// Returns the parameter and its values.
     pub(crate) fn axis(&self, model: &Model) -> Result<Axis, PageRefusal> {
         Ok(Axis::new(Parameter::named(model, &self.name)?, &self.values()?))
     }
 
-    /// The values.
+    /// Returns the values.
     pub(crate) fn values(&self) -> Result<Values, PageRefusal> {
         let spacing = if self.log { Spacing::Logarithmic } else { Spacing::Linear };
         let values = Values { low: self.low, high: self.high, count: self.count, spacing };
@@ -340,7 +340,7 @@ impl AxisRequest {
         Ok(values)
     }
 
-    /// Options of a command for this axis; `rpm` is the speed where another number varies.
+    /// Options of a command for this axis; `rpm` is the speed if another number varies.
     pub(crate) fn options(&self, rpm: Option<f64>) -> String {
         let Self { name, low, high, count, log } = self;
         let log = if *log { ":log" } else { "" };
@@ -351,23 +351,23 @@ impl AxisRequest {
     }
 }
 
-/// A grid of starts on a section.
+/// Grid of starts on a section.
 #[derive(Clone, Copy, Debug, Deserialize)]
 pub struct BasinsRequest {
     /// Speed, rpm.
     pub rpm: f64,
-    /// The section, rad.
+    /// Angle of the section, rad.
     #[serde(default)]
     pub cam_angle_rad: f64,
     /// Cells along the positions and along the velocities.
     pub grid: [usize; 2],
-    /// Lowest and highest position; around the orbits without them.
+    /// Lowest and highest position; around the orbits if absent.
     #[serde(default)]
     pub position: Option<[f64; 2]>,
     /// Lowest and highest velocity.
     #[serde(default)]
     pub velocity: Option<[f64; 2]>,
-    /// Whether the saddles and the curves that separate the basins are sought, too, which may take seconds.
+    /// Whether to search the saddles and the curves that separate the basins, too, which may take seconds.
     #[serde(default)]
     pub boundary: bool,
 }

@@ -3,12 +3,12 @@
 use corner_impact::model::ModelError;
 use serde::Serialize;
 
-/// Reason in the program's own words, with the place in the model file if it has one.
+/// Reason in the program's words, with the place in the model file if there is one.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct PageRefusal {
-    /// The sentence.
+    /// Sentence with the reason.
     pub sentence: String,
-    /// File, line from 1, field and value that it is about.
+    /// File of the reason.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub file: Option<String>,
     /// Line in the file, from 1.
@@ -20,7 +20,7 @@ pub struct PageRefusal {
 }
 
 impl PageRefusal {
-    /// A reason without a place.
+    /// Builds a reason without a place.
     pub fn of_words(sentence: impl ToString) -> Self {
         Self { sentence: sentence.to_string(), ..Self::default() }
     }

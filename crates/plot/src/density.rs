@@ -4,30 +4,30 @@ use serde::{Serialize, Serializer};
 
 use super::layout::{LARGEST, widened};
 
-/// Cells across and up: three to a unit of a full-width figure, about 300 to the inch in print.
+/// Number of cells across and up: three per unit of a full-width figure, about 300 to the inch in print.
 const CELLS: [usize; 2] = [1800, 1200];
 
 /// Number of shades of a cell.
 pub const SHADES: u8 = 5;
 
-/// Number of points that are kept before a range is chosen for them.
+/// Number of points that are stored before a range is chosen for them.
 const KEPT: usize = 4096;
 
-/// Largest growth of the grid, as a multiple of its initial range. The limit only leaves out points that would make a range overflow:
-/// even if a first speed's points all agree to rounding, any later range shows all of them.
+/// Largest growth of the grid, as a multiple of its initial range. The limit excludes only points that would make a range overflow: even if
+/// the first points all agree up to rounding, any later range shows all of them.
 const GROWTH: f64 = 1e18;
 
 /// Counts of points in the cells of a grid over fixed ranges; the number of points is unlimited.
 ///
-/// The closer the ranges fit the data, the finer the picture: [`Cloud`] finds the vertical range by itself.
+/// The closer the ranges fit the data, the finer the picture; [`Cloud`] finds the vertical range itself.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Density {
     x: [f64; 2],
     y: [f64; 2],
     columns: usize,
     rows: usize,
-    /// Serialized as `[cell, count]` for occupied cells; a cell is its row, from below, times the columns, plus its column. A count
-    /// stops at 65535: shades depend on its logarithm, and two bytes a cell are half the memory of a picture.
+    /// Counts of the cells, serialized as `[cell, count]` for occupied cells. The index of a cell is its row, from below, times the number
+    /// of columns, plus its column. A count stops at 65535: shades depend on its logarithm, and two bytes per cell save half the memory.
     #[serde(serialize_with = "occupied")]
     counts: Vec<u16>,
     outside: u64,
@@ -37,7 +37,7 @@ fn occupied<S: Serializer>(counts: &[u16], serializer: S) -> Result<S::Ok, S::Er
     serializer.collect_seq(counts.iter().enumerate().filter(|(_, count)| **count > 0))
 }
 
-/// Relative position of `value` in `range`; `None` outside it, or if `value` is not a number.
+/// Relative position of `value` in `range`; `None` outside it, or for NaN.
 fn share(value: f64, [low, high]: [f64; 2]) -> Option<f64> {
     let share = (value - low) / (high - low);
     (0.0..=1.0).contains(&share).then_some(share)
@@ -50,7 +50,7 @@ impl Density {
         Self { x, y, columns, rows, counts: vec![0; columns * rows], outside: 0 }
     }
 
-    /// Counts a point; a point outside the ranges only adds to the count of those.
+    /// Counts a point; a point outside the ranges only adds to the number of points outside.
     pub fn push(&mut self, x: f64, y: f64) {
         match share(x, self.x).zip(share(y, self.y)) {
             Some((right, up)) => {
@@ -63,7 +63,7 @@ impl Density {
         }
     }
 
-    /// Counts the cells along the straight line between two points; of a long line, `most` of them, evenly spaced.
+    /// Counts the cells along the straight line between two points; on a long line, `most` cells, evenly spaced.
     pub fn join(&mut self, from: [f64; 2], to: [f64; 2], most: usize) {
         let wide = (to[0] - from[0]).abs() / (self.x[1] - self.x[0]) * self.columns as f64;
         let high = (to[1] - from[1]).abs() / (self.y[1] - self.y[0]) * self.rows as f64;
@@ -90,7 +90,7 @@ impl Density {
         counts.map(|(cell, count)| ([cell % self.columns, cell / self.columns], *count))
     }
 
-    /// The centre of each occupied cell, and its count.
+    /// Centre of each occupied cell, and its count.
     pub fn counted(&self) -> impl Iterator<Item = ([f64; 2], u16)> {
         let middle = |index: usize, count: usize, [low, high]: [f64; 2]| {
             low + (high - low) * (index as f64 + 0.5) / count as f64
@@ -100,9 +100,9 @@ impl Density {
         })
     }
 
-    /// Returns the occupied cells as rectangles, as few as rows of the same cells make: the centre, width, height and number of cells.
+    /// Returns the occupied cells as rectangles, formed by merging equal rows: the centre, width, height and number of cells.
     pub fn rectangles(&self) -> Vec<([f64; 2], [f64; 2], usize)> {
-        // Columns of the runs of the row below, and the row in which each rectangle began.
+        // Columns of the runs of the row below, and the row in which each rectangle begins.
         let mut open: Vec<(usize, usize, usize)> = Vec::new();
         let mut closed = Vec::new();
         let [wide, high] = [(self.x[1] - self.x[0]) / self.columns as f64, (self.y[1] - self.y[0]) / self.rows as f64];
@@ -134,7 +134,7 @@ impl Density {
         self.counts.iter().filter(|count| **count > 0).count()
     }
 
-    /// Number of points outside the ranges or not a number.
+    /// Number of points outside the ranges or with NaN.
     pub fn outside(&self) -> u64 {
         self.outside
     }
@@ -155,7 +155,7 @@ impl Density {
         let most = self.counts.iter().max().copied().unwrap_or(0);
         let mut cells = vec![0_u32; usize::from(most) + 1];
         self.counts.iter().for_each(|count| cells[usize::from(*count)] += 1);
-        // Periodic motions put many points into few cells: the densest tenth must not push the others into the faintest shade.
+        // Periodic motions put many points into few cells: the densest tenth must not reduce the others to the faintest shade.
         let mut denser = self.occupied() / 10;
         let full = (1..cells.len()).rev().find(|count| {
             let here = cells[*count] as usize;
@@ -172,7 +172,7 @@ impl Density {
         let reach = usize::from(spread);
         let mut packed = Vec::with_capacity(self.columns.div_ceil(2) * self.rows);
         for row in 0..self.rows {
-            // The largest count has the strongest shade.
+            // The largest nearby count determines the shade.
             let near = row.saturating_sub(reach)..(row + reach + 1).min(self.rows);
             let mut upright = vec![0; self.columns];
             for counts in self.counts.chunks(self.columns).skip(near.start).take(near.len()) {
@@ -203,8 +203,8 @@ impl Density {
     }
 }
 
-/// Shades of a grid's cells, 0 for empty, else 1 to [`SHADES`]. Two share a byte to save memory, since the counts of the grid are in memory
-/// too, and as in a PNG of few colours.
+/// Shades of a grid's cells, 0 for empty, else 1 to [`SHADES`]. Two share a byte, as in a PNG of few colours, because the counts of the
+/// grid are in memory, too.
 pub struct Shades {
     columns: usize,
     packed: Vec<u8>,
@@ -233,7 +233,7 @@ impl Shades {
     }
 }
 
-/// Points whose vertical range is unknown at first: a [`Density`] that starts from the first few thousand and grows.
+/// Points whose vertical range is unknown at first, collected in a [`Density`] that starts from the first few thousand and grows.
 #[derive(Clone, Debug)]
 pub struct Cloud {
     x: [f64; 2],

@@ -4,7 +4,7 @@ use std::fmt::{self, Write};
 
 use super::{Colour, Marker, Stroke};
 
-/// Limit of coordinates far outside the page, which are clamped to it.
+/// Limit to which coordinates far outside the page are clamped.
 pub(super) const FAR: f64 = 1e5;
 
 pub(super) fn stroked(out: &mut impl Write, path: &str, how: Stroke, colour: Colour) -> fmt::Result {
@@ -37,7 +37,7 @@ pub fn dashes(how: Stroke) -> &'static str {
     }
 }
 
-/// Draws a rim in the colour of the paper below a stroke, so that it contrasts with whatever area is behind it.
+/// Draws a rim in the colour of the paper below a stroke, so that it contrasts with any area behind it.
 pub(super) fn rim(out: &mut impl Write, path: &str, width: f64) -> fmt::Result {
     let width = number(width + 2.6);
     writeln!(
@@ -119,7 +119,7 @@ pub fn escaped(text: &str) -> String {
 }
 
 /// Appends a path through points, rounded to parts of a unit (10 or 100): absolute at its start, then relative to the rounded point before,
-/// so that errors do not add up.
+/// so that errors do not accumulate.
 pub(super) fn polyline(path: &mut String, points: impl IntoIterator<Item = [f64; 2]>, parts: f64) {
     let (mut last, mut letter): (Option<[f64; 2]>, &str) = (None, "l");
     for point in points {
@@ -150,7 +150,7 @@ pub(super) fn polyline(path: &mut String, points: impl IntoIterator<Item = [f64;
     }
 }
 
-/// A coordinate without the zero before its point.
+/// Formats a coordinate without the zero before its point.
 fn short(value: f64) -> String {
     let text = number(value);
     match text.strip_prefix("0.").zip(Some("")).or_else(|| text.strip_prefix("-0.").zip(Some("-"))) {
@@ -159,7 +159,7 @@ fn short(value: f64) -> String {
     }
 }
 
-/// A coordinate with two decimals, without trailing zeros.
+/// Formats a coordinate with two decimals, without trailing zeros.
 pub(super) fn number(value: f64) -> String {
     let text = format!("{:.2}", value.clamp(-FAR, FAR));
     let text = text.trim_end_matches('0').trim_end_matches('.');

@@ -1,7 +1,7 @@
-//! The letters of a figure: their fonts, and subsets of fonts with only the glyphs that a figure uses.
+//! Fonts of a figure, and subsets of fonts with only the glyphs that a figure uses.
 //!
-//! A file that is to look the same everywhere embeds its letters. Only the used glyphs of a TrueType font are embedded.
-//! Glyph numbers stay the same, so that the font's own tables of letters and widths remain valid.
+//! A file that must look the same everywhere embeds its letters. Only the used glyphs of a TrueType font are embedded. Glyph numbers are
+//! unchanged, so that the font's tables of letters and widths remain valid.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -22,23 +22,23 @@ pub struct Fonts {
 /// Reason why a font is not available.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FontError {
-    /// A family that is not installed on this machine.
+    /// Family that is not installed on this machine.
     #[error("no font \"{0}\" is installed: give the name of an installed font, or a font file (.ttf, .otf)")]
     Family(String),
-    /// A file that is not a font.
+    /// File that is not a font.
     #[error("{0}: cannot be read as a font")]
     File(String),
 }
 
 impl Default for Fonts {
-    /// The built-in font, for machines without fonts.
+    /// Returns the built-in font, for machines without fonts.
     fn default() -> Self {
         Self::with(Database::new(), None)
     }
 }
 
 impl Fonts {
-    /// Whether a name is that of a font file, and not that of a family.
+    /// Whether a name denotes a font file and not a family.
     pub fn is_file(name: &str) -> bool {
         name.contains(['/', '\\']) || [".ttf", ".otf", ".ttc"].iter().any(|end| name.to_lowercase().ends_with(end))
     }
@@ -61,7 +61,7 @@ impl Fonts {
         let family = family.ok_or_else(|| FontError::Family(name.into()))?;
         let query = Query { families: &[Family::Name(&family)], ..Query::default() };
         let face = database.query(&query).and_then(|id| database.face(id)).cloned();
-        // Use this face only: no letter falls back on another font of the machine.
+        // Only this face is used: no letter falls back on another font of the machine.
         let mut alone = Database::new();
         face.ok_or_else(|| FontError::Family(name.into())).map(|face| alone.push_face_info(face))?;
         Ok(Self::with(alone, Some(family)))
@@ -70,7 +70,7 @@ impl Fonts {
     fn with(mut database: Database, family: Option<String>) -> Self {
         let own = [epaint_default_fonts::UBUNTU_LIGHT, epaint_default_fonts::HACK_REGULAR];
         let mut first = None;
-        // The second font is used only for letters that the first one lacks: a model's name may have any letters.
+        // The second font serves only for letters that the first one lacks: a model's name may have any letters.
         for font in own {
             let ids = database.load_font_source(Source::Binary(Arc::new(font)));
             first = first.or_else(|| Some(database.face(*ids.first()?)?.families.first()?.0.clone()));
@@ -95,7 +95,7 @@ impl Fonts {
 /// Glyphs of a font in a figure, each with the text that it represents.
 pub(super) type Glyphs = BTreeMap<u16, String>;
 
-/// Number of a glyph: fonts have fewer than 65536.
+/// Converts the number of a glyph: fonts have fewer than 65536.
 pub(super) fn number(glyph: GlyphId) -> u16 {
     u16::try_from(glyph.0).unwrap_or(0)
 }
@@ -125,7 +125,7 @@ fn gather(group: &Group, fonts: &mut Vec<(ID, Glyphs)>) {
     }
 }
 
-/// A font reduced to some glyphs, with the data that a page needs.
+/// Font reduced to some glyphs, with the data that a page needs.
 pub(super) struct Cut {
     /// Contents of the font file.
     pub(super) data: Vec<u8>,
@@ -144,7 +144,7 @@ pub(super) struct Cut {
 impl Cut {
     /// Advance width of a glyph.
     pub(super) fn width(&self, glyph: u16) -> u16 {
-        // Glyphs after the last width share it.
+        // Glyphs after the last width share that width.
         u16_at(&self.widths, 4 * usize::from(glyph.min(self.long_widths.saturating_sub(1)))).unwrap_or(0)
     }
 }
@@ -157,7 +157,7 @@ fn u32_at(data: &[u8], at: usize) -> Option<usize> {
     Some(u32::from_be_bytes(data.get(at..at + 4)?.try_into().ok()?) as usize)
 }
 
-/// Names of the tables that a reader of the file needs. Tables for other placement of letters and for variable outlines are left out.
+/// Names of the tables that a reader of the file needs. Tables for other placement of letters and for variable outlines are omitted.
 const KEPT: [&[u8; 4]; 14] = [
     b"OS/2", b"CFF ", b"cmap", b"cvt ", b"fpgm", b"glyf", b"head", b"hhea", b"hmtx", b"kern", b"loca", b"maxp",
     b"name", b"prep",
@@ -247,7 +247,7 @@ fn parts(outline: &[u8]) -> Vec<u16> {
 
 /// Assembles tables into a font file.
 fn file(tables: BTreeMap<&[u8], Vec<u8>>, is_true_type: bool) -> Option<Vec<u8>> {
-    /// Constant for the checksum of the whole file: this less the sum of its words (OpenType, "head").
+    /// Constant for the checksum of the whole file, from which the sum of its words is subtracted (OpenType, "head").
     const SUM: u32 = 0xB1B0_AFBA;
     let sum = |data: &[u8]| {
         let word =

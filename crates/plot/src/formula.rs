@@ -1,7 +1,7 @@
-//! Parser of formulas in plain text, `phi_{T/2} x*` or `A_hat_minus`, for browsers and figures. A terminal shows them as they are.
+//! Parser of formulas in plain text, `phi_{T/2} x*` or `A_hat_minus`, for browsers and figures. A terminal shows them unchanged.
 //!
-//! `_` and `^` lower and raise a letter, a number or a group in braces. Greek letters are spelled. A side, an asterisk or a prime follows its
-//! letter. A word with such a sign, or with a Greek letter, is a formula wherever it stands; any other formula stands between dollars, `$T$`.
+//! `_` and `^` lower and raise a letter, a number or a group in braces. Greek letters are spelled. A side, an asterisk or a prime follows
+//! its letter. A word with such a sign, or with a Greek letter, is always a formula; any other formula is written between dollars, `$T$`.
 
 use std::borrow::Cow;
 
@@ -24,20 +24,20 @@ const GREEK: [(&str, &str); 14] = [
 ];
 /// Signs typed with more than one key.
 const SIGNS: [(&str, &str); 4] = [("+-", "±"), ("->", "→"), ("<=", "≤"), (">=", "≥")];
-/// Spelled accents, which stand over the letter, and spelled sides, which are raised.
+/// Spelled accents, which are set over the letter, and spelled sides, which are raised.
 const ACCENTS: [(&str, &str); 3] = [("_hat", "\u{302}"), ("_tilde", "\u{303}"), ("_bar", "\u{304}")];
 const SIDES: [(&str, &str); 3] = [("_minus", "−"), ("_plus", "+"), ("_star", "*")];
 
-/// A part of a sentence.
+/// Part of a sentence.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Part {
     /// Words, numbers and signs.
     Plain(String),
-    /// A letter of a formula, or a name in its place.
+    /// Letter of a formula, or a name in its place.
     Letter(String),
-    /// An index.
+    /// Index.
     Below(String),
-    /// A power, a side or an asterisk.
+    /// Power, side or asterisk.
     Above(String),
 }
 
@@ -45,17 +45,17 @@ fn plain(text: &str) -> Part {
     Part::Plain(text.to_owned())
 }
 
-/// The text of a sentence for a terminal: without the dollars around a formula.
+/// Text of a sentence for a terminal: without the dollars around a formula.
 pub fn typed(text: &str) -> Cow<'_, str> {
     if text.contains('$') { marked(text).map(|(_, text)| text).collect() } else { Cow::Borrowed(text) }
 }
 
-/// Splits a sentence into parts. Other words than formulas stay unchanged: numbers, units, names with a colon or an underscore in words.
+/// Splits a sentence into parts. Words that are not formulas stay unchanged: numbers, units, names with a colon or an underscore.
 pub fn sentence(text: &str) -> Vec<Part> {
     marked(text).flat_map(|(is_formula, text)| if is_formula { formula(text) } else { recognized(text) }).collect()
 }
 
-/// Splits a text at its dollars, and tells of each stretch whether it stands between two. A dollar that nothing closes stays.
+/// Splits a text at its dollars, and marks each part that is between two dollars. A dollar without a partner stays.
 fn marked(mut text: &str) -> impl Iterator<Item = (bool, &str)> {
     std::iter::from_fn(move || {
         if text.is_empty() {
@@ -73,7 +73,7 @@ fn marked(mut text: &str) -> impl Iterator<Item = (bool, &str)> {
     })
 }
 
-/// Splits a text in which the words that are formulas are not marked.
+/// Splits a text whose formulas are not marked.
 fn recognized(text: &str) -> Vec<Part> {
     // A space in braces does not separate words.
     let mut open = 0;
@@ -101,7 +101,7 @@ fn names(word: &str) -> impl Iterator<Item = &str> {
     word.split(|letter: char| !letter.is_ascii_alphabetic()).filter(|name| !name.is_empty())
 }
 
-/// Whether a word is a formula. All its names must have one or two letters or be Greek. Besides, it must have a mathematical sign or a
+/// Whether a word is a formula. All its names must have one or two letters or be Greek. In addition, it must have a mathematical sign or a
 /// Greek letter, or be a derivative, `dP/dx`.
 fn is_formula(word: &str) -> bool {
     let short = |name: &str| name.len() <= 2 || letter(name).is_some();
@@ -115,7 +115,7 @@ fn is_formula(word: &str) -> bool {
     !is_named && names(word).next().is_some() && names(word).all(short) && is_told
 }
 
-/// Splits a formula, which needs no dollars, into parts.
+/// Splits a formula without dollars into parts.
 pub fn formula(word: &str) -> Vec<Part> {
     let mut parts = Vec::new();
     let mut rest = word;
@@ -178,7 +178,7 @@ pub fn formula(word: &str) -> Vec<Part> {
     parts
 }
 
-/// Typesets a name, as its letter, and the characters after it.
+/// Typesets a name as its letter and the characters after it.
 fn set(part: &str) -> String {
     let end = part.find(|letter: char| !letter.is_ascii_alphabetic()).unwrap_or(part.len());
     let (name, rest) = part.split_at(end);

@@ -1,26 +1,27 @@
-//! The part of a figure that a look shows, and whether the figure has room in it.
+//! Restriction of a figure to the ranges of a look, and a check that the figure fits.
 
 use super::layout::{LARGEST, Layout};
 use super::look::{LegendPlace, Look, LookError};
 use super::series::Page;
 use super::{Data, Figure, Panel, extent};
 
-/// Largest ratio of the drawn range to the displayed range: farther out, coordinates are clamped, and lines would change direction.
+/// Largest ratio of the drawn range to the displayed range: farther out, coordinates are clamped, which would change the direction of
+/// lines.
 const FARTHEST: f64 = 100.0;
 
-/// Ranges and lines of a panel as they are drawn.
+/// Ranges and lines of a panel as drawn.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DrawnPanel {
     /// Ends of the axes, across and up.
     pub ranges: [[f64; 2]; 2],
-    /// For each series the values of the points through which its line is drawn, with its breaks; empty for other data.
+    /// Points of each series' line, with its breaks; empty for other data.
     pub lines: Vec<Vec<[f64; 2]>>,
 }
 
 impl Look {
-    /// Checks that the figure fits into the height of the look, beside its legend.
+    /// Checks that the figure fits into the height of the look, with its legend.
     pub fn has_room(&self, figure: &Figure) -> Result<(), LookError> {
-        /// Largest difference in height, points: the page is as high as a whole number of units.
+        /// Largest difference in height, points, since the page's height is a whole number of units.
         const CLOSE: f64 = 1.0;
         if self.height.is_none() && self.legend != LegendPlace::Right {
             return Ok(());
@@ -36,7 +37,7 @@ impl Look {
         if is_apart { Ok(()) } else { Err(LookError::Legend(width)) }
     }
 
-    /// Each panel of a figure as it is drawn.
+    /// Returns each panel of a figure as drawn.
     pub fn drawn(&self, figure: &Figure) -> Vec<DrawnPanel> {
         let layout = Layout::new(figure, self);
         let of = |page: &Page, data: &Data| match data {
@@ -80,7 +81,7 @@ fn reach(panel: &Panel, direction: usize) -> Vec<f64> {
 
 fn within(axis: &'static str, shown: [f64; 2], drawn: [f64; 2]) -> Result<[f64; 2], LookError> {
     let [low, high] = drawn;
-    // Without data, any range will do.
+    // Without data, any range is accepted.
     if low <= high && (shown[1] < low || high < shown[0]) {
         return Err(LookError::Aside { axis, shown, drawn });
     }

@@ -1,4 +1,4 @@
-//! A dense grid on the page: as SVG, or drawn directly into the pixels of a PNG.
+//! Dense grids on the page: as SVG, or drawn directly into the pixels of a PNG.
 
 use std::borrow::Cow;
 use std::fmt::{self, Write};
@@ -22,7 +22,7 @@ pub(super) enum Grid {
         /// Opacity of a cell of full shade: 1 is opaque.
         strength: f64,
     },
-    /// A dot for each occupied cell.
+    /// Dot for each occupied cell.
     Dots {
         /// Centres of the dots in tenths of a unit, by shade, the faintest first.
         at: [Vec<[i64; 2]>; SHADES as usize],
@@ -47,7 +47,7 @@ impl Grid {
             Self::Cells { shades, place, strength } => {
                 let (image, is_turned) = image(shades, colour).map_err(|_| fmt::Error)?;
                 let [left, top, width, height] = place.map(number);
-                // Turned over its diagonal, an image has the page's vertical axis across.
+                // The page's vertical axis runs across in an image that is reflected at its diagonal.
                 let place = match is_turned {
                     false => format!(r#"x="{left}" y="{top}" width="{width}" height="{height}""#),
                     true => {
@@ -67,7 +67,7 @@ impl Grid {
                 for (shade, dots) in (1..).zip(at).filter(|(_, dots)| !dots.is_empty()) {
                     let (mut path, mut last) = (String::new(), [0; 2]);
                     for dot in dots {
-                        // Relative to the previous dot: half the bytes, and errors do not add up.
+                        // Relative to the previous dot: half the bytes, and errors do not accumulate.
                         write!(path, "m{} {}h0", dot[0] - last[0], dot[1] - last[1])?;
                         last = *dot;
                     }
@@ -83,8 +83,8 @@ impl Grid {
         }
     }
 
-    /// Draws the part of the grid within a band of the page, `top` pixels below the page's upper edge, and within `frame` (left, top,
-    /// width and height on the page); a unit is `scale` pixels.
+    /// Draws the part of the grid within a band of the page, `top` pixels below the page's upper edge, and within `frame` (left, top, width
+    /// and height on the page); a unit is `scale` pixels.
     pub(super) fn draw(&self, band: &mut Pixmap, colour: Colour, frame: [f64; 4], top: f64, scale: f64) {
         let [left, above, width, height] = frame.map(|part| part as f32);
         let scaled = Transform::from_row(scale as f32, 0.0, 0.0, scale as f32, 0.0, -top as f32);
@@ -138,7 +138,8 @@ impl Grid {
     }
 }
 
-/// Shades as a PNG in base 64, and whether it is turned over its diagonal. Clouds of speeds stand in columns, which pack better as rows.
+/// Encodes shades as a PNG in base 64; also returns whether it is reflected at its diagonal. Clouds over speeds form columns, which
+/// compress better as rows.
 fn image(shades: &Shades, colour: Colour) -> Result<(String, bool), png::EncodingError> {
     let size = [shades.columns(), shades.rows().len()];
     // Rows from above.
@@ -148,7 +149,7 @@ fn image(shades: &Shades, colour: Colour) -> Result<(String, bool), png::Encodin
     Ok(if turned.len() < upright.len() { (STANDARD.encode(turned), true) } else { (STANDARD.encode(upright), false) })
 }
 
-/// A column of the shades from above, two cells in a byte.
+/// Column of the shades from above, two cells in a byte.
 fn turned(shades: &Shades, column: usize) -> Vec<u8> {
     let mut packed = vec![0; shades.rows().len().div_ceil(2)];
     for (row, cells) in shades.rows().rev().enumerate() {
@@ -159,7 +160,8 @@ fn turned(shades: &Shades, column: usize) -> Vec<u8> {
     packed
 }
 
-/// A PNG of one colour, with an opacity for each shade; two shades in a byte. Its rows are packed one by one: an image takes a megabyte.
+/// Encodes a PNG of one colour, with an opacity for each shade; two shades in a byte. Its rows are encoded one by one: an image takes a
+/// megabyte.
 fn encoded<'a>(
     [width, height]: [usize; 2],
     rows: impl Iterator<Item = Cow<'a, [u8]>>,
@@ -173,7 +175,7 @@ fn encoded<'a>(
     encoder.set_palette(colour.rgb().repeat(alpha.len()));
     encoder.set_trns(alpha);
     encoder.set_compression(png::Compression::High);
-    // Differences of shades pack worse than the shades.
+    // Differences of shades compress worse than the shades.
     encoder.set_filter(png::Filter::NoFilter);
     let mut writer = encoder.write_header()?;
     let mut stream = writer.stream_writer()?;

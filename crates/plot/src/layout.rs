@@ -1,7 +1,7 @@
 //! Layout of a figure on the page, such that no label covers another.
 //!
-//! The page is as wide, in units, as its look says, by default [`WIDTH`], and as high as necessary. Widths of
-//! letters are estimated generously, because an SVG in a page is shown in whatever sans-serif font is available.
+//! The page is as wide, in units, as its look requires, by default [`WIDTH`], and as high as necessary. Widths of letters are estimated
+//! generously, because an SVG in a page is shown in the available sans-serif font.
 
 use super::look::{LegendPlace, Look};
 pub use super::look::{TEXT, WIDTH};
@@ -12,19 +12,19 @@ use super::{Data, Figure, FigureAxis, Mark, Panel};
 pub const TITLE: f64 = 15.0;
 /// Width of a sample in a legend.
 pub const SAMPLE: f64 = 20.0;
-/// Limit from which on values are not drawn: differences of them would overflow.
+/// Size from which values are not drawn: their differences would overflow.
 pub const LARGEST: f64 = 1e300;
 
-/// Span, relative to the values, above which an axis shows them apart: labels of ticks that differ in the tenth digit cannot be read, and
-/// rounding would draw itself.
+/// Smallest span, relative to the values, that an axis resolves: labels of ticks that differ in the tenth digit cannot be read, and the
+/// drawing would show rounding.
 const DRAWN_SPAN: f64 = 1e-9;
 
 const LINE: f64 = 16.0;
 /// Height of a row of a legend.
 const LEGEND_LINE: f64 = 15.0;
-/// Pages that are at least as high as so many legends: a legend takes at most a sixth of the height.
+/// Smallest height of a page, in legends: a legend takes at most a sixth of the height.
 const LEGENDS_HIGH: f64 = 6.0;
-/// Smallest height of a frame: room for three labels however the range lies.
+/// Smallest height of a frame, with room for three labels at any position of the range.
 const LEAST_HEIGHT: f64 = 66.0;
 /// Distance between panels: half a label of each.
 const BETWEEN: f64 = 15.0;
@@ -34,7 +34,7 @@ const LEADER: f64 = 14.0;
 /// Range, without ticks, of an axis whose range is unknown.
 const UNKNOWN: [f64; 2] = [0.0, 1.0];
 
-/// A rectangle of the page.
+/// Rectangle of the page.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[expect(missing_docs, reason = "edges and lengths of a rectangle")]
 pub struct Frame {
@@ -45,7 +45,7 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// The right edge.
+    /// Position of the right edge.
     pub fn right(&self) -> f64 {
         self.left + self.width
     }
@@ -56,7 +56,7 @@ impl Frame {
     }
 }
 
-/// A line of text; `at` is the left end of its base line.
+/// Line of text; `at` is the left end of its base line.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Text {
     /// Left end of the base line.
@@ -65,7 +65,7 @@ pub struct Text {
     pub text: String,
 }
 
-/// A reference line with its label.
+/// Reference line with its label.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MarkLine {
     /// Position on the page where the line crosses its axis.
@@ -83,9 +83,9 @@ pub struct AcrossLayout {
     pub range: [f64; 2],
     /// Ticks.
     pub ticks: Vec<Tick>,
-    /// Name below the labels of the ticks; none if a panel further down has both.
+    /// Name below the labels of the ticks; `None` if a panel further down has both.
     pub name: Option<Text>,
-    /// Whether the axis is the panel's own.
+    /// Whether the axis belongs to this panel alone.
     pub is_own: bool,
 }
 
@@ -177,7 +177,7 @@ fn extent(panel: &Panel, direction: usize) -> Option<[f64; 2]> {
             let drawable = edges.iter().filter(|edge| edge.iter().all(|part| part.abs() < LARGEST));
             known(drawable.flat_map(|[x, low, high]| if direction == 0 { [*x, *x] } else { [*low, *high] }))
         }
-        // Words stand at what is drawn.
+        // Words are placed at drawn data.
         data => known(data.points()?.iter().filter(drawable).map(|point| point[direction])),
     });
     known(extents.flatten())
@@ -199,13 +199,13 @@ fn horizontal_range<'a>(axis: &FigureAxis, panels: impl Iterator<Item = &'a Pane
     })
 }
 
-/// Whether a panel has the labels of its horizontal axis: its own, or the shared one as the last of those that share it.
+/// Whether a panel has the labels of its horizontal axis: its own axis, or the shared one in the last panel that shares it.
 fn is_labelled(figure: &Figure, index: usize) -> bool {
     let is_own = |panel: &Panel| panel.own_x.is_some();
     is_own(&figure.panels[index]) || figure.panels[index + 1..].iter().all(is_own)
 }
 
-/// Ranges across and up that hold these ranges and have one scale in a frame of this width and height.
+/// Ranges across and up that contain these ranges and have one scale in a frame of this width and height.
 fn one_scale(ranges: [[f64; 2]; 2], lengths: [f64; 2]) -> [[f64; 2]; 2] {
     let per_unit = |index: usize| (ranges[index][1] - ranges[index][0]) / lengths[index];
     let scale = per_unit(0).max(per_unit(1));
@@ -262,7 +262,7 @@ fn is_inside(mark: &Mark, range: [f64; 2]) -> bool {
     (0.0..=1.0).contains(&share(mark.at, range))
 }
 
-/// Indices of the marks within the axis that have a label, ascending by `place`.
+/// Indices of the labelled marks within the axis, ascending by `place`.
 fn labelled(marks: &[Mark], range: [f64; 2], place: impl Fn(&Mark) -> f64) -> Vec<usize> {
     let has_label = |index: &usize| is_inside(&marks[*index], range) && !marks[*index].label.is_empty();
     let mut order: Vec<usize> = (0..marks.len()).filter(has_label).collect();
@@ -270,7 +270,7 @@ fn labelled(marks: &[Mark], range: [f64; 2], place: impl Fn(&Mark) -> f64) -> Ve
     order
 }
 
-/// Each mark at its `place`, with its label if it has one.
+/// Each mark at its `place`, with its label, if any.
 fn mark_lines(
     marks: &[Mark],
     range: [f64; 2],
@@ -285,7 +285,7 @@ fn mark_lines(
     marks.iter().enumerate().map(line).collect()
 }
 
-/// Labels of horizontal lines beside the frame, moved apart where lines are close.
+/// Labels of horizontal lines beside the frame, moved apart if lines are close.
 fn beside(marks: &[Mark], range: [f64; 2], frame: &Frame) -> Vec<MarkLine> {
     let at = |mark: &Mark| frame.bottom() - frame.height * share(mark.at, range);
     let order = labelled(marks, range, at);
@@ -293,7 +293,7 @@ fn beside(marks: &[Mark], range: [f64; 2], frame: &Frame) -> Vec<MarkLine> {
     for index in 1..middles.len() {
         middles[index] = middles[index].max(middles[index - 1] + LINE);
     }
-    // Labels below the frame move up again, together with the labels in their way.
+    // Labels below the frame are moved up again, together with the labels in their way.
     let mut limit = frame.bottom();
     for middle in middles.iter_mut().rev() {
         *middle = middle.min(limit);
@@ -305,8 +305,8 @@ fn beside(marks: &[Mark], range: [f64; 2], frame: &Frame) -> Vec<MarkLine> {
     })
 }
 
-/// Labels of vertical lines above the frame, right of their lines, in rows such that no line crosses a label. No line is left of the first, so
-/// that its label moves to the left over its own line where the page ends at `end`.
+/// Labels of vertical lines above the frame, right of their lines, in rows such that no line crosses a label. No line is left of the first
+/// line, so that its label may move to the left if the page ends at `end`.
 fn above(marks: &[Mark], range: [f64; 2], frame: &Frame, end: f64) -> (Vec<MarkLine>, usize) {
     let at = |mark: &Mark| frame.left + frame.width * share(mark.at, range);
     let order = labelled(marks, range, |mark| -at(mark));
@@ -314,7 +314,7 @@ fn above(marks: &[Mark], range: [f64; 2], frame: &Frame, end: f64) -> (Vec<MarkL
     let mut rows: Vec<(f64, usize, usize)> = Vec::new();
     for index in order {
         let (left, right) = (at(&marks[index]), at(&marks[index]) + GAP + width(&marks[index].label, TEXT));
-        // The line of a mark further right rises to its own label's row, so this label goes above all labels that it spans.
+        // The line of a mark further right rises to its label's row, so this label is placed above all labels that it spans.
         let row = rows.iter().filter(|(other, _, _)| *other <= right).map(|(_, row, _)| row + 1).max().unwrap_or(0);
         rows.push((left, row, index));
     }
@@ -327,7 +327,7 @@ fn above(marks: &[Mark], range: [f64; 2], frame: &Frame, end: f64) -> (Vec<MarkL
     (lines, count)
 }
 
-/// Whether the box between two points meets the box of these ranges.
+/// Whether the box between two points overlaps the box of these ranges.
 fn crosses(one: [f64; 2], other: [f64; 2], ranges: [[f64; 2]; 2]) -> bool {
     (0..2).all(|direction| {
         let [low, high] = super::extent([one[direction], other[direction]]);
@@ -335,7 +335,7 @@ fn crosses(one: [f64; 2], other: [f64; 2], ranges: [[f64; 2]; 2]) -> bool {
     })
 }
 
-/// Whether some of a series is inside the ranges of its frame: a legend names nothing else.
+/// Whether a part of a series is inside the ranges of its frame: a legend names only such series.
 fn occurs(data: &Data, ranges: [[f64; 2]; 2]) -> bool {
     let has = |at: [f64; 2]| crosses(at, at, ranges);
     let line = |points: &[[f64; 2]]| {
@@ -355,7 +355,7 @@ fn occurs(data: &Data, ranges: [[f64; 2]; 2]) -> bool {
     }
 }
 
-/// An entry of a legend: its panel, the index of its series, and its width.
+/// Entry of a legend: its panel, the index of its series, and its width.
 type Entry = (usize, usize, f64);
 
 /// Entries of a panel's legend, in order.
@@ -365,7 +365,7 @@ fn entries(index: usize, panel: &Panel, ranges: [[f64; 2]; 2]) -> impl Iterator<
     there.map(move |(series, it)| (index, series, SAMPLE + GAP + width(&it.label, TEXT)))
 }
 
-/// Entries in rows of at most `room`: the place of each from the left end and its row, and the number of rows.
+/// Arranges entries in rows of at most `room`: each with its position from the left end and its row, and the number of rows.
 fn rows(entries: &[Entry], room: f64) -> (Vec<(Entry, f64, usize)>, usize) {
     let (mut x, mut row, mut places) = (0.0, 0, Vec::new());
     for entry in entries {
@@ -379,13 +379,13 @@ fn rows(entries: &[Entry], room: f64) -> (Vec<(Entry, f64, usize)>, usize) {
 }
 
 impl Layout {
-    /// Computes the layout of a figure in this look. Frames get higher where a legend would take more than a sixth of the page, and as high
-    /// as the height of the look leaves them.
+    /// Computes the layout of a figure in this look. Frames become higher if a legend would take more than a sixth of the page, and fill
+    /// the height of the look, if given.
     pub fn new(figure: &Figure, look: &Look) -> Self {
-        /// Passes after which heights are taken as they are; labels beside a frame change little with its height.
+        /// Number of passes, after which heights are final; labels beside a frame change little with its height.
         const PASSES: usize = 4;
         let wide = look.across();
-        // Letters keep their size in a narrow figure: its panels are relatively higher, to have room for ticks.
+        // Letters keep their size in a narrow figure: its panels are relatively higher, to leave room for ticks.
         let tall = wide * (WIDTH / wide).sqrt().clamp(1.0, 1.5);
         let height = |panel: &Panel| tall * if panel.height.is_nan() { 0.5 } else { panel.height.clamp(0.08, 2.0) };
         let mut heights: Vec<f64> = figure.panels.iter().map(|panel| height(panel).max(LEAST_HEIGHT)).collect();
@@ -395,7 +395,7 @@ impl Layout {
                 Some(height) => height * wide / look.points() - layout.height,
                 None => (LEGENDS_HIGH * layout.legend_height - layout.height).max(0.0),
             };
-            // The width gives a frame to scale its height, unless its own axis may show more.
+            // The width determines the height of a frame to scale, unless its own axis may show more.
             let free = || figure.panels.iter().map(|panel| !panel.y.to_scale || panel.own_x.is_some());
             let whole: f64 = heights.iter().zip(free()).filter(|(_, free)| *free).map(|(height, _)| height).sum();
             if extra.abs() < 0.5 || whole == 0.0 {
@@ -410,7 +410,7 @@ impl Layout {
         layout
     }
 
-    /// The layout with frames of these heights; a frame to scale has the height that its width gives it.
+    /// Computes the layout with frames of these heights; the width determines the height of a frame to scale.
     fn with_heights(figure: &Figure, look: &Look, heights: &[f64]) -> Self {
         let (wide, title) = (look.across(), look.title(figure));
         let mut heights = heights.to_vec();
@@ -431,7 +431,7 @@ impl Layout {
         };
         let to_scale = |across: f64, index: usize| Some((across * ratio(index)?).clamp(0.08 * wide, 2.0 * wide));
         for (index, height) in heights.iter_mut().enumerate() {
-            // Nearly; the margins that the ticks need decide.
+            // Estimate; the margins for the ticks determine the exact height.
             *height = to_scale(0.8 * wide, index).unwrap_or(*height);
         }
         let each = || figure.panels.iter().zip(&ranges).zip(&heights);
@@ -459,7 +459,7 @@ impl Layout {
         let beside_frame = beside_frame + if look.legend == LegendPlace::Right { column } else { 0.0 };
         let overhang = |across: f64| {
             let past = |mark: &Mark| GAP + width(&mark.label, TEXT) - across * (1.0 - share(mark.at, range));
-            // The label of the first has room on its left.
+            // The label of the first mark has room on its left.
             let others = labelled(&figure.marks, range, |mark| mark.at).into_iter().skip(1);
             others.map(|index| past(&figure.marks[index])).fold(0.0, f64::max)
         };
@@ -514,7 +514,7 @@ impl Layout {
             let frame = Frame { left, top: down(0.0), width: across, height: heights[index] };
             down(heights[index]);
             let middle = frame.top + 0.5 * frame.height;
-            // Lines of a shorter name stand at the frame, too.
+            // Lines of a shorter name are placed at the frame, too.
             let first = EDGE + (deepest - names[index].len()) as f64 * LINE + 0.75 * TEXT;
             let line = |(line, words): (usize, &String)| Text {
                 at: [first + line as f64 * LINE, middle],
@@ -575,7 +575,7 @@ impl Layout {
     }
 }
 
-/// Entries without those that say the same as one before, in the same colour and with the same sample.
+/// Returns the entries without repetitions of a name in the same colour and with the same sample.
 fn distinct(figure: &Figure, entries: &[Entry]) -> Vec<Entry> {
     let look = |(panel, series, _): &Entry| {
         let series = &figure.panels[*panel].series[*series];

@@ -1,7 +1,7 @@
-//! A figure as one value, with three renderers: SVG, and PNG and PDF from the SVG.
+//! Figures as plain values, with three renderers: SVG, and PNG and PDF made from the SVG.
 //!
-//! A [`Figure`] describes the drawing in the data's own units. The module [`layout`] places it on the page; [`svg`], [`png`] and [`pdf`]
-//! write it down in a given [`Look`]. The only thing computed here from the data is their extent.
+//! A [`Figure`] describes the drawing in the data's units. The module [`layout`] places it on the page; [`svg`], [`png`] and [`pdf`] write
+//! it in a given [`Look`]. The only quantity computed here from the data is their extent.
 
 mod density;
 mod element;
@@ -29,7 +29,7 @@ pub use look::{LegendPlace, Look, Theme, TitleChoice};
 pub use series::dot_size;
 pub use ticks::TickSpacing;
 
-/// A drawing: panels below each other that share the horizontal axis, unless a panel has its own.
+/// Drawing of panels below each other that share the horizontal axis, unless a panel has its own.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Figure {
     /// Title above the panels; empty for none.
@@ -45,7 +45,7 @@ pub struct Figure {
 }
 
 impl Figure {
-    /// A figure without marks on its horizontal axis and without a note.
+    /// Builds a figure without marks on its horizontal axis and without a note.
     pub fn new(title: &str, x: FigureAxis, panels: Vec<Panel>) -> Self {
         Self { title: title.into(), x, marks: Vec::new(), panels, note: String::new() }
     }
@@ -60,7 +60,7 @@ impl Figure {
     }
 }
 
-/// An axis: its name, unit and range.
+/// Axis: its name, unit and range.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FigureAxis {
     /// Name of the quantity on the axis.
@@ -76,31 +76,31 @@ pub struct FigureAxis {
 }
 
 impl FigureAxis {
-    /// An axis over the extent of the data.
+    /// Builds an axis over the extent of the data.
     pub fn new(label: &str, unit: &str) -> Self {
         Self { label: label.into(), unit: unit.into(), range: None, spacing: TickSpacing::Decimal, to_scale: false }
     }
 
-    /// An axis of degrees.
+    /// Builds an axis of degrees.
     pub fn degrees(label: &str) -> Self {
         Self { spacing: TickSpacing::Degrees, ..Self::new(label, "deg") }
     }
 
-    /// The axis with its ends set.
+    /// Returns the axis with its ends set.
     pub fn over(self, range: [f64; 2]) -> Self {
         Self { range: Some(range), ..self }
     }
 
-    /// A vertical axis to the scale of the horizontal one, which determines the height of its frame.
+    /// Returns a vertical axis to the scale of the horizontal one, which determines the height of its frame.
     pub fn scaled(self) -> Self {
         Self { to_scale: true, ..self }
     }
 }
 
-/// A frame with its vertical axis.
+/// Frame with its vertical axis.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Panel {
-    /// The vertical axis.
+    /// Vertical axis.
     pub y: FigureAxis,
     /// Height of the frame, in units of the figure's width.
     pub height: f64,
@@ -108,39 +108,39 @@ pub struct Panel {
     pub series: Vec<Series>,
     /// Horizontal lines, labelled at the right.
     pub marks: Vec<Mark>,
-    /// Horizontal axis, if it is not the figure's. Such a panel is below those that share that axis.
+    /// Separate horizontal axis; `None` for the figure's. Panels with a separate axis are below the others.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub own_x: Option<FigureAxis>,
 }
 
 impl Panel {
-    /// A panel without marks.
+    /// Builds a panel without marks.
     pub fn new(y: FigureAxis, height: f64, series: Vec<Series>) -> Self {
         Self { y, height, series, marks: Vec::new(), own_x: None }
     }
 
-    /// Gives the panel a horizontal axis of its own.
+    /// Gives the panel a separate horizontal axis.
     pub fn across(self, x: FigureAxis) -> Self {
         Self { own_x: Some(x), ..self }
     }
 
-    /// Adds the plain line at zero.
+    /// Adds a plain line at zero.
     pub fn with_zero(self) -> Self {
         Self { marks: vec![Mark::zero()], ..self }
     }
 }
 
-/// A reference line.
+/// Reference line.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Mark {
     /// Position on its axis.
     pub at: f64,
-    /// Label; empty for a plain thin line, such as the one at zero.
+    /// Label; empty for a plain thin line, such as a line at zero.
     pub label: String,
 }
 
 impl Mark {
-    /// The plain line at zero.
+    /// Builds a plain line at zero.
     pub fn zero() -> Self {
         Self { at: 0.0, label: String::new() }
     }
@@ -155,7 +155,7 @@ pub fn extent(values: impl IntoIterator<Item = f64>) -> [f64; 2] {
     values.into_iter().fold(none, |[low, high], value| [low.min(value), high.max(value)])
 }
 
-/// Points `[x, y]` in the data's units, in order.
+/// Sequence of points `[x, y]` in the data's units.
 pub trait Points: IntoIterator<Item = [f64; 2]> {}
 
 impl<P: IntoIterator<Item = [f64; 2]>> Points for P {}
@@ -174,7 +174,7 @@ pub struct Series {
 }
 
 impl Series {
-    /// A series with this label in the legend; an empty label has no entry.
+    /// Builds a series with this label in the legend; an empty label has no entry.
     pub fn new(label: &str, colour: Colour, data: Data) -> Self {
         Self { label: label.into(), name: String::new(), colour, data }
     }
@@ -184,32 +184,32 @@ impl Series {
         Self { name: name.into(), ..self }
     }
 
-    /// A line through points.
+    /// Builds a line through points.
     pub fn line(label: &str, colour: Colour, stroke: Stroke, points: impl Points) -> Self {
         Self::new(label, colour, Data::Line { points: points.into_iter().collect(), stroke })
     }
 
-    /// The area inside a closed line.
+    /// Builds the area inside a closed line.
     pub fn area(label: &str, colour: Colour, stroke: Stroke, points: impl Points) -> Self {
         Self::new(label, colour, Data::Area { points: points.into_iter().collect(), stroke })
     }
 
-    /// A line with an arrow at its end.
+    /// Builds a line with an arrow at its end.
     pub fn arrow(label: &str, colour: Colour, stroke: Stroke, points: impl Points) -> Self {
         Self::new(label, colour, Data::Arrow { points: points.into_iter().collect(), stroke })
     }
 
-    /// A band between two values at each place: `[x, low, high]`; NaN breaks it.
+    /// Builds a band between two values at each x: `[x, low, high]`; NaN breaks it.
     pub fn band(label: &str, colour: Colour, edges: impl IntoIterator<Item = [f64; 3]>) -> Self {
         Self::new(label, colour, Data::Band { edges: edges.into_iter().collect() })
     }
 
-    /// A marker at each point.
+    /// Builds a marker at each point.
     pub fn points(label: &str, colour: Colour, marker: Marker, points: impl Points) -> Self {
         Self::new(label, colour, Data::Points { points: points.into_iter().collect(), marker })
     }
 
-    /// A series of words, in the colour of the text and without a legend entry.
+    /// Builds a series of words, in the colour of the text and without a legend entry.
     pub fn words(words: impl IntoIterator<Item = Label>) -> Self {
         Self::new("", Colour::Ink, Data::Words(words.into_iter().collect()))
     }
@@ -240,12 +240,12 @@ pub enum Data {
         points: Vec<[f64; 2]>,
         stroke: Stroke,
     },
-    /// A line with an arrowhead at the end of each of its runs.
+    /// Line with an arrowhead at the end of each of its runs.
     Arrow {
         points: Vec<[f64; 2]>,
         stroke: Stroke,
     },
-    /// Area between two lines: `[x, low, high]` at each place; NaN breaks it.
+    /// Area between two lines: `[x, low, high]` at each x; NaN breaks it.
     Band {
         edges: Vec<[f64; 3]>,
     },
@@ -255,18 +255,18 @@ pub enum Data {
     },
     /// Words at points, above all other data.
     Words(Vec<Label>),
-    /// Points counted on a grid, when there are too many to draw one by one.
+    /// Points counted on a grid, if there are too many to draw one by one.
     Density(Density),
     /// Regions of the plane, as the cells of a grid.
     Region {
         cells: Density,
-        /// Strength of the colour, up to 1; it distinguishes regions in grey print.
+        /// Strength of the colour, up to 1, which distinguishes regions in grey print.
         strength: f64,
     },
 }
 
 impl Data {
-    /// Points that are drawn one by one or joined.
+    /// Returns points that are drawn one by one or joined; `None` for other data.
     pub fn points(&self) -> Option<&[[f64; 2]]> {
         match self {
             Self::Line { points, .. }
@@ -277,7 +277,7 @@ impl Data {
         }
     }
 
-    /// Stroke, marker and strength, without the values: series of the same style have the same sample in a legend.
+    /// Stroke, marker and strength, without the values: series of one style share a sample in a legend.
     pub fn style(&self) -> (std::mem::Discriminant<Self>, Option<Stroke>, Option<Marker>, f64) {
         let (stroke, marker, strength) = match self {
             Self::Line { stroke, .. } | Self::Area { stroke, .. } | Self::Arrow { stroke, .. } => {
@@ -291,25 +291,25 @@ impl Data {
     }
 }
 
-/// A word at a point.
+/// Word at a point.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Label {
     /// Position `[x, y]`.
     pub at: [f64; 2],
-    /// Text; `_` lowers and `^` raises the letter after it, or the letters in braces.
+    /// Text; `_` lowers and `^` raises the next letter, or the letters in braces.
     pub text: String,
-    /// Side of the point on which the word is written.
+    /// Side of the point where the word is written.
     pub beside: Beside,
 }
 
 impl Label {
-    /// A label beside a point, which is given in data values.
+    /// Builds a label beside a point in data values.
     pub fn new(at: [f64; 2], text: &str, beside: Beside) -> Self {
         Self { at, text: text.into(), beside }
     }
 }
 
-/// A side of a point.
+/// Side of a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 #[expect(missing_docs, reason = "a side is what its name says")]
@@ -328,25 +328,25 @@ pub enum Beside {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Stroke {
-    /// A thin solid stroke.
+    /// Thin solid stroke.
     Thin,
-    /// A solid stroke.
+    /// Solid stroke.
     Solid,
-    /// A dashed stroke.
+    /// Dashed stroke.
     Dashed,
-    /// A dotted stroke.
+    /// Dotted stroke.
     Dotted,
-    /// Dashes and dots in turn.
+    /// Alternating dashes and dots.
     DashDotted,
-    /// Dashes, each with two dots after it.
+    /// Dashes, each followed by two dots.
     DashDotDotted,
-    /// A solid stroke, three times as wide.
+    /// Solid stroke, three times as wide.
     Thick,
-    /// A dashed stroke, three times as wide.
+    /// Dashed stroke, three times as wide.
     ThickDashed,
-    /// A dotted stroke, three times as wide.
+    /// Dotted stroke, three times as wide.
     ThickDotted,
-    /// Dashes and dots in turn, three times as wide.
+    /// Alternating dashes and dots, three times as wide.
     ThickDashDotted,
 }
 
@@ -354,23 +354,23 @@ pub enum Stroke {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Marker {
-    /// A small disc.
+    /// Small disc.
     Dot,
-    /// A disc.
+    /// Disc.
     Disc,
-    /// An open circle; this marker and the next ones are small if there are many.
+    /// Open circle; this marker and the next ones are small if there are many.
     Ring,
-    /// An open square.
+    /// Open square.
     Square,
-    /// An open square on its tip.
+    /// Open square on its tip.
     Diamond,
-    /// An open triangle.
+    /// Open triangle.
     Triangle,
     /// Two diagonal strokes.
     Cross,
-    /// A horizontal and a vertical stroke.
+    /// Horizontal and vertical stroke.
     Plus,
-    /// A triangle below the point, with its tip at the point.
+    /// Triangle below the point, with its tip at the point.
     Below,
 }
 
@@ -388,7 +388,7 @@ pub enum Colour {
 }
 
 impl Colour {
-    /// All colours, in the order in which series take them.
+    /// All colours, in the order in which series use them.
     pub const ALL: [Self; 6] = [Self::Ink, Self::Grey, Self::Blue, Self::Vermilion, Self::Green, Self::Purple];
 
     /// Class of the colour in the SVG, its hex value on white paper, and its hex value on a dark screen.

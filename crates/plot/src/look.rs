@@ -1,4 +1,4 @@
-//! Appearance of a figure on paper or on a screen, whatever its data: its width, font, title and ranges of axes.
+//! Appearance of a figure on paper or on a screen: its width, font, title and ranges of axes.
 
 use super::Figure;
 use super::font::Fonts;
@@ -7,7 +7,7 @@ use super::font::Fonts;
 pub const WIDTH: f64 = 720.0;
 /// Height of most letters, in units.
 pub const TEXT: f64 = 12.5;
-/// Default width of a figure, points, 72 to the inch: that of a page between its margins.
+/// Default width of a figure, points, 72 to the inch: the width of a page between its margins.
 pub const PAGE: f64 = 480.0;
 /// Least and greatest width of the page, in units; a letter is [`TEXT`] high. A narrower page has no room beside its labels.
 const ACROSS: [f64; 2] = [240.0, 4000.0];
@@ -17,10 +17,10 @@ const WIDTHS: [f64; 2] = [30.0, 2400.0];
 /// Medium on which a figure is viewed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Theme {
-    /// A screen: an SVG is light or dark, as the reader's screen is.
+    /// Screen: an SVG is light or dark, like the reader's screen.
     #[default]
     Screen,
-    /// White paper, whatever the screen.
+    /// White paper, on any screen.
     Print,
 }
 
@@ -65,14 +65,14 @@ impl LegendPlace {
 /// Title above a figure.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum TitleChoice {
-    /// The figure's own, unless the figure has a width on paper: there the caption says it.
+    /// Title of the figure, unless the figure has a width on paper: there the caption serves as title.
     #[default]
     OffPaper,
-    /// The figure's own.
+    /// Title of the figure.
     Shown,
     /// No title.
     Hidden,
-    /// These words.
+    /// Given words.
     Words(String),
 }
 
@@ -85,7 +85,7 @@ pub fn length(text: &str) -> Result<f64, String> {
     Ok(number.ok_or("must be a finite number above 0 with its unit")? * points)
 }
 
-/// Millimetres of points.
+/// Converts points to millimetres.
 fn millimetres(points: f64) -> f64 {
     points * 25.4 / 72.0
 }
@@ -99,11 +99,11 @@ pub fn ends([low, high]: [f64; 2]) -> Result<[f64; 2], String> {
 /// Appearance of a figure.
 #[derive(Clone, Debug, Default)]
 pub struct Look {
-    /// Width on paper, points. By default that of the surrounding page; in print, a page's width.
+    /// Width on paper, points; by default the width of the surrounding page, or of a page in print.
     pub width: Option<f64>,
-    /// Height on paper, points. By default the panels decide.
+    /// Height on paper, points; by default the height of the panels.
     pub height: Option<f64>,
-    /// Height of letters on paper, points. By default as in a figure as wide as a page.
+    /// Height of letters on paper, points; by default as in a figure as wide as a page.
     pub size: Option<f64>,
     /// Fonts, which an SVG then embeds. By default an SVG uses the fonts of the surrounding page; a PNG and a PDF use the built-in
     /// font.
@@ -114,37 +114,37 @@ pub struct Look {
     pub title: TitleChoice,
     /// Place of the legend.
     pub legend: LegendPlace,
-    /// Ends of the horizontal axis, in place of the figure's.
+    /// Ends of the horizontal axis, instead of the figure's.
     pub x: Option<[f64; 2]>,
-    /// Ends of the first panel's vertical axis, in place of the panel's.
+    /// Ends of the first panel's vertical axis, instead of the panel's.
     pub y: Option<[f64; 2]>,
 }
 
 /// Reason why a look is impossible.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LookError {
-    /// A width outside the allowed range.
+    /// Width outside the allowed range.
     #[error("a figure {:.1} mm wide cannot be made: the width must be {:.1} to {:.0} mm", millimetres(*.0), millimetres(WIDTHS[0]), millimetres(WIDTHS[1]))]
     Width(f64),
-    /// A height in which the panels and words have no room, or that panels to scale do not have.
+    /// Height without room for the panels and words, or different from the height of panels to scale.
     #[error(
         "this figure cannot be {:.1} mm high at a width of {:.1} mm: it needs {:.1} mm",
         millimetres(*height), millimetres(*width), millimetres(*needed)
     )]
     #[expect(missing_docs, reason = "what the words say")]
     Height { height: f64, width: f64, needed: f64 },
-    /// A legend that leaves the frames too little room.
+    /// Legend that leaves too little room for the frames.
     #[error("the legend leaves no room for the figure in a width of {:.1} mm: use --legend below or above", millimetres(*.0))]
     Legend(f64),
     /// Letters that leave no room, or that are too small to read.
     #[error("letters of {size:.2} pt do not fit into a figure {:.1} mm wide: the size must be {low:.2} to {high:.1} pt", millimetres(*width))]
     #[expect(missing_docs, reason = "what the words say")]
     Size { size: f64, width: f64, low: f64, high: f64 },
-    /// A range that shows no data.
+    /// Range without data.
     #[error("{axis} from {} to {} shows nothing: what is drawn lies from {} to {}", shown[0], shown[1], drawn[0] as f32, drawn[1] as f32)]
     #[expect(missing_docs, reason = "what the words say")]
     Aside { axis: &'static str, shown: [f64; 2], drawn: [f64; 2] },
-    /// A range that shows too little of the data.
+    /// Range that shows too little of the data.
     #[error(
         "{axis} from {} to {} is less than a hundredth of what is drawn, from {} to {}: compute the figure over a narrower range",
         shown[0], shown[1], drawn[0] as f32, drawn[1] as f32
@@ -154,7 +154,7 @@ pub enum LookError {
 }
 
 impl Look {
-    /// Whether the look asks for a length on paper.
+    /// Whether the look has a length on paper.
     pub(super) fn is_sized(&self) -> bool {
         self.width.is_some() || self.height.is_some() || self.size.is_some() || self.theme == Theme::Print
     }
@@ -174,7 +174,7 @@ impl Look {
         self.width.unwrap_or(PAGE)
     }
 
-    /// Width of the page in units of which a letter is [`TEXT`] high.
+    /// Width of the page in units in which a letter is [`TEXT`] high.
     pub fn across(&self) -> f64 {
         // width : size = across : TEXT
         let across = self.size.map_or(WIDTH * self.points() / PAGE, |size| TEXT * self.points() / size);

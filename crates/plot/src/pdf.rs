@@ -1,4 +1,4 @@
-//! The figure as PDF, from its SVG: paths remain paths, and letters remain letters of embedded fonts.
+//! Figures as PDF, made from their SVG: paths remain paths, and letters remain letters of embedded fonts.
 //!
 //! Supports only the elements that figures have: plain colours, paths, words, clipping rectangles, and images of one colour.
 
@@ -19,19 +19,19 @@ use super::{Figure, svg};
 /// Reason why there is no PDF.
 #[derive(Debug, thiserror::Error)]
 pub enum PdfError {
-    /// The SVG could not be written.
+    /// SVG that could not be written.
     #[error("the figure could not be written as SVG: {0}")]
     Svg(#[from] std::fmt::Error),
-    /// The SVG could not be read back.
+    /// SVG that could not be read back.
     #[error("the figure's SVG could not be read: {0}")]
     Read(#[from] resvg::usvg::Error),
-    /// The image of a cloud could not be read.
+    /// Image of a cloud that could not be read.
     #[error("a cloud of points could not be read back: {0}")]
     Image(#[from] png::DecodingError),
-    /// A font is broken.
+    /// Broken font.
     #[error("the font {0} could not be cut down to the letters that are used")]
     Font(String),
-    /// A stream could not be compressed.
+    /// Stream that could not be compressed.
     #[error("the file could not be packed: {0}")]
     Pack(#[from] std::io::Error),
 }
@@ -39,7 +39,7 @@ pub enum PdfError {
 /// Encoding of glyphs by their numbers in the font.
 const IDENTITY: SystemInfo<'_> = SystemInfo { registry: Str(b"Adobe"), ordering: Str(b"Identity"), supplement: 0 };
 
-/// Renders the figure on one page of its own size.
+/// Renders the figure on one page of the figure's size.
 pub fn render(figure: &Figure, look: &Look) -> Result<Vec<u8>, PdfError> {
     let fonts = look.fonts.clone().unwrap_or_default();
     let tree = fonts.tree(&svg::document(figure, look)?)?;
@@ -102,7 +102,7 @@ struct Writer {
     last: i32,
     page: Content,
     images: Vec<Ref>,
-    /// Opacities of fill and stroke that occur.
+    /// Opacities of fill and stroke in the figure.
     opacities: Vec<[f32; 2]>,
 }
 
@@ -156,7 +156,7 @@ impl Writer {
                     to
                 }
                 PathSegment::QuadTo(by, to) => {
-                    // Control points of the same curve as a cubic: two thirds of the way to the quadratic's control point.
+                    // Control points of the curve as a cubic: two thirds of the way to the quadratic's control point.
                     let [one, other] =
                         [last, to].map(|end| [end.x + (by.x - end.x) / 1.5, end.y + (by.y - end.y) / 1.5]);
                     self.page.cubic_to(one[0], one[1], other[0], other[1], to.x, to.y);
@@ -222,7 +222,7 @@ impl Writer {
     }
 
     fn text(&mut self, text: &Text, opacity: f32, fonts: &[ID]) -> Result<(), PdfError> {
-        // The rim of a word is drawn as a path: as letters, a reader would find the word twice.
+        // The rim of a word is drawn as a path; drawn as letters, the word would be found twice.
         if text.layouted().iter().any(|span| span.stroke.is_some()) {
             return self.group(text.flattened(), opacity, fonts);
         }
@@ -234,7 +234,7 @@ impl Writer {
             let mut set = None;
             for glyph in &span.positioned_glyphs {
                 let Some(at) = fonts.iter().position(|id| *id == glyph.font) else { continue };
-                // The outline's transform maps font units to the page; the font says how many units are an em.
+                // The outline's transform maps font units to the page; the font defines the number of units per em.
                 let (size, place) = (glyph.font_size(), glyph.outline_transform());
                 let units = size / place.get_scale().0;
                 let place = place.pre_concat(Transform::from_scale(units / size, units / size));

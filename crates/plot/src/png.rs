@@ -1,4 +1,4 @@
-//! The figure as PNG, from its SVG; the program embeds a font, for machines that have none.
+//! Figures as PNG, made from their SVG; the program embeds a font, for machines without fonts.
 
 use std::io::Write;
 
@@ -14,27 +14,27 @@ use super::{Colour, Figure};
 
 /// Largest width of an image, pixels.
 const WIDEST: u32 = 10_000;
-/// Rows of pixels that are drawn at a time; clipping needs five times as much memory besides.
+/// Number of rows of pixels drawn at a time; clipping needs five times as much additional memory.
 const BAND: u32 = 8;
 
 /// Reason why there is no image.
 #[derive(Debug, thiserror::Error)]
 pub enum PngError {
-    /// A width that is not allowed.
+    /// Width that is not allowed.
     #[error("an image {0} pixels wide cannot be made: the width must be 1 to {WIDEST}")]
     Width(u32),
-    /// The SVG could not be written.
+    /// SVG that could not be written.
     #[error("the figure could not be written as SVG: {0}")]
     Svg(#[from] std::fmt::Error),
-    /// The SVG could not be read back.
+    /// SVG that could not be read back.
     #[error("the figure's SVG could not be read: {0}")]
     Read(#[from] resvg::usvg::Error),
-    /// The pixels could not be compressed.
+    /// Pixels that could not be compressed.
     #[error("the image could not be packed: {0}")]
     Pack(String),
 }
 
-/// A layer that is drawn over those before it.
+/// Layer that is drawn over the layers before it.
 enum Paint {
     Drawing(Box<Tree>),
     Grid(Grid, Colour, [f64; 4]),
@@ -69,7 +69,7 @@ pub fn render(figure: Figure, look: &Look, width: u32) -> Result<Vec<u8>, PngErr
     let mut encoder = png::Encoder::new(&mut bytes, width, height);
     encoder.set_color(png::ColorType::Rgb);
     if look.is_sized() {
-        // Pixels a metre.
+        // Pixels per metre.
         let [xppu, yppu] = [(f64::from(width) / look.points() * 72.0 / 0.0254).round() as u32; 2];
         encoder.set_pixel_dims(Some(png::PixelDimensions { xppu, yppu, unit: png::Unit::Meter }));
     }

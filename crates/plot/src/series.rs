@@ -1,4 +1,4 @@
-//! The inside of a frame: each series as SVG, with no more bytes than print or a page can show.
+//! Contents of a frame: each series as SVG, with no more bytes than print or a page can show.
 
 use std::fmt::{self, Write};
 
@@ -9,13 +9,13 @@ use super::layout::{Frame, PanelLayout, share};
 use super::sheet::{Host, Sheet};
 use super::{BREAK, Colour, Data, Marker, Series, Stroke, thin, words};
 
-/// Most points of a line; a longer line is counted on a grid instead.
+/// Largest number of points of a line; a longer line is counted on a grid instead.
 const MOST_POINTS: usize = 40_000;
-/// Most cells, in all, along a line counted on a grid: a second of work.
+/// Largest total number of cells along a line counted on a grid: a second of work.
 const MOST_STEPS: usize = 100_000_000;
 impl Host {
-    /// Most occupied cells that are drawn as dots; with more, an image is embedded. In a page an image takes its place as soon as dots are
-    /// nearly as small as the cells: it has a fourth of the bytes.
+    /// Largest number of occupied cells that are drawn as dots; with more, an image is embedded. In a page an image replaces dots as soon
+    /// as they are nearly as small as the cells: it has a fourth of the bytes.
     fn most_dots(self) -> usize {
         match self {
             Self::File => 25_000,
@@ -23,7 +23,7 @@ impl Host {
         }
     }
 
-    /// Parts of a unit to which lines are rounded: a tenth is a fortieth of a millimetre on paper.
+    /// Number of parts of a unit to which lines are rounded: a tenth is a fortieth of a millimetre on paper.
     fn parts(self) -> f64 {
         match self {
             Self::File => 100.0,
@@ -32,7 +32,7 @@ impl Host {
     }
 }
 
-/// Diameter of the dots for so many occupied cells. A machine with few motions has some hundred; smaller dots would vanish in print.
+/// Diameter of the dots for this number of occupied cells. A machine with few motions has some hundred; smaller dots would vanish in print.
 pub fn dot_size(cells: usize) -> f64 {
     match cells {
         ..40 => 5.0,
@@ -43,13 +43,13 @@ pub fn dot_size(cells: usize) -> f64 {
     }
 }
 
-/// Inside of a frame, with its upper left corner at the origin.
+/// Contents of a frame, with its upper left corner at the origin.
 pub(super) struct Page {
     pub(super) width: f64,
     pub(super) height: f64,
     pub(super) x: [f64; 2],
     pub(super) y: [f64; 2],
-    /// Whether lines, and markers, have a rim in the colour of the paper: regions are behind them, or thick lines behind markers.
+    /// Whether lines, and markers, have a rim in the colour of the paper, because regions are behind them, or thick lines behind markers.
     pub(super) is_rimmed: [bool; 2],
 }
 
@@ -59,7 +59,7 @@ impl Page {
         Self { width, height, x: place.across.range, y: place.range, is_rimmed }
     }
 
-    /// The values of the points through which a line is drawn, with its breaks.
+    /// Points through which a line is drawn, with its breaks.
     pub(super) fn thinned(&self, points: &[[f64; 2]]) -> Vec<[f64; 2]> {
         let value = |share: f64, [low, high]: [f64; 2]| low + share * (high - low);
         let mut kept = Vec::new();
@@ -131,7 +131,7 @@ impl Page {
         stroked(out, &edge, how, colour)
     }
 
-    /// Draws the area between two lines, with a thin edge so that a narrow band is seen beside the line in its middle.
+    /// Draws the area between two lines, with a thin edge so that a narrow band is visible beside the line in its middle.
     fn band(&self, out: &mut Sheet, edges: &[[f64; 3]], colour: Colour) -> fmt::Result {
         let side = |index: usize| move |edge: &[f64; 3]| self.at([edge[0], edge[index]]);
         let mut path = String::new();
@@ -198,7 +198,7 @@ impl Page {
         }
     }
 
-    /// Few cells: a dot each.
+    /// Draws few cells as one dot each.
     fn dots(&self, density: &Density, cells: usize) -> Grid {
         let [x, y] = density.ranges();
         let [columns, rows] = density.cells();
@@ -212,12 +212,12 @@ impl Page {
             let dot = self.at([middle(cell % columns, columns, x), middle(cell / columns, rows, y)]);
             at[usize::from(shade - 1)].push(dot.map(|part| (10.0 * part).round() as i64));
         }
-        // Clouds of speeds stand in columns: along these the steps are shortest.
+        // Clouds over speeds form columns: steps along these are shortest.
         at.iter_mut().for_each(|dots| dots.sort_unstable());
         Grid::Dots { at, size: dot_size(cells) }
     }
 
-    /// Many cells: the grid itself, stretched over the frame.
+    /// Draws many cells as the grid itself, stretched over the frame.
     fn cells(&self, density: &Density, shades: Shades, strength: f64) -> Grid {
         let [x, y] = density.ranges();
         let ([left, top], [right, bottom]) = (self.at([x[0], y[1]]), self.at([x[1], y[0]]));

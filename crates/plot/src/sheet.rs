@@ -1,4 +1,4 @@
-//! The SVG document while it is written: in one piece, or divided where a grid is drawn between lower and upper layers.
+//! SVG document under construction: in one piece, or divided where a grid is drawn between lower and upper layers.
 
 use std::fmt::{self, Write};
 
@@ -8,13 +8,13 @@ use super::grid::Grid;
 /// Surroundings of an SVG.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Host {
-    /// A file of its own.
+    /// Separate file.
     File,
-    /// A page with one style for all its figures. Frames say their ranges, so that a script finds values.
+    /// Page with one style for all its figures. Frames state their ranges, so that a script finds values.
     Page,
 }
 
-/// A layer of the drawing; the first is the lowest.
+/// Layer of the drawing; the first is the lowest.
 pub(super) enum Layer {
     /// A whole SVG document.
     Drawing(String),
@@ -22,7 +22,7 @@ pub(super) enum Layer {
     Grid(Grid, Colour, [f64; 4]),
 }
 
-/// The current text, and the layers below it.
+/// Current text, and the layers below it.
 pub(super) struct Sheet {
     text: String,
     layers: Vec<Layer>,
@@ -41,12 +41,12 @@ impl Write for Sheet {
 }
 
 impl Sheet {
-    /// Creates an empty sheet; `page` opens a document and a group in it. Grids are part of the text unless they are kept `apart`.
+    /// Creates an empty sheet; `page` opens a document and a group in it. Grids are part of the text unless `apart` is set.
     pub(super) fn new(page: String, apart: bool, host: Host) -> Self {
         Self { text: String::new(), layers: Vec::new(), apart, host, page, frame: (String::new(), [0.0; 4]) }
     }
 
-    /// The surroundings.
+    /// Returns the surroundings.
     pub(super) fn host(&self) -> Host {
         self.host
     }

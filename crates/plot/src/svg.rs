@@ -1,6 +1,6 @@
-//! The figure as SVG: colours as attributes for white paper, and a style that changes them on a dark screen.
+//! Figures as SVG: colours as attributes for white paper, and a style that changes them on a dark screen.
 //!
-//! No ids, so that several figures fit into one page; nested `svg` elements clip the data.
+//! The document has no ids, so that several figures fit into one page; nested `svg` elements clip the data.
 
 use std::fmt::{self, Write};
 
@@ -16,20 +16,20 @@ use super::series::Page;
 use super::sheet::{Host, Layer, Sheet};
 use super::{Colour, Data, Figure, Marker, Panel, Series};
 
-/// Width of strokes above which a marker on one would not be seen.
+/// Width of strokes above which a marker on the stroke would be invisible.
 const THICK: f64 = 3.0;
 /// Colour of the paper on a dark screen.
 const DARK_PAPER: &str = "#15171a";
-/// Filter for images, whose colours are fixed: on a dark screen, light and dark are exchanged, and hues stay.
+/// Filter for images, whose colours are fixed: on a dark screen, light and dark are exchanged, and hues are unchanged.
 const DARK_IMAGE: &str = "invert(1) hue-rotate(180deg)";
 
 /// Reason why there is no SVG.
 #[derive(Debug, thiserror::Error)]
 pub enum SvgError {
-    /// The SVG could not be written.
+    /// SVG that could not be written.
     #[error("the figure could not be written as SVG: {0}")]
     Svg(#[from] fmt::Error),
-    /// The SVG could not be read to find its letters.
+    /// SVG that could not be read to find its letters.
     #[error("the figure's SVG could not be read: {0}")]
     Read(#[from] resvg::usvg::Error),
 }
@@ -48,13 +48,13 @@ pub fn render(figure: &Figure, look: &Look) -> Result<String, SvgError> {
     }
 }
 
-/// Renders the figure for a page that has the [`page_style`] of all its figures: without fonts and dark colours of its own, with denser
+/// Renders the figure for a page that has the [`page_style`] of all its figures: without separate fonts and dark colours, with denser
 /// clouds as images, and with the ranges of its frames.
 pub fn inset(figure: &Figure, look: &Look) -> Result<String, SvgError> {
     Ok(whole(write(figure, look, false, Host::Page)?))
 }
 
-/// The style of a page's figures: their fonts, each once, and their colours on a dark screen.
+/// Style of a page's figures: their fonts, each once, and their colours on a dark screen.
 pub fn page_style<'a>(look: &Look, insets: impl IntoIterator<Item = &'a str>) -> Result<String, SvgError> {
     let mut style = if look.theme == Theme::Screen { dark_screen() } else { String::new() };
     let Some(fonts) = &look.fonts else { return Ok(style) };
@@ -76,7 +76,7 @@ pub fn page_style<'a>(look: &Look, insets: impl IntoIterator<Item = &'a str>) ->
     Ok(style)
 }
 
-/// Fonts reduced to the glyphs of figures, for a style.
+/// Fonts reduced to the glyphs of the figures, for a style.
 fn letters(database: &Database, used: Vec<(ID, Glyphs)>) -> Result<String, fmt::Error> {
     let mut faces = String::new();
     for (id, glyphs) in used {
@@ -90,7 +90,7 @@ fn letters(database: &Database, used: Vec<(ID, Glyphs)>) -> Result<String, fmt::
     Ok(faces)
 }
 
-/// The document without embedded fonts.
+/// Renders the document without embedded fonts.
 pub(super) fn document(figure: &Figure, look: &Look) -> Result<String, fmt::Error> {
     Ok(whole(write(figure, look, false, Host::File)?))
 }
@@ -104,7 +104,7 @@ fn whole(layers: Vec<Layer>) -> String {
     drawings.collect()
 }
 
-/// Writes the figure in layers, with dense grids among them if they are kept `apart`, else as one document.
+/// Writes the figure in layers, separate from dense grids if `apart` is set, else as one document.
 pub(super) fn write(figure: &Figure, look: &Look, apart: bool, host: Host) -> Result<Vec<Layer>, fmt::Error> {
     let wide = look.across();
     let layout = Layout::new(figure, look);
@@ -115,7 +115,7 @@ pub(super) fn write(figure: &Figure, look: &Look, apart: bool, host: Host) -> Re
         false => r#"width="100%""#.into(),
     };
     let family = look.fonts.as_ref().map(|fonts| format!("'{}', ", escaped(fonts.family()))).unwrap_or_default();
-    // In a page, a title would hide the values under the pointer.
+    // A title in a page would hide the values under the pointer.
     let named = match host {
         Host::File => String::new(),
         Host::Page => format!(r#" aria-label="{}""#, escaped(&figure.title)),
@@ -242,10 +242,10 @@ fn line(out: &mut Sheet, path: &str, broken: bool, colour: Colour) -> fmt::Resul
     writeln!(out, r#"<path d="{path}" fill="none" stroke-width="0.8"{dash} {}/>"#, stroke(colour))
 }
 
-/// The line from the first frame up to a label beside it.
+/// Draws the line from the first frame up to a label beside it.
 fn leader(out: &mut Sheet, mark: &MarkLine, layout: &Layout) -> fmt::Result {
     let Some((words, first)) = mark.label.as_ref().zip(layout.panels.first()) else { return Ok(()) };
-    // A label that stands over its line is not crossed by it.
+    // A line ends below a label that is above it.
     let to = if words.at[0] > mark.at { words.at[1] - 0.75 * TEXT } else { words.at[1] + 2.0 };
     let (x, from, to) = (number(mark.at), number(first.frame.top), number(to));
     line(out, &format!("M{x} {from}V{to}"), false, Colour::Grey)?;

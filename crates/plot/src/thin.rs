@@ -1,4 +1,4 @@
-//! Lines with no more points than print can show.
+//! Thinning of lines to no more points than print can show.
 
 /// Largest distance of a thinned line from the omitted points, in units of the page: a thirtieth of a thin line.
 const CLOSE: f64 = 0.03;
@@ -23,8 +23,8 @@ pub fn strokes(points: impl IntoIterator<Item = [f64; 2]>, most: usize) -> Vec<V
     if long { strokes.iter().map(|stroke| columns(stroke)).collect() } else { close }
 }
 
-/// Leaves out the points that the line passes anyway. From each kept point, the next is the farthest point that is
-/// visible through the gates, [`CLOSE`] to either side, around all points between (Zhao and Saalfeld's sleeve).
+/// Omits the points that the line passes anyway. After each kept point, the next is the farthest point visible through the gates, [`CLOSE`]
+/// to either side, around all points between (Zhao and Saalfeld's sleeve).
 fn close(stroke: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let Some((first, rest)) = stroke.split_first() else { return Vec::new() };
     let mut kept = vec![*first];
@@ -52,7 +52,7 @@ fn close(stroke: &[[f64; 2]]) -> Vec<[f64; 2]> {
     kept
 }
 
-/// Directions in which a straight line passes all points since the last kept one.
+/// Range of directions in which a straight line passes all points since the last kept one.
 struct Sleeve {
     /// Direction towards the first of these points.
     along: [f64; 2],
@@ -76,7 +76,7 @@ impl Sleeve {
         let cross = self.along[0] * to[1] - self.along[1] * to[0];
         let angle = libm::atan2(cross, self.along[0] * to[0] + self.along[1] * to[1]);
         let [low, high] = self.gate;
-        // Where a line turns back, keep its farthest point.
+        // At a reversal of the line its farthest point is kept.
         if distance < self.reach || angle < low || angle > high {
             return false;
         }

@@ -1,4 +1,4 @@
-//! Ticks: at 1, 2 or 5 times a power of ten, at the usual parts of a circle, or at powers of ten and their multiples.
+//! Ticks at 1, 2 or 5 times a power of ten, at the usual parts of a circle, or at powers of ten and their multiples.
 
 use serde::Serialize;
 
@@ -8,11 +8,11 @@ use serde::Serialize;
 pub enum TickSpacing {
     /// Multiples of 1, 2 or 5 times a power of ten.
     Decimal,
-    /// Degrees: multiples of 15, 30, 45, 60, 90, …; decimal below 10.
+    /// Multiples of 15, 30, 45, 60, 90, … degrees; decimal below 10.
     Degrees,
     /// Powers of ten and their multiples, for data that are decimal logarithms.
     Logarithmic,
-    /// No ticks: the axis has no numbers.
+    /// No ticks, on an axis without numbers.
     Nothing,
 }
 
@@ -22,16 +22,16 @@ const PARTS_OF_A_CIRCLE: [f64; 8] = [10.0, 15.0, 30.0, 45.0, 60.0, 90.0, 180.0, 
 /// Tolerance for ticks outside the range, as a share of a step; it allows for rounding.
 const ROUNDING: f64 = 1e-6;
 
-/// Labels that an axis has at least: two do not show whether a scale is even.
+/// Smallest number of labels of an axis: two do not show whether a scale is even.
 pub const LEAST_LABELS: usize = 3;
-/// Steps between 1 and 10 that are tried in turn where the usual steps give too few labels.
+/// Steps between 1 and 10 that are tried in turn if the usual steps give too few labels.
 const CLOSER: [&[f64]; 3] = [&[1.0, 2.0, 5.0], &[2.5, 4.0], &[1.5, 3.0, 6.0, 8.0]];
 
-/// Values above this, or all below [`SMALL`], are shown with a power of ten beside the unit.
+/// Size above which values, or below [`SMALL`] all values, are shown with a power of ten beside the unit.
 const LARGE: f64 = 1e5;
 const SMALL: f64 = 1e-2;
 
-/// A labelled position on an axis.
+/// Labelled position on an axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tick {
     /// Position in the axis's unit.
@@ -40,7 +40,7 @@ pub struct Tick {
     pub label: String,
 }
 
-/// The ticks of one axis.
+/// Ticks of one axis.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Ticks {
     /// Ticks from low to high.
@@ -49,7 +49,7 @@ pub struct Ticks {
     pub exponent: i32,
 }
 
-/// The finest ticks, at most `most`, for which `fits` says that the labels do not touch.
+/// Computes the finest ticks, at most `most`, whose labels do not touch by `fits`.
 pub fn ticks(range: [f64; 2], spacing: TickSpacing, most: usize, fits: impl Fn(&[Tick]) -> bool) -> Ticks {
     let [low, high] = range;
     let span = high - low;
@@ -71,8 +71,8 @@ pub fn ticks(range: [f64; 2], spacing: TickSpacing, most: usize, fits: impl Fn(&
     }
 }
 
-/// Computes the [`ticks`] of an axis with at least [`LEAST_LABELS`] labels, if it has room for them. Where the usual ticks are fewer, the
-/// coarsest ticks are taken that are enough and for which `closer` says that the labels do not touch.
+/// Computes the [`ticks`] of an axis with at least [`LEAST_LABELS`] labels, if it has room for them. If the usual ticks are fewer, the
+/// coarsest sufficient ticks are used whose labels do not touch by `closer`.
 pub fn enough_ticks(
     range: [f64; 2],
     spacing: TickSpacing,
@@ -114,7 +114,7 @@ pub fn enough_ticks(
     found.map_or(few, |ticks| Ticks { ticks, exponent })
 }
 
-/// Multiples of every so many powers of ten, in a range of exponents.
+/// Multiples of every n-th power of ten (`every`), in a range of exponents.
 fn multiples_of_powers([low, high]: [f64; 2], multiples: &[i32], every: usize) -> Vec<Tick> {
     /// Exponents of powers of ten that are written in full.
     const PLAIN: std::ops::Range<i32> = -4..5;
@@ -131,7 +131,7 @@ fn multiples_of_powers([low, high]: [f64; 2], multiples: &[i32], every: usize) -
     inside.map(|of| Tick { at: place(of).clamp(low, high), label: label(of.0, of.1) }).collect()
 }
 
-/// The finest powers of ten and their multiples that fit, in a range of exponents.
+/// Finest powers of ten and their multiples that fit, in a range of exponents.
 fn powers([low, high]: [f64; 2], most: usize, fits: impl Fn(&[Tick]) -> bool) -> Vec<Tick> {
     const MULTIPLES: [&[i32]; 3] = [&[1, 2, 3, 4, 5, 6, 7, 8, 9], &[1, 2, 5], &[1]];
     let decades = (high.ceil() - low.floor()) as usize + 1;
@@ -178,7 +178,7 @@ fn multiples(low: f64, high: f64, step: f64, exponent: i32) -> Vec<Tick> {
     (0..count).map(tick).collect()
 }
 
-/// Decimals that show a step of one or two digits, or of whole degrees.
+/// Number of decimals that show a step of one or two digits, or of whole degrees.
 fn decimals(step: f64) -> usize {
     let first = (-(libm::log10(step) + ROUNDING).floor()).clamp(0.0, 17.0) as usize;
     let shown = step * libm::pow(10.0, first as f64);

@@ -12,7 +12,7 @@ const AWAY: f64 = 7.0;
 /// Vertical shift of lowered and raised letters.
 const SHIFT: f64 = 4.0;
 
-/// Writes a word beside a point within a frame of this width and height; writes nothing if the point is NaN.
+/// Writes a word beside a point within a frame of this width and height; does nothing if the point is NaN.
 pub(super) fn write(
     out: &mut impl Write,
     word: &Label,
@@ -34,7 +34,7 @@ pub(super) fn write(
         Beside::BelowRight => (x + 0.7 * AWAY, y + 0.7 * AWAY + 0.75 * TEXT, "start"),
         Beside::BelowLeft => (x - 0.7 * AWAY, y + 0.7 * AWAY + 0.75 * TEXT, "end"),
     };
-    // A word that the frame would cut is pushed inside, where the point itself is.
+    // A word that the frame would cut is moved inside, where the point is.
     let wide = width(&word.text, TEXT).min(across);
     let inside = match anchor {
         "start" => x.min(across - wide),
@@ -52,7 +52,7 @@ pub(super) fn write(
     writeln!(out, r#"<text {place} {}>{text}</text>"#, fill(colour))
 }
 
-/// The side of a point at this height, or the opposite side if the frame would cut the word.
+/// Returns the side of a point at this height, or the opposite side if the frame would cut the word.
 fn within(beside: Beside, y: f64, height: f64) -> Beside {
     let (is_high, is_low) = (y < AWAY + 0.75 * TEXT, y > height - AWAY - 0.75 * TEXT);
     match beside {
@@ -66,7 +66,7 @@ fn within(beside: Beside, y: f64, height: f64) -> Beside {
     }
 }
 
-/// A label with its formulas set.
+/// Returns a label with typeset formulas.
 fn marked_up(text: &str) -> String {
     let (mut out, mut shifted) = (String::new(), 0.0);
     for part in sentence(text) {
@@ -76,7 +76,7 @@ fn marked_up(text: &str) -> String {
             Part::Above(text) => (text, -SHIFT),
         };
         let (by, size) = (number(to - shifted), if to == 0.0 { "" } else { r#" font-size="9.5""# });
-        // The program's font has no prime: another font would step in.
+        // The program's font has no prime: another font would replace it.
         let text = text.replace('′', "'");
         out.push_str(&format!(r#"<tspan dy="{by}"{size}>{}</tspan>"#, escaped(&text)));
         shifted = to;

@@ -1,4 +1,4 @@
-//! Predictions at a corner beside measurements there.
+//! Comparison of predictions at a corner with measurements.
 
 use nalgebra::Vector3;
 
@@ -10,22 +10,22 @@ use crate::estimate::Estimate;
 use crate::model::Model;
 use crate::tolerance;
 
-/// Quantity that a power law describes.
+/// Quantity that follows a power law.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PowerLawQuantity {
-    /// The velocities of the cam as it is, on either side of the corner, against the gap at the corner's moment.
+    /// Velocities over the actual cam, on either side of the corner, against the gap at the corner's moment.
     Gap,
-    /// The velocities at the corner's moment against the time of the impact.
+    /// Velocities at the corner's moment, against the time of the impact.
     Velocity,
-    /// The positions at the corner's moment against the time of the impact.
+    /// Positions at the corner's moment, against the time of the impact.
     Position,
-    /// The positions at the end of the map against a deviation of the starting position.
+    /// Positions at the end of the map, against a deviation of the starting position.
     MapOfPosition,
-    /// The velocities at the end of the map against a deviation of the period.
+    /// Velocities at the end of the map, against a deviation of the period.
     MapOfPeriod,
 }
 
-/// One power law, predicted and measured.
+/// Power law, predicted and measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PowerLawRow {
     /// Quantity.
@@ -53,27 +53,27 @@ impl PowerLawRow {
 /// All predictions and measurements at a corner.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Compared {
-    /// The flight.
+    /// Flight.
     pub approach: Approach,
-    /// How often flights hit the cam near the corner, by the formulas.
+    /// Predicted number of times that flights hit the cam near the corner.
     pub hits: Hits,
-    /// Over the cam as it is, with a jump of order 1.
+    /// Gap over the actual cam, for a jump of order 1.
     pub gap: Option<Gap>,
-    /// The angle that the map is taken over before the corner, and after it, rad; 0 where only the gap was measured.
+    /// Angle of the map before the corner, and after it, rad; 0 if only the gap was measured.
     pub span: f64,
-    /// Every power law.
+    /// All power laws.
     pub rows: Vec<PowerLawRow>,
 }
 
 impl Compared {
-    /// Whether all of it agrees: the laws, and how often flights hit.
+    /// Whether everything agrees: the laws, and the numbers of hits.
     pub fn agrees(&self) -> bool {
         let counted = self.gap.is_none_or(|gap| gap.impacts == impacts(self.hits));
         counted && !self.rows.is_empty() && self.rows.iter().all(PowerLawRow::agrees)
     }
 }
 
-/// Impacts of a flight that comes down before the corner, and of one that would after it.
+/// Impacts of a flight that would reach the cam before the corner, and of one that would reach it after.
 fn impacts(hits: Hits) -> [usize; 2] {
     match hits {
         Hits::Once => [1, 1],
@@ -82,14 +82,14 @@ fn impacts(hits: Hits) -> [usize; 2] {
     }
 }
 
-/// Predicts and measures at the corner of `approach`.
+/// Predicts and measures the effects at the corner of `approach`.
 pub fn compare(model: &Model, cam: &Cam, approach: &Approach) -> Result<Compared, JumpOrderError> {
     let follower = &model.follower;
     let hits = predicted::hits(follower, approach);
     let mut compared = Compared { approach: *approach, hits, gap: None, span: 0.0, rows: Vec::new() };
     if approach.corner.jump_order == 1 {
         let gap = measured::gap(model, cam, approach)?;
-        // At the corner's moment itself F is the unit matrix.
+        // At the corner's moment itself F is the identity.
         let step = predicted::over(follower, approach, 0.0, 0.0).step;
         compared.gap = Some(gap);
         compared.rows.push(PowerLawRow {
@@ -116,7 +116,7 @@ pub fn compare(model: &Model, cam: &Cam, approach: &Approach) -> Result<Compared
         let mut z = Vector3::zeros();
         z[direction] = scales[direction];
         let law = sides.along(z)?[component];
-        // Per unit of the deviation, where the runs were in parts of a scale.
+        // Converts to units of the deviation; the runs used parts of a scale.
         let per_unit = scales[direction].powi(law.exponent.value.round() as i32);
         let Estimate { value, error, .. } = law.coefficient;
         let coefficient = Estimate::extrapolated(value / per_unit, error / per_unit);

@@ -1,8 +1,8 @@
-//! Exponents and coefficients by simulation, from nothing but runs of the machine.
+//! Exponents and coefficients from simulation alone.
 //!
-//! [`SideFlights`] runs each flight twice, over the cam with the law before the corner continued past it and over the cam with the
-//! law after it; [`gap`] runs flights on either side of the corner over the cam as it is. A ladder of distances gives
-//! the exponent as the slope of a log-log fit; the quotient by that power, extrapolated to distance 0, gives the coefficient.
+//! [`SideFlights`] runs each flight twice, over the cam with the law before the corner continued past it and over the cam with the law
+//! after it continued. [`gap`] runs flights on either side of the corner over the actual cam. A ladder of distances gives the exponent as
+//! the slope of a log-log fit. The quotient by that power, extrapolated to distance 0, gives the coefficient.
 
 use std::f64::consts::{PI, TAU};
 use std::ops::ControlFlow;
@@ -22,32 +22,32 @@ use crate::model::{Follower, Model};
 use crate::simulate::{Event, EventKind, Machine};
 use crate::tolerance;
 
-/// `coefficient * distance^exponent`, measured.
+/// Measured power law `coefficient * distance^exponent`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MeasuredLaw {
-    /// The slope of the log-log fit.
+    /// Slope of the log-log fit.
     pub exponent: Estimate,
     /// Coefficient of the nearest whole power.
     pub coefficient: Estimate,
 }
 
-/// Halvings of a perturbation, or of the stretch around the corner, before giving up.
+/// Number of halvings of a perturbation, or of the span around the corner, before the search fails.
 const HALVINGS: u32 = 12;
-/// Rungs of the ladder on either side: four to an octave, over four octaves.
+/// Number of rungs of the ladder on either side: four to an octave, over four octaves.
 const RUNGS: u32 = 17;
-/// Powers of the distance in the fit beside its logarithm: what follows the leading term.
+/// Number of powers of the distance that the fit has besides the logarithm, for terms after the leading one.
 const CORRECTIONS: usize = 4;
 
-/// A start before the corner and an end after it, between which nothing happens but near the corner.
+/// Start before the corner and end after it, between which events occur only near the corner.
 #[derive(Clone, Copy, Debug)]
 struct Passage {
-    /// The angle that is flown before the corner, and after it, rad.
+    /// Angle flown before the corner, and after it, rad.
     span: f64,
-    /// Where flights start, rad, in `[0, 2 pi)`.
+    /// Angle at the start, rad, in `[0, 2 pi)`.
     cam_angle: f64,
-    /// The state there of the flight that hits the corner.
+    /// State at the start of the flight that hits the corner.
     start: State,
-    /// Flies a deviation from the end back to the corner's moment.
+    /// Matrix that carries a deviation from the end back to the corner's moment.
     back: Matrix2<f64>,
     omega: f64,
 }
@@ -57,12 +57,12 @@ struct Passage {
 struct Run {
     end: Vector2<f64>,
     impacts: usize,
-    /// The first impact's angle past the corner, rad; NaN without one.
+    /// Angle of the first impact past the corner, rad; NaN without an impact.
     past_corner: f64,
 }
 
 impl Passage {
-    /// The longest passage that `free` accepts, half a turn at most.
+    /// Longest passage that `free` accepts, at most half a turn.
     fn longest(follower: &Follower, approach: &Approach, free: impl Fn(&Self) -> bool) -> Result<Self, JumpOrderError> {
         let mut span = PI;
         for _ in 0..HALVINGS {
@@ -79,7 +79,7 @@ impl Passage {
         let flight = Flight::new(follower);
         let propagator = flight.propagator(span / omega);
         let back = propagator.try_inverse()?;
-        // A flight is affine: what it misses the corner by, flown back, is what its start is off by.
+        // A flight is affine: its miss at the corner, carried back, is the error of its start.
         let corner = State { position: approach.corner.minus.value, velocity: approach.velocity_before };
         let miss = flight.fly(corner, span / omega).1;
         let off = back * Vector2::new(corner.position - miss.position, corner.velocity - miss.velocity);
@@ -89,8 +89,8 @@ impl Passage {
         Some(Self { span, cam_angle, start, back, omega })
     }
 
-    /// Flies from a deviation `z` of position (m), velocity (m/s) and period (s); `None` where the run fails, sticks, or has
-    /// an impact further from the corner than `reach`, rad.
+    /// Flies from a deviation `z` of position (m), velocity (m/s) and period (s); `None` if the run fails, sticks, or has an impact further
+    /// from the corner than `reach`, rad.
     fn run(&self, machine: &Machine, z: Vector3<f64>, reach: f64) -> Option<Run> {
         let state = State { position: self.start.position + z[0], velocity: self.start.velocity + z[1] };
         let machine = machine.at_speed(TAU / (TAU / self.omega + z[2]));
@@ -106,7 +106,7 @@ impl Passage {
         Some(Run { end: Vector2::new(end.position, end.velocity), impacts, past_corner })
     }
 
-    /// The start's deviation of a flight that is `distance` above the corner at its moment, m.
+    /// Deviation at the start of a flight that is `distance`, m, above the corner at its moment.
     fn shifted(&self, distance: f64) -> Vector3<f64> {
         let z = self.back.column(0) * distance;
         Vector3::new(z[0], z[1], 0.0)
@@ -120,14 +120,14 @@ impl Passage {
     }
 }
 
-/// Deviations that move the impact by comparable times: of position (m), velocity (m/s) and period (s).
+/// Deviations of position (m), velocity (m/s) and period (s) that move the impact by comparable times.
 fn scales(approach: &Approach, span: f64, reach: f64) -> Vector3<f64> {
     let (closing, omega) = (approach.closing_velocity(), approach.angular_velocity);
     let time = reach / omega;
     Vector3::new(closing * time, closing * reach / span, time * closing / (closing + approach.velocity_before.abs()))
 }
 
-/// Flights over the cam with one side's law continued past the corner, both sides side by side.
+/// Flights over the cam with one side's law continued past the corner, for both sides.
 pub struct SideFlights<'a> {
     approach: &'a Approach,
     machines: [Machine; 2],
@@ -135,20 +135,20 @@ pub struct SideFlights<'a> {
     passage: Passage,
 }
 
-/// One flight, run under either law.
+/// One flight, run under both laws.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlightPair {
-    /// From the corner to the impact under the law before it, s.
+    /// Time from the corner to the impact under the law before it, s.
     pub offset: f64,
-    /// The end under the law after the corner less that under the law before it, m and m/s.
+    /// End under the law after the corner less the end under the law before it, m and m/s.
     pub difference: Vector2<f64>,
 }
 
 impl<'a> SideFlights<'a> {
-    /// Furthest continuation, rad: less where the neighbouring segments allow no more.
+    /// Largest continuation, rad; less if the neighbouring segments are too short.
     const REACH: f64 = 0.1;
 
-    /// Both sides of the map of flights near `approach`, as far around the corner as nothing else happens.
+    /// Prepares both sides of the map of flights near `approach`, over the largest span without other events.
     pub fn new(model: &Model, cam: &Cam, approach: &'a Approach) -> Result<Self, JumpOrderError> {
         let (mut reach, least) = (Self::REACH, tolerance::LEAST_REACH.value);
         let continued = |reach: f64, side: Side| {
@@ -172,12 +172,12 @@ impl<'a> SideFlights<'a> {
         Ok(Self { approach, machines, reach, passage })
     }
 
-    /// The angle flown before the corner, and after it, rad.
+    /// Angle flown before the corner, and after it, rad.
     pub fn span(&self) -> f64 {
         self.passage.span
     }
 
-    /// Deviations that move the impact by comparable times: of position (m), velocity (m/s) and period (s).
+    /// Deviations of position (m), velocity (m/s) and period (s) that move the impact by comparable times.
     pub fn scales(&self) -> Vector3<f64> {
         scales(self.approach, self.passage.span, self.reach)
     }
@@ -195,8 +195,8 @@ impl<'a> SideFlights<'a> {
         self.pair(z).ok_or(JumpOrderError::NotFree { cam_angle: self.approach.corner.angle, least })
     }
 
-    /// Half the longest of `z`, `z/2`, ... that hits the cam once on either side, both ways: at the edge of what is flown
-    /// the powers that the fit leaves out are largest.
+    /// Half of the longest of `z`, `z/2`, ... whose flights in both directions hit the cam once under either law. Near the limit, the
+    /// powers that the fit leaves out are largest.
     fn widest(&self, z: Vector3<f64>) -> Result<Vector3<f64>, JumpOrderError> {
         let halved = (0..HALVINGS).map(|halving| z / f64::from(1_u32 << halving));
         let mut good = halved.filter(|z| self.pair(*z).is_some() && self.pair(-*z).is_some());
@@ -204,8 +204,8 @@ impl<'a> SideFlights<'a> {
         good.nth(1).ok_or(JumpOrderError::NotFree { cam_angle: self.approach.corner.angle, least })
     }
 
-    /// Position and velocity at the corner's moment against the time of the impact, for flights that would be above or below
-    /// the corner then, with the velocity of the one that hits it.
+    /// Laws of position and velocity at the corner's moment against the time of the impact. The flights would then be above or below the
+    /// corner, with the velocity of the one that hits it.
     pub fn at_corner(&self) -> Result<[MeasuredLaw; 2], JumpOrderError> {
         let z = self.widest(self.passage.shifted(scales(self.approach, self.passage.span, self.reach)[0]))?;
         let sample = |part: f64| {
@@ -215,7 +215,7 @@ impl<'a> SideFlights<'a> {
         laws(sample, self.passage.rounding(self.approach))
     }
 
-    /// Position and velocity at the end against the part of the deviation `z` (m, m/s, s) that flights start with.
+    /// Laws of position and velocity at the end against the part of the deviation `z` (m, m/s, s) at the start.
     pub fn along(&self, z: Vector3<f64>) -> Result<[MeasuredLaw; 2], JumpOrderError> {
         let widest = self.widest(z)?;
         let unit = widest.norm() / z.norm();
@@ -225,20 +225,20 @@ impl<'a> SideFlights<'a> {
     }
 }
 
-/// A gap, measured over the cam as it is.
+/// Gap, measured over the actual cam.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gap {
     /// Gap in position and velocity at the corner's moment, m and m/s, in the limit of flights on either side of the corner.
     pub limit: [Estimate; 2],
     /// Exponent of the gap in velocity.
     pub exponent: Estimate,
-    /// Impacts near the corner of flights that come down before it, and after it.
+    /// Numbers of impacts near the corner of flights that reach the cam before it, and after it.
     pub impacts: [usize; 2],
 }
 
-/// The gap between flights that come down after the corner and before it, over the cam as it is.
+/// Measures the gap between flights that reach the cam after the corner and before it, over the actual cam.
 pub fn gap(model: &Model, cam: &Cam, approach: &Approach) -> Result<Gap, JumpOrderError> {
-    /// Largest distance of an impact from the corner, rad: a second one follows the first by times that shrink with the distance.
+    /// Largest distance of an impact from the corner, rad. A second impact follows the first by times that shrink with the distance.
     const NEAR: f64 = 0.1;
     let machine = Machine::new(cam.clone(), &model.follower, approach.angular_velocity);
     let scale = |passage: &Passage| scales(approach, passage.span, NEAR)[0];
@@ -270,7 +270,7 @@ pub fn gap(model: &Model, cam: &Cam, approach: &Approach) -> Result<Gap, JumpOrd
 
 type Sample = (f64, Vector2<f64>);
 
-/// The laws of both components of `sample(part)`, which gives a distance and a difference, for parts of either sign from 1 down to 0.
+/// Laws of both components of `sample(part)`, which gives a distance and a difference, for parts of either sign from 1 down to 0.
 fn laws(
     sample: impl Fn(f64) -> Result<Sample, JumpOrderError>,
     rounding: Vector2<f64>,
@@ -292,7 +292,7 @@ fn laws(
     }))
 }
 
-/// Samples at parts 1, 2^(-1/4), ... and, where the powers are even, at their opposites.
+/// Samples at parts 1, 2^(-1/4), ... and, for even powers, at their opposites.
 fn ladder(
     sample: &impl Fn(f64) -> Result<Sample, JumpOrderError>,
     powers: Powers,
@@ -302,7 +302,7 @@ fn ladder(
     parts.flat_map(|part| signs.iter().map(move |sign| sample(sign * part))).collect()
 }
 
-/// The slope of `log |difference|` against `log |distance|`, with the powers of the distance that follow the leading term.
+/// Slope of `log |difference|` against `log |distance|`, with powers of the distance for terms after the leading one.
 ///
 /// A difference `K x^p (1 + k1 x + ...)` has the logarithm `log K + p log |x| + k1 x + ...`: the fit is linear.
 fn exponent(ladder: &[Sample], component: usize, rounding: f64) -> Result<Estimate, JumpOrderError> {

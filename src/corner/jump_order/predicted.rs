@@ -1,4 +1,4 @@
-//! The formulas, from the corner's derivatives and the paper's own propagator: nothing is simulated here.
+//! Formulas from the corner's derivatives and the paper's propagator; nothing is simulated.
 
 use std::f64::consts::TAU;
 
@@ -9,28 +9,28 @@ use crate::cam::Lift;
 use crate::corner::closed_form::propagator;
 use crate::model::Follower;
 
-/// `coefficient * s^exponent`.
+/// Power law `coefficient * s^exponent`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PowerLaw {
-    /// The power of s.
+    /// Power of s.
     pub exponent: u32,
-    /// In m or m/s, per power of a second.
+    /// Coefficient in m or m/s, per power of a second.
     pub coefficient: f64,
 }
 
-/// Number of times that flights next to the one on the corner hit the cam near it.
+/// Number of times that flights near the one on the corner hit the cam near it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Hits {
-    /// Once, whichever side they come down on.
+    /// One hit, on either side.
     Once,
-    /// Once before the corner; after it the cam falls away faster than they do.
+    /// One hit before the corner, none after it: there the cam falls away faster than the flight descends.
     NeverAfter,
-    /// Twice if the first is before the corner: the cam after it rises faster than they rebound. Once after it.
+    /// Two hits if the first is before the corner: the cam after it rises faster than the follower rebounds. One hit after it.
     TwiceBefore,
 }
 
-/// Difference of the two sides' states after the impact, at the corner's moment, after less before. It is given to leading order in
-/// the time s from the corner to the impact under the law before it.
+/// Difference of the two sides' states after the impact, at the corner's moment, after less before. It is given to leading order in the
+/// time s from the corner to the impact under the law before it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Difference {
     /// Difference of the positions, m.
@@ -39,7 +39,7 @@ pub struct Difference {
     pub velocity: PowerLaw,
 }
 
-/// J, m/s^j: jump of the j-th derivative of the lift in time.
+/// Jump J of the j-th derivative of the lift in time, m/s^j.
 pub fn jump(approach: &Approach) -> f64 {
     approach.corner.jump * approach.angular_velocity.powi(approach.corner.jump_order as i32)
 }
@@ -61,7 +61,7 @@ pub fn difference(follower: &Follower, approach: &Approach) -> Difference {
     let jump = jump(approach);
     let velocity = PowerLaw { exponent: order - 1, coefficient: (1.0 + r) * jump / factorial(order - 1) };
     let position = if order == 1 {
-        // -(1+r)/2 (S+ (u-/u+)^2 - S-),  S = c'' + 2 zeta c' + w0^2 q, each side's own
+        // -(1+r)/2 (S+ (u-/u+)^2 - S-),  S = c'' + 2 zeta c' + w0^2 q on each side
         let closing = approach.closing_velocity();
         let ratio = closing / (closing + jump);
         let surplus = |lift: &Lift| surplus(follower, approach.angular_velocity, lift);
@@ -75,7 +75,7 @@ pub fn difference(follower: &Follower, approach: &Approach) -> Difference {
     Difference { position, velocity }
 }
 
-/// S: the cam's acceleration less the follower's own at the cam's velocity, m/s^2.
+/// Excess S of the cam's acceleration over the follower's at the cam's velocity, m/s^2.
 fn surplus(follower: &Follower, omega: f64, lift: &Lift) -> f64 {
     let zeta = follower.damping / (2.0 * follower.mass);
     let spring = follower.stiffness / follower.mass * (lift.value - follower.rest_position) + follower.gravity;
@@ -90,25 +90,25 @@ fn factorial(n: u32) -> f64 {
 /// `P+ - P- = step (n z)^(j-1)` for a deviation `z = (dx, dT)` of the state and the period.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SectionJump {
-    /// j - 1: the order of the derivative of the map that jumps; 0 is a gap.
+    /// Order j - 1 of the derivative of the map that jumps; 0 is a gap.
     pub exponent: u32,
-    /// `(1+r) J/(j-1)! F e2`, m and m/s per power of a second, F the flight from the corner to the end. With j = 1 the J in it
-    /// is limited to the range from `-u-` to `r u-`: beyond it flights miss the cam, or hit it twice.
+    /// Vector `(1+r) J/(j-1)! F e2`, m and m/s per power of a second, with the flight F from the corner to the end. For j = 1, J is limited
+    /// to the range from `-u-` to `r u-`: beyond it flights miss the cam, or hit it twice.
     pub step: Vector2<f64>,
-    /// n, the time of the impact from the corner for each unit of position, velocity and period: s/m, s^2/m, 1. The border is
+    /// Gradient n: the time of the impact from the corner per unit of position, velocity and period: s/m, s^2/m, 1. The border is
     /// `n z = 0`.
     pub gradient: RowVector3<f64>,
 }
 
 impl SectionJump {
-    /// `P+ - P-` at the deviation `z`: m, m/s and s.
+    /// Difference `P+ - P-` at the deviation `z`: m, m/s and s.
     pub fn at(&self, z: Vector3<f64>) -> Vector2<f64> {
         self.step * (self.gradient * z)[0].powi(self.exponent as i32)
     }
 }
 
-/// Section jump for flights that start `before` rad before the corner and end `after` rad after it. Half a turn each is the stroboscopic
-/// map: there `step n` is `(A+ - A-, B+ - B-)` for j = 2, and `2 step n n` the jump of the second derivatives for j = 3.
+/// Section jump for flights that start `before` rad before the corner and end `after` rad after it. Half a turn each gives the stroboscopic
+/// map: `step n` is `(A+ - A-, B+ - B-)` for j = 2, and `2 step n n` the jump of the second derivatives for j = 3.
 pub fn over(follower: &Follower, approach: &Approach, before: f64, after: f64) -> SectionJump {
     let zeta = follower.damping / (2.0 * follower.mass);
     let flight = |turn: f64| {

@@ -1,4 +1,4 @@
-//! `corner-impact MODEL`: what can be done with a model.
+//! Command `corner-impact MODEL`: lists the commands for a model.
 
 use std::ffi::OsString;
 use std::path::Path;
@@ -25,14 +25,14 @@ pub(super) struct Arguments {
     model: ModelArgument,
 }
 
-/// The command line with this command before a model that stands where a command is expected.
+/// Inserts this command before a model that is given in place of a command.
 pub(super) fn named(mut words: Vec<OsString>) -> Vec<OsString> {
     let is_command = |word: &OsString| super::Arguments::command().find_subcommand(word).is_some();
     let is_model =
         |word: &&OsString| !is_command(word) && (word.to_str().is_some_and(is_file_name) || Path::new(word).is_file());
     if words.get(1).filter(is_model).is_some() {
         match words.get(2).filter(|word| !word.to_string_lossy().starts_with('-')) {
-            // A word that is no command is refused as one.
+            // A word that is no command is rejected as an unknown command.
             Some(_) => words.swap(1, 2),
             None => words.insert(1, "about".into()),
         }

@@ -1,4 +1,4 @@
-//! `corner-impact basins [MODEL] --rpm R --grid NxM`.
+//! Command `corner-impact basins [MODEL] --rpm R --grid NxM`.
 
 use std::path::PathBuf;
 use std::time::Instant;
@@ -65,14 +65,14 @@ pub(super) struct Arguments {
     answer: AnswerArguments,
 }
 
-/// Values of an axis of which no number is written.
+/// Number of values of an axis if none is given.
 const VALUES: usize = 9;
 
-/// How many along the positions and along the velocities.
+/// Numbers of cells along the positions and along the velocities.
 #[derive(Clone, Copy)]
 struct Cells([usize; 2]);
 
-/// `NxM`.
+/// Parses `NxM`.
 fn cells(text: &str) -> Result<Cells, String> {
     let count = |part: &str| {
         part.trim().parse::<usize>().map_err(|_| format!("\"{}\" is not a number of cells", untrusted::value(part)))
@@ -113,7 +113,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         let table = || csv::basins(&basins, &model.units);
         let picture = || {
             let title = format!("{} at {rpm} rpm: what each start settles on", model.name);
-            // Refused above where there is none.
+            // A missing grid is rejected above.
             let grid = grid.ok_or_else(|| CommandError::Words("a picture needs a grid".into()))?;
             Ok(basins_figure(&title, &grid, &basins, &section.border(&grid, &basins)))
         };
@@ -135,7 +135,7 @@ impl Arguments {
     }
 }
 
-/// How many starts end on what at each value of a number.
+/// Shares of the starts that end on each motion, at each value of a number.
 fn shares(
     arguments: &Arguments,
     model: &Model,

@@ -73,7 +73,7 @@ pub(super) struct Arguments {
     answer: AnswerArguments,
 }
 
-/// Values of an axis of which no number is written.
+/// Number of values of an axis if none is given.
 const VALUES: usize = 60;
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -85,7 +85,7 @@ enum ShowName {
     ImpactSpeed,
 }
 
-/// `I/N`.
+/// Parses `I/N`.
 fn shard(text: &str) -> Result<Shard, String> {
     let number = |text: &str| text.trim().parse::<usize>().ok();
     let parts = text.split_once('/').and_then(|(index, of)| Some((number(index)?, number(of)?)));
@@ -95,7 +95,7 @@ fn shard(text: &str) -> Result<Shard, String> {
     }
 }
 
-/// A file name of a picture, a table or a store, for clap.
+/// Parses the file name of a picture, a table or a store, for clap.
 fn out(text: &str) -> Result<PathBuf, String> {
     let path = PathBuf::from(text);
     if is_store(&path) {
@@ -157,13 +157,13 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         session.answer(&filled, &arguments.answer)?;
         return Ok(Exit::Agrees);
     }
-    // What is refused is so before the work, and found after it: the points are what most of the time goes into.
+    // Invalid arguments are rejected before the work: computing the points takes most of the time.
     let ground = if arguments.with_curves { Some(ground(&chart)?) } else { None };
     let run = || watched("runs of each point", |watch| chart.run(threads, watch));
     let found = match &arguments.out {
         None => run()?,
         Some(path) => {
-            // Begun before the work: a name that cannot be is told at once.
+            // Begun before the work, so that an impossible name is reported at once.
             let target = Target::create(path, &mut *session.out, arguments.picture.request()?)?;
             let found = run()?;
             let model = &found.chart.model;
@@ -188,7 +188,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     Ok(Exit::Agrees)
 }
 
-/// The speeds of a chart, and how curves are followed through its other number.
+/// Speeds of a chart, and the settings to follow curves through its other number.
 fn ground(chart: &Chart) -> Result<([f64; 2], Following), CommandError> {
     let (speeds, other) = match [&chart.x, &chart.y] {
         [speeds, other] | [other, speeds] if speeds.parameter == Parameter::Speed => (speeds.ends(), other),

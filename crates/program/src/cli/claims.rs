@@ -37,7 +37,7 @@ pub(super) struct Arguments {
     markdown: bool,
 }
 
-/// A value by the name that documents have for it.
+/// Parses a value by its name in documents.
 fn named<T: serde::de::DeserializeOwned>(name: &str) -> Result<T, String> {
     serde_json::from_value(name.into()).map_err(|error| match error.to_string().split_once("expected one of ") {
         Some((_, names)) => format!("must be one of {}", names.replace('`', "")),

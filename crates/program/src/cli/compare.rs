@@ -36,7 +36,7 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
-    // A table of lifts has no follower of its own.
+    // A table of lifts has no follower.
     let is_table = arguments.first.as_deref().is_some_and(|file| ends_in(file, &TABLES));
     let changes = if is_table && arguments.second.is_some() { &arguments.changes } else { &Changes::default() };
     let a = ModelArgument::of(arguments.first.as_deref(), changes).read_as_drawn(session)?;

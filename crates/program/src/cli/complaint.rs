@@ -1,4 +1,4 @@
-//! A complaint about a model file, drawn: its line, what is wrong underlined, and what may help.
+//! Display of an error in a model file: its line with the wrong part underlined, and a suggestion.
 
 use std::error::Error;
 use std::fmt;
@@ -8,11 +8,11 @@ use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme, LabeledSpan, Na
 use corner_impact::model::ModelError;
 use corner_impact::untrusted;
 
-/// A complaint as miette sees one.
+/// Error in the form that miette displays.
 #[derive(Debug)]
 struct Pointed<'a> {
     at: &'a ModelError,
-    /// Whether it is about how the file is written, not about what a computation made of it.
+    /// Whether the error is in the file itself, and not in a computation's result.
     is_of_the_file: bool,
     source: NamedSource<String>,
 }
@@ -25,10 +25,10 @@ impl fmt::Display for Pointed<'_> {
 
 impl Error for Pointed<'_> {}
 
-/// The longest words that stand under a line.
+/// Largest length of the words under a line.
 const LONGEST_LABEL: usize = 72;
 
-/// The longest line of a file that is drawn, bytes.
+/// Largest length of a displayed line of a file, bytes.
 const LONGEST_LINE: usize = 2000;
 
 impl Diagnostic for Pointed<'_> {
@@ -51,17 +51,16 @@ impl Diagnostic for Pointed<'_> {
     }
 }
 
-/// `error:`, as every complaint begins.
+/// Word `error:` at the beginning of every error message.
 pub(super) fn word(coloured: bool) -> &'static str {
     if coloured { "\x1b[1;31merror:\x1b[0m" } else { "error:" }
 }
 
-/// The line of the file that a complaint is about, or nothing where there is none; in letters that any log can hold where
-/// nobody looks at a terminal.
+/// Displays the line of the file with the error; empty if there is none. Without a terminal it uses only characters that any log can store.
 pub(super) fn shown(words: &str, at: &ModelError, coloured: bool, is_terminal: bool, width: usize) -> String {
     let (Some(text), Some(_)) = (&at.pointer.text, &at.pointer.span) else { return String::new() };
     let lines = || text.lines().filter(|line| line.len() > LONGEST_LINE);
-    // What a person did not write is not read by one either.
+    // Files that are not written by people are not displayed.
     if lines().next().is_some() {
         return String::new();
     }
@@ -82,7 +81,7 @@ pub(super) fn shown(words: &str, at: &ModelError, coloured: bool, is_terminal: b
     if handler.render_report(&mut drawn, &pointed).is_err() {
         return String::new();
     }
-    // The words are above already, in one line that other programs can read.
+    // The words were already printed above, in one line that other programs can read.
     let body = drawn.lines().skip_while(|line| !line.contains("-[") && !line.contains("\u{2500}["));
     body.flat_map(|line| [line, "\n"]).collect()
 }

@@ -87,7 +87,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     for (index, branch) in found.branches.iter().enumerate() {
         let account = in_columns(&pages::branches::branch(branch, (name, &model.units), index + 1), columns);
         if !session.quiet {
-            // Nobody is left to tell where standard error is closed.
+            // If standard error is closed, the failure cannot be reported.
             let _ = session.err.write_all(account.as_bytes());
         }
     }

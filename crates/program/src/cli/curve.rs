@@ -62,9 +62,9 @@ fn event(text: &str) -> Result<Bifurcation, String> {
     found.map(|(event, _)| event).ok_or_else(|| format!("must be one of: {}", names.join(", ")))
 }
 
-/// The longest step of a curve, of the ranges and of a radian, where none is given.
+/// Longest step of a curve, relative to the ranges and to a radian, by default.
 pub(super) const LONGEST_STEP: f64 = 0.02;
-/// Points of a curve after which it is given up, in either direction.
+/// Number of points in either direction after which a curve ends.
 pub(super) const MOST_POINTS: usize = 2000;
 
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
@@ -95,7 +95,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         );
     }
     if !session.quiet {
-        // Nobody is left to tell where standard error is closed.
+        // If standard error is closed, the failure cannot be reported.
         let _ = session.err.write_all(in_columns(&accounts, columns).as_bytes());
     }
     let rows = || csv::curves(name, curves, &model.units);

@@ -68,7 +68,7 @@ fn need(text: &str) -> Result<(String, Need), String> {
     Ok((text.into(), text.parse()?))
 }
 
-/// A load, what it may be at most, and what the unit is of the SI's where one is named.
+/// Parses a load, its limit, and the factor of the limit's unit relative to the SI unit if a unit is given.
 fn limit(text: &str) -> Result<(Load, f64, Option<f64>), String> {
     let (name, value) = text.split_once('=').ok_or("must be NAME=VALUE: a load and its limit")?;
     let load = load(name.trim())?;
@@ -78,7 +78,7 @@ fn limit(text: &str) -> Result<(Load, f64, Option<f64>), String> {
     Ok((load, number, unit.map(|unit| in_si(load, unit)).transpose()?))
 }
 
-/// The number at whose values needs are answered, with the values; none if it is the speed.
+/// Number along whose values needs are answered, with the values; `None` if it is the speed.
 fn against(arguments: &Arguments, model: &Model, usual: usize) -> Result<Option<Axis>, CommandError> {
     let Some((name, span)) = arguments.over.as_ref().filter(|_| !arguments.need.is_empty()) else { return Ok(None) };
     let own = |lever: &Lever| [lever.to_string(), lever.path()].contains(name);
@@ -88,7 +88,7 @@ fn against(arguments: &Arguments, model: &Model, usual: usize) -> Result<Option<
         Some(_) if low <= 0.0 => {
             return Err(CommandError::Words(format!("--over {name}={low}:{high}: with --need it must be above 0")));
         }
-        // A preload may be given to a model that has a rest position.
+        // A preload may also be set in a model that has a rest position.
         Some(lever) if lever == Lever::Preload => Parameter::Field(lever.path()),
         _ => arguments.model.varied(model, name, "--over")?,
     };
@@ -110,7 +110,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     };
     let usual = arguments.speeds as usize;
     let trade = against(arguments, &model, usual)?;
-    // Without a speed, a table of needs is all that is asked for.
+    // Without a speed, only a table of needs is requested.
     let table = arguments.over.as_ref().filter(|_| trade.is_none() || rpm.is_some());
     let over = table.map(|(name, span)| -> Result<Axis, CommandError> {
         Ok(Axis::new(arguments.model.varied(&model, name, "--over")?, &span.values(usual)))

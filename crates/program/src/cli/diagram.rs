@@ -79,10 +79,10 @@ pub(super) struct Arguments {
     answer: AnswerArguments,
 }
 
-/// Values of an axis of which no number is written.
+/// Number of values of an axis if none is given.
 const VALUES: usize = 400;
 
-/// Starts of the sample, as many as `speeds` runs.
+/// Number of starts of the sample, as in `speeds`.
 const SAMPLED: usize = 64;
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -108,7 +108,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let corners = corner_marks(&Cam::new(&model)?);
     let (rpm, axis) = over((&arguments.model, &model), arguments.rpm, arguments.over.as_ref(), VALUES)?;
     let across = Across::of(&axis, &model.units);
-    // Attractors are those of `speeds`.
+    // Attractors are found as in `speeds`.
     let (sample, found) = (arguments.start.sample(SAMPLED), arguments.budget.lengths(Budget::SURVEY)?);
     let budget = match arguments.lyapunov {
         true => arguments.budget.budget(Budget::CHART)?,
@@ -180,13 +180,13 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     Ok(Exit::Agrees)
 }
 
-/// A load of each revolution.
+/// Parses a load of each revolution.
 pub(super) fn load(text: &str) -> Result<Load, String> {
     let names = || format!("must be one of: {}", Load::ALL.map(|load| load.to_string()).join(", "));
     Load::ALL.into_iter().find(|load| load.to_string() == text).ok_or_else(names)
 }
 
-/// Loads of each revolution, as a table or a picture of one of them.
+/// Writes the loads of each revolution, as a table or a picture of one load.
 fn loads(
     arguments: &Arguments,
     model: &Model,
@@ -210,7 +210,7 @@ fn loads(
     Ok(Exit::Agrees)
 }
 
-/// A row for each value, in a table.
+/// Writes a table with one row for each value.
 fn one_row(arguments: &Arguments, survey: &Survey, session: &mut Session<'_>) -> Result<Exit, CommandError> {
     let Some(Target::Table(mut file)) = arguments
         .out

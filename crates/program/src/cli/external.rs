@@ -1,4 +1,4 @@
-//! Whether the routes in Python run.
+//! Options for the routes in Python.
 
 use corner_impact::study::verify::External;
 

@@ -41,7 +41,7 @@ pub(super) struct Arguments {
     json: bool,
 }
 
-/// A model file, and a figure's name, from one or two words.
+/// Splits one or two words into a model file and a figure's name.
 fn named(words: &[String]) -> Result<(Option<&str>, Option<&str>), CommandError> {
     match words {
         [] => Ok((None, None)),
@@ -82,7 +82,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let page = match entry {
         None => list(&model, &subject, arguments.json, session)?,
         Some(entry) => {
-            // Opened before the work: a name that cannot be is told at once.
+            // Opened before the work, so that an impossible name is reported at once.
             let canvas = arguments
                 .out
                 .as_deref()
@@ -93,7 +93,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
             drop(progress);
             match (&plate.drawn, canvas) {
                 (Ok(drawn), Some(canvas)) => canvas.write(drawn.figure.clone(), &model.units)?,
-                // A document says why there is none; a file cannot.
+                // A document contains the reason for a missing figure; a file cannot.
                 (Err(_), None) if arguments.json => {}
                 (Err(why), _) => {
                     return Err(CommandError::Words(format!("{}: no figure {}: {why}", model.file(), entry.id)));

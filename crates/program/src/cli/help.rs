@@ -1,4 +1,4 @@
-//! The command line as `--help`, the manual and the shells see it: grouped, with examples.
+//! Command line for `--help`, the manual and the shells: grouped, with examples.
 
 use std::ffi::OsString;
 use std::fmt::Write;
@@ -10,7 +10,7 @@ use clap::{Arg, Command, CommandFactory};
 use super::{Arguments, GROUPS};
 use crate::show::page::options;
 
-/// Headings and names stand out; what is to be filled in does not shout.
+/// Headings and names are emphasized; placeholders are not.
 const STYLES: Styles = Styles::styled()
     .header(AnsiColor::Green.on_default().bold())
     .usage(AnsiColor::Green.on_default().bold())
@@ -25,12 +25,13 @@ const EXAMPLES: &str = "Examples:
 
 `corner-impact COMMAND --help` has examples of each command. Examples that name models/ run in the project's folder.";
 
-/// The command line as it is, in letters alone.
+/// Returns the command line without styles.
 pub(super) fn plain() -> Command {
     whole().after_help(EXAMPLES)
 }
 
-/// The command line, with a full stop behind texts of several sentences, which clap takes away. It takes half a megabyte: for printing alone.
+/// Builds the command line, with the full stop after texts of several sentences that clap removes. It takes half a megabyte, so it is used
+/// for printing only.
 fn whole() -> Command {
     let stopped = |argument: Arg| {
         let help = argument.get_help().map(ToString::to_string).unwrap_or_default();
@@ -41,7 +42,7 @@ fn whole() -> Command {
     names.into_iter().fold(command, |command, name| command.mut_subcommand(name, |sub| sub.mut_args(stopped)))
 }
 
-/// The options that `-h` has, by their fields; `--help` has all.
+/// Options listed by `-h`, by their fields; `--help` lists all options.
 const ESSENTIAL: &[&str] = &[
     "file",
     "words",
@@ -76,7 +77,7 @@ const ESSENTIAL: &[&str] = &[
     "help",
 ];
 
-/// The command line, laid out for so many columns: all of it, or what `-h` shows.
+/// Builds the command line, laid out for this number of columns: completely, or as for `-h`.
 pub(super) fn command(width: usize, words: &[OsString]) -> Command {
     let is_short = is_short(words);
     let command = if prints_help(words) { whole() } else { Arguments::command() };
@@ -90,7 +91,7 @@ pub(super) fn command(width: usize, words: &[OsString]) -> Command {
     let names: Vec<String> = command.get_subcommands().map(|sub| sub.get_name().to_owned()).collect();
     for name in names {
         command = command.mut_subcommand(&name, |mut sub| {
-            // A chart has two axes of these names.
+            // A chart has two axes with these names.
             if name != "chart" && sub.get_arguments().any(|argument| argument.get_id() == "x_range") {
                 sub = sub.mut_arg("x_range", |ends| ends.alias("x")).mut_arg("y_range", |ends| ends.alias("y"));
             }
@@ -102,12 +103,12 @@ pub(super) fn command(width: usize, words: &[OsString]) -> Command {
     command.help_template(template).after_help(after)
 }
 
-/// Whether the short page is asked for.
+/// Whether the short page is requested.
 fn is_short(words: &[OsString]) -> bool {
     before_dashes(words).any(|word| word == "-h")
 }
 
-/// Whether any page of help is asked for.
+/// Whether any page of help is requested.
 fn prints_help(words: &[OsString]) -> bool {
     words.len() < 2 || before_dashes(words).any(|word| ["-h", "--help", "help"].iter().any(|help| word == help))
 }
@@ -119,7 +120,7 @@ fn before_dashes(words: &[OsString]) -> impl Iterator<Item = &OsString> {
 
 const MORE: &str = "`corner-impact MODEL` lists what you can do with a model. `corner-impact COMMAND --help` has all options and more examples.";
 
-/// A command as `-h` shows it: the options that most people need, each in a few words, and two examples.
+/// Shortens a command for `-h`: the most important options, each in a few words, and two examples.
 fn shortened(sub: Command, name: &str, after: &str) -> Command {
     let short = |argument: Arg| {
         let help = argument.get_help().map(ToString::to_string).unwrap_or_default();
@@ -128,7 +129,7 @@ fn shortened(sub: Command, name: &str, after: &str) -> Command {
         let brief = help[..end].trim_end_matches('.').to_owned();
         let short = |name: &Str| name.split('[').next().unwrap_or_default().to_owned();
         let names: Option<Vec<String>> = argument.get_value_names().map(|names| names.iter().map(short).collect());
-        // A positional argument keeps its own.
+        // A positional argument keeps its help.
         let argument = match names.filter(|_| !argument.is_positional()) {
             Some(names) => argument.value_names(names),
             None => argument,
@@ -140,13 +141,13 @@ fn shortened(sub: Command, name: &str, after: &str) -> Command {
     sub.mut_args(short).after_help(with_heading(&after))
 }
 
-/// "Examples:" in the look of a heading.
+/// Formats "Examples:" as a heading.
 fn with_heading(text: &str) -> StyledStr {
     let header = STYLES.get_header();
     text.replacen("Examples:", &format!("{header}Examples:{header:#}"), 1).into()
 }
 
-/// The page of `-h`: the commands for a first visit, and the names of the others.
+/// Page of `-h`: the commands for a first visit, and the names of the others.
 fn brief(command: &Command, width: usize) -> StyledStr {
     let (header, literal) = (STYLES.get_header(), STYLES.get_literal());
     let mut text = "{about-with-newline}\n{usage-heading} {usage}\n".to_owned();
@@ -169,7 +170,7 @@ fn brief(command: &Command, width: usize) -> StyledStr {
     text.into()
 }
 
-/// The first page: the subcommands under their headings, in the order of a first visit.
+/// First page: the subcommands under their headings, in the order of a first visit.
 fn template(command: &Command, width: usize) -> StyledStr {
     let (header, literal) = (STYLES.get_header(), STYLES.get_literal());
     let longest = command.get_subcommands().map(|sub| sub.get_name().len()).max().unwrap_or(0);

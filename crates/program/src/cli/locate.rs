@@ -28,7 +28,7 @@ pub(super) struct Arguments {
     answer: AnswerArguments,
 }
 
-/// `LO:HI`.
+/// Parses `LO:HI`.
 fn study(text: &str) -> Result<Study, String> {
     rpm_range(text).map(|[rpm_min, rpm_max]| Study { rpm_min, rpm_max })
 }

@@ -46,7 +46,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     Ok(Exit::Agrees)
 }
 
-/// The page of one command: what clap knows of it, then its examples and what follows them.
+/// Builds the page of one command: clap's description, its examples, and the rest of its text.
 fn page(command: clap::Command) -> Result<Vec<u8>, CommandError> {
     let (has_commands, has_version) = (command.has_subcommands(), command.get_version().is_some());
     let after = command.get_after_help().map(ToString::to_string).unwrap_or_default();
@@ -68,7 +68,7 @@ fn page(command: clap::Command) -> Result<Vec<u8>, CommandError> {
     Ok(text)
 }
 
-/// The examples as they are typed, and the rest as paragraphs.
+/// Formats examples as typed text, and the rest as paragraphs.
 fn examples(after: &str) -> Roff {
     let mut roff = Roff::default();
     let (examples, rest) = after.split_once("\n\n").unwrap_or((after, ""));

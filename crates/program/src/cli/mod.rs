@@ -1,4 +1,4 @@
-//! The command line: parse, one library call, exit code. Results to standard output, complaints to standard error.
+//! Command line: parse, one library call, exit code. Results go to standard output, errors to standard error.
 
 mod about;
 mod basins;
@@ -57,14 +57,14 @@ use corner_impact::file::FileError;
 use corner_impact::model::{ModelError, Units};
 use corner_impact::simulate::SimulateError;
 
-/// How a command ended; the process's exit code.
+/// Outcome of a command, which is the process's exit code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Exit {
-    /// Done, and everything checked agrees.
+    /// Success: everything checked agrees.
     Agrees = 0,
-    /// Done, and a check disagrees.
+    /// Success, but a check disagrees.
     Disagrees = 1,
-    /// Bad usage, model file or data.
+    /// Wrong usage, model file or data.
     BadInput = 2,
 }
 
@@ -109,7 +109,7 @@ macro_rules! subcommands {
             }
         }
 
-        /// The headings of `--help`, and what is under each.
+        /// Headings of `--help`, each with its commands.
         const GROUPS: &[(&str, &[&str])] = &[$(($heading, &[$(stringify!($name)),+])),+];
     };
 }
@@ -142,27 +142,27 @@ subcommands! {
     "The shell":
         Completions = completions => "",
         Man = man => "",
-    // Not listed: `corner-impact MODEL` is this command.
+    // This command is not listed: `corner-impact MODEL` calls it.
     "":
         About = about => "",
 }
 
-/// Why a command has no result.
+/// Reason why a command has no result.
 #[derive(Debug)]
 enum CommandError {
     Words(String),
-    /// Something that points into a model file.
+    /// Error with a place in a model file.
     Model {
         words: String,
         at: Box<ModelError>,
     },
-    /// The program found a fault of its own, which depends on the model.
+    /// Fault of the program itself, which depends on the model.
     Fault(String),
-    /// Whoever read standard output has had enough.
+    /// Closed pipe: the reader of standard output has stopped reading.
     Unread,
 }
 
-/// Every error of the library; with its place where a model file has it.
+/// Converts every error of the library, with its place in a model file, if any.
 impl<E: Error + 'static> From<E> for CommandError {
     fn from(error: E) -> Self {
         let words = error.to_string();
@@ -174,7 +174,7 @@ impl<E: Error + 'static> From<E> for CommandError {
             if let Some(SimulateError::PassedThrough { .. }) = error.downcast_ref() {
                 return Self::Fault(words);
             }
-            // What a stream's error holds is not its source.
+            // The error inside a stream's error is not its source.
             let held = error.downcast_ref::<std::io::Error>().and_then(|error| error.get_ref());
             let file = error.downcast_ref().or_else(|| held.and_then(|held| held.downcast_ref::<FileError>()));
             if file.is_some_and(FileError::is_unread) {
@@ -191,7 +191,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, out: &mut dyn Write, e
     run_at(Terminal::default(), arguments, out, err)
 }
 
-/// Runs a command, as long as somebody reads it, where its results are nowhere else.
+/// Runs a command; ends it when nobody reads its results any more, if they are only printed.
 fn begun(arguments: &Arguments, only_prints: bool, session: &mut Session<'_>) -> Result<Exit, CommandError> {
     (session.color, session.quiet, session.threads) = (arguments.color, arguments.quiet, arguments.threads);
     progress::begin(arguments.quiet);
@@ -221,7 +221,7 @@ pub fn run_at(
     err: &mut dyn Write,
 ) -> Exit {
     let words = about::named(numbers::with_units(arguments));
-    // What is wrong with a command line is coloured as it says itself.
+    // Errors of a command line are coloured by its own option.
     let mut session = Session {
         out,
         err,
@@ -242,14 +242,14 @@ pub fn run_at(
     let only_prints = matches.as_ref().is_ok_and(|matches| session::only_prints(&command, matches));
     let run = match matches.and_then(|matches| Arguments::from_arg_matches(&matches)) {
         Ok(arguments) => {
-            // All options of all commands with their help, a part of a megabyte that the work can have.
+            // Frees all options with their help, a part of a megabyte, for the work.
             drop(command);
             begun(&arguments, only_prints, &mut session)
         }
         Err(error) => session.refuse(&command, &words, error),
     };
     run.unwrap_or_else(|error| {
-        // Whoever closes a pipe early, as `head` does, wants no more, nor a complaint.
+        // A reader that closes a pipe early, as `head` does, needs no more output and no error.
         match &error {
             CommandError::Unread => {}
             CommandError::Model { words, at } => session.complain_at(words, at),

@@ -1,4 +1,4 @@
-//! The argument that most subcommands take: which model.
+//! Argument of most subcommands: the model.
 
 use std::path::{Path, PathBuf};
 
@@ -32,21 +32,21 @@ pub(super) struct Changes {
     follower: FollowerNumbers,
 }
 
-/// The heading of these options in `--help`.
+/// Heading of these options in `--help`.
 const FOLLOWER: &str = "Follower (a table needs mass, stiffness and preload)";
 
-/// A number of the follower that has an option of its own.
+/// Number of the follower that has a separate option.
 struct FollowerOption {
     name: &'static str,
-    /// Unit beside a table of lifts.
+    /// Unit of the number for a table of lifts.
     unit: &'static str,
-    /// Value beside a table of lifts where none is given, in this unit.
+    /// Default value for a table of lifts, in this unit.
     assumed: f64,
     /// Whether a motion cannot be computed with the assumed value.
     is_needed: bool,
 }
 
-/// Every number of the follower that has an option, in the order of a model file.
+/// All numbers of the follower that have an option, in the order of a model file.
 const FOLLOWER_OPTIONS: [FollowerOption; 6] = [
     FollowerOption { name: "mass", unit: "kg", assumed: 0.1, is_needed: true },
     FollowerOption { name: "stiffness", unit: "N/mm", assumed: 30.0, is_needed: true },
@@ -65,7 +65,7 @@ impl FollowerOption {
 /// Units of the model that is assumed for a table of lifts.
 const BESIDE_A_TABLE: &str = "[units]\nlength = \"mm\"\nstiffness = \"N/mm\"\n";
 
-/// The options of `FOLLOWER_OPTIONS` that are given, each with its text.
+/// Given options of `FOLLOWER_OPTIONS`, each with its text.
 #[derive(Clone, Default)]
 struct FollowerNumbers(Vec<(&'static str, String)>);
 
@@ -101,29 +101,29 @@ impl FromArgMatches for FollowerNumbers {
 }
 
 impl FollowerNumbers {
-    /// The options as they are typed, each after a blank.
+    /// Returns the options as typed, each after a blank.
     fn typed(&self) -> String {
         self.0.iter().map(|(name, text)| format!(" --{name} {}", shell_word(text))).collect()
     }
 
-    /// The options that a table of lifts still needs.
+    /// Options that a table of lifts still needs.
     fn missing(&self) -> impl Iterator<Item = &'static FollowerOption> {
         let is_given = |option: &&FollowerOption| self.0.iter().any(|(name, _)| *name == option.name);
         FOLLOWER_OPTIONS.iter().filter(move |option| option.is_needed && !is_given(option))
     }
 }
 
-/// A number of the model, and what it is to be.
+/// Number of the model, and its new value.
 #[derive(Clone)]
 struct Change {
     name: String,
     number: Numeral,
-    /// The unit that was typed after it; empty for none.
+    /// Unit after the number; empty for none.
     unit: String,
 }
 
 impl Changes {
-    /// All numbers that are given, in either way.
+    /// Returns all given numbers, in either form.
     fn all(&self) -> Result<Vec<Change>, CommandError> {
         let named = |(name, text): &(&str, String)| {
             let change = number_of(&format!("follower.{name}"), text);
@@ -133,10 +133,10 @@ impl Changes {
         self.numbers.iter().cloned().map(Ok).chain(own).collect()
     }
 
-    /// The model with the numbers changed, in its own units.
+    /// Returns the model with the changed numbers, in its own units.
     pub(super) fn of(&self, model: &Model) -> Result<Model, CommandError> {
         let own = |change: Change| -> Result<(String, Numeral), CommandError> {
-            // An error is in the unit of its number.
+            // An error has the unit of its number.
             let name = error_of(&change.name).unwrap_or(&change.name);
             let path = if change.unit.is_empty() { "" } else { model.path_of(name, &[])? };
             Ok((change.name.clone(), change.inside(path, &model.units)?))
@@ -146,12 +146,12 @@ impl Changes {
     }
 }
 
-/// Name of the number whose error is called by this name, if one is.
+/// Name of the number whose error has this name; `None` for other names.
 fn error_of(name: &str) -> Option<&str> {
     name.strip_suffix(".error")
 }
 
-/// `NAME=VALUE`.
+/// Parses `NAME=VALUE`.
 fn change(text: &str) -> Result<Change, String> {
     let (name, number) = text.split_once('=').ok_or("must be NAME=VALUE: a number of the model and its new value")?;
     number_of(name, number).map_err(|words| match name.trim().rsplit('.').next() {
@@ -163,7 +163,7 @@ fn change(text: &str) -> Result<Change, String> {
     })
 }
 
-/// A number as it is typed. A unit is held against the model's once that is read.
+/// Parses a number. Its unit is compared with the model's after the model is read.
 fn number_of(name: &str, number: &str) -> Result<Change, String> {
     let (text, unit) = parted(number);
     let unit = if unit.starts_with(',') { "" } else { unit };
@@ -172,7 +172,7 @@ fn number_of(name: &str, number: &str) -> Result<Change, String> {
 }
 
 impl Change {
-    /// The number in the unit that a model has for this path.
+    /// Converts the number to the unit of a model for this path.
     fn inside(self, path: &str, units: &Units) -> Result<Numeral, CommandError> {
         let Self { name, number, unit } = self;
         if unit.is_empty() {
@@ -195,7 +195,7 @@ impl Change {
     }
 }
 
-/// Why no model can be read at a path, with the file that may be meant. A stream or a device is no reason.
+/// Returns the reason why no model can be read at a path, with the name of a similar file. A stream or a device is accepted.
 fn missing(path: &Path) -> Result<(), CommandError> {
     let shown = path.display();
     if path.is_dir() {
@@ -221,37 +221,37 @@ fn missing(path: &Path) -> Result<(), CommandError> {
     Err(CommandError::Words(format!("{word}: cannot be read: there is no such file{meant}")))
 }
 
-/// Most files of a folder that a misspelt name is compared with.
+/// Largest number of files of a folder with which a misspelt name is compared.
 const MOST_FILES: usize = 1000;
 
-/// Whether a word of a command line is meant as a file's name.
+/// Whether a word of a command line is meant as the name of a file.
 pub(super) fn is_file_name(word: &str) -> bool {
     word.contains(['.', '/', '\\']) && !word.starts_with('-')
 }
 
 impl ModelArgument {
-    /// The model in a file, or the one that is built in, with some numbers changed.
+    /// Builds the argument for the model in a file, or the built-in model, with some numbers changed.
     pub(super) fn of(file: Option<&Path>, changes: &Changes) -> Self {
         Self { file: file.map(Path::to_path_buf), changes: changes.clone() }
     }
 
-    /// The file that is named, if one is.
+    /// Named file, if any.
     pub(super) fn file(&self) -> Option<&Path> {
         self.file.as_deref()
     }
 
-    /// Options of the follower that a table of lifts still needs, each after a blank, with units as placeholders. Empty for a model file.
+    /// Options of the follower that a table of lifts still needs, each after a blank, with units as placeholders; empty for a model file.
     pub(super) fn still_needed(&self) -> String {
         let is_table = self.file.as_deref().is_some_and(|path| ends_in(path, &TABLES));
         let missing = self.changes.follower.missing().filter(|_| is_table);
         missing.map(|option| format!(" --{} {}", option.name, option.unit.to_uppercase())).collect()
     }
 
-    /// A number that an option goes through the values of; refused where --set gives it one.
+    /// Returns the number that an option varies; rejects a number that --set fixes.
     pub(super) fn varied(&self, model: &Model, name: &str, option: &str) -> Result<Parameter, CommandError> {
         let parameter = Parameter::named(model, name)?;
         let changes = self.changes.all()?;
-        // The number that varies is exact, whatever its error.
+        // The varied number is exact, whatever its error.
         let values = changes.iter().filter(|change| error_of(&change.name).is_none());
         let set = values.map(|change| Parameter::named(model, &change.name));
         if set.collect::<Result<Vec<_>, _>>()?.contains(&parameter) {
@@ -263,7 +263,7 @@ impl ModelArgument {
         Ok(parameter)
     }
 
-    /// Reads the model; says on standard error which one it is where none is named.
+    /// Reads the model; notes on standard error which model is used if none is named.
     pub(super) fn read(&self, session: &mut Session<'_>) -> Result<Model, CommandError> {
         self.read_with(session, true)
     }
@@ -286,7 +286,7 @@ impl ModelArgument {
                     "there is no model file, so this one is assumed; save it as {} to change it\n{text}",
                     file.display()
                 ));
-                // The assumed model is in no file of that name.
+                // The assumed model is not in a file of that name.
                 let assumed = |error: ModelError| {
                     let names_field = error.to_string().contains("in [cam]");
                     let law = if error.to_string().contains("law = \"contour\"") { "contour" } else { "table" };
@@ -311,7 +311,7 @@ impl ModelArgument {
                 watched("reading the table", |_| Model::parse(&file.to_string_lossy(), &text).map_err(assumed))?
             }
             Some(path) => {
-                // A table of a million lifts takes its time.
+                // A table of a million lifts takes some time to read.
                 watched("reading the model", |_| Model::read(path))?
             }
             None => {
@@ -336,7 +336,7 @@ impl ModelArgument {
         Ok(model)
     }
 
-    /// Reads the model for a command that answers for the cam as drawn. Notes how accurately a measured cam is known.
+    /// Reads the model for a command that describes the cam as drawn. Notes the accuracy of a measured cam.
     pub(super) fn read_as_drawn(&self, session: &mut Session<'_>) -> Result<Model, CommandError> {
         let model = self.read(session)?;
         if let Some(words) = notes::as_drawn(&model)? {
@@ -346,10 +346,10 @@ impl ModelArgument {
     }
 }
 
-/// Extensions of tables of lifts, which stand in place of a model file.
+/// Extensions of tables of lifts, which may replace a model file.
 pub(super) const TABLES: [&str; 4] = ["csv", "tsv", "txt", "dat"];
 
-/// The model file that is assumed for a table of lifts and the numbers of a follower, which are taken out of the changes.
+/// Builds the model file that is assumed for a table of lifts and the numbers of a follower, which are removed from the changes.
 fn assumed(table: &Path, changes: &mut Changes, needs_follower: bool) -> Result<String, CommandError> {
     let of_follower = |change: &Change| {
         let name = change.name.strip_prefix("follower.").unwrap_or(&change.name);
@@ -387,7 +387,7 @@ fn assumed(table: &Path, changes: &mut Changes, needs_follower: bool) -> Result<
     Ok(format!("name = {name}\n\n{BESIDE_A_TABLE}\n[follower]\n{lines}\n{cam}"))
 }
 
-/// Units of the model that is assumed for a table of lifts, read before the table is.
+/// Units of the model that is assumed for a table of lifts, needed before the table is read.
 fn units_beside_a_table() -> Result<Units, CommandError> {
     let follower =
         "[follower]\nmass = 1.0\nstiffness = 1.0\npreload = 1.0\ndamping = 0.0\ngravity = 0.0\nrestitution = 0.0\n";

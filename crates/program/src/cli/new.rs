@@ -33,7 +33,7 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
-    // clap lets no other name through.
+    // clap accepts no other name.
     let Some(law) = ModelTemplate::of(&arguments.law) else { return Ok(Exit::BadInput) };
     let path = &arguments.file;
     if path.as_os_str() == "-" {
@@ -43,7 +43,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         }
         return Ok(Exit::Agrees);
     }
-    // A name that TOML takes between quotes as it is names the machine and its table.
+    // A name that TOML accepts unchanged between quotes is used for the machine and its table.
     let is_plain = |stem: &&str| stem.chars().all(|letter| letter.is_alphanumeric() || "-_. ".contains(letter));
     let stem = path.file_stem().and_then(|stem| stem.to_str()).filter(is_plain);
     let mut text = law.text().replace(TEMPLATE_NAME, stem.unwrap_or(TEMPLATE_NAME));

@@ -1,4 +1,4 @@
-//! The command that usually follows another.
+//! Suggestion of the command that usually follows another.
 
 /// Fills in the template of the next command. `{model}` is replaced by the words that name the model, `{rpm}` by the speed of the command line,
 /// `{range}` by its range of speeds or by 5 % around its speed, `{axis}` by the range of another number.

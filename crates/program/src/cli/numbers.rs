@@ -1,13 +1,13 @@
-//! Numbers, speeds and axes as they are typed, in every form that a command can use.
+//! Parsers of numbers, speeds and axes, in all forms that a command accepts.
 //!
 //! | argument | form |
 //! |---|---|
 //! | a speed | `R` |
 //! | a range of speeds | `LO:HI` |
-//! | speeds | `LO:HI:N`, and `:log` behind it where they are spaced by their logarithm |
-//! | an axis | `NAME=LO:HI`, and with `:N` how many values |
+//! | speeds | `LO:HI:N`, and `:log` after it for logarithmic spacing |
+//! | an axis | `NAME=LO:HI`, with `:N` for the number of values |
 //!
-//! A command that has no use for a form says which one it takes.
+//! A command that does not accept a form names the form that it accepts.
 
 use std::f64::consts::PI;
 use std::ffi::OsString;
@@ -23,9 +23,9 @@ pub(super) fn finite(text: &str) -> Result<f64, String> {
     model::finite(text, "")
 }
 
-/// The command line with each unit in the word of the number before it: `--mass 0.12 kg` is `--mass "0.12 kg"`.
+/// Joins each unit to the word of the number before it: `--mass 0.12 kg` becomes `--mass "0.12 kg"`.
 pub(super) fn with_units(words: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
-    /// Most letters of a unit: `N/mm`.
+    /// Largest number of letters of a unit: `N/mm`.
     const LONGEST: usize = 4;
     let is_unit = |word: &str| {
         (1..=LONGEST).contains(&word.len())
@@ -54,7 +54,7 @@ pub(super) fn with_units(words: impl IntoIterator<Item = OsString>) -> Vec<OsStr
     joined
 }
 
-/// An angle, rad: `1.57`, `1.57rad` or `90deg`.
+/// Parses an angle, rad: `1.57`, `1.57rad` or `90deg`.
 pub(super) fn angle(text: &str) -> Result<f64, String> {
     match text.trim().strip_suffix("deg").or_else(|| text.trim().strip_suffix('\u{b0}')) {
         Some(degrees) => finite(degrees).map(f64::to_radians),
@@ -77,12 +77,12 @@ pub(super) fn not_negative(text: &str) -> Result<f64, String> {
     if number >= 0.0 { Ok(number) } else { Err("must be a finite number, 0 or more".into()) }
 }
 
-/// How many of something.
+/// Parses a count.
 pub(super) fn count(text: &str) -> Result<u64, String> {
     text.trim().parse().map_err(|_| format!("must be a whole number from 0 to {}, written in digits", u64::MAX))
 }
 
-/// A range with the number of values in it, where that is written, and their spacing.
+/// Range with the number of values in it, if given, and their spacing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Span {
     pub(super) ends: [f64; 2],
@@ -91,13 +91,13 @@ pub(super) struct Span {
 }
 
 impl Span {
-    /// The values, as many as are written or else `usual`.
+    /// Returns the values; their number is `usual` if none is given.
     pub(super) fn values(self, usual: usize) -> Values {
         let [low, high] = self.ends;
         Values { low, high, count: self.count.unwrap_or(usual), spacing: self.spacing }
     }
 
-    /// The range of a command that chooses its own values.
+    /// Returns the range for a command that chooses its own values.
     fn bare(self) -> Result<[f64; 2], String> {
         match (self.count, self.spacing) {
             (None, Spacing::Linear) => Ok(self.ends),
@@ -106,7 +106,7 @@ impl Span {
     }
 }
 
-/// `LO:HI`, `LO:HI:N`, `LO:HI:log` or `LO:HI:N:log` of what `number` takes; `what` is the word for one.
+/// Parses `LO:HI`, `LO:HI:N`, `LO:HI:log` or `LO:HI:N:log` with numbers parsed by `number`; `what` names one of them in errors.
 fn span(text: &str, number: fn(&str) -> Result<f64, String>, what: &str) -> Result<Span, String> {
     let parts: Vec<&str> = text.split(':').collect();
     let (low, high, count, spacing) = match parts.as_slice() {
@@ -140,7 +140,7 @@ fn span(text: &str, number: fn(&str) -> Result<f64, String>, what: &str) -> Resu
     }
 }
 
-/// `LO:HI`, any numbers.
+/// Parses `LO:HI` with any numbers.
 pub(super) fn range(text: &str) -> Result<[f64; 2], String> {
     if !text.contains(':') {
         return Err("must be LO:HI: the lowest and the highest value".into());
@@ -148,7 +148,7 @@ pub(super) fn range(text: &str) -> Result<[f64; 2], String> {
     span(text, finite, "value")?.bare()
 }
 
-/// A speed that a simulation can turn at.
+/// Parses a speed at which a simulation can run.
 fn speed(text: &str) -> Result<f64, String> {
     let (number, unit) = model::parted(text);
     let in_rpm = match unit {
@@ -160,19 +160,19 @@ fn speed(text: &str) -> Result<f64, String> {
     Err(format!("\"{}\" is not in rpm: {turns} rpm, if that is the speed of the cam", untrusted::value(text)))
 }
 
-/// One speed, or several of them.
+/// One speed, or several speeds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Speeds {
     One(f64),
     Span(Span),
 }
 
-/// A speed, a range, or speeds.
+/// Parses a speed, a range, or speeds.
 pub(super) fn speeds(text: &str) -> Result<Speeds, String> {
     if text.contains(':') {
         return span(text, speed, "speed").map(Speeds::Span);
     }
-    // As people write ranges elsewhere.
+    // Forms of a range in other programs and texts.
     let parts = ["..", " to ", "\u{2013}", "-", " "].iter().find_map(|between| text.trim().split_once(between));
     match parts.map(|(low, high)| (speed(low), speed(high))) {
         Some((Ok(low), Ok(high))) => Err(format!("a range has a colon: {low}:{high}")),
@@ -180,7 +180,7 @@ pub(super) fn speeds(text: &str) -> Result<Speeds, String> {
     }
 }
 
-/// One speed.
+/// Parses one speed.
 pub(super) fn rpm(text: &str) -> Result<f64, String> {
     match speeds(text)? {
         Speeds::One(rpm) => Ok(rpm),
@@ -190,7 +190,7 @@ pub(super) fn rpm(text: &str) -> Result<f64, String> {
     }
 }
 
-/// A range of speeds.
+/// Parses a range of speeds.
 pub(super) fn rpm_range(text: &str) -> Result<[f64; 2], String> {
     match speeds(text)? {
         Speeds::One(_) => {
@@ -200,7 +200,7 @@ pub(super) fn rpm_range(text: &str) -> Result<[f64; 2], String> {
     }
 }
 
-/// A range of speeds, or one speed as the range of itself.
+/// Parses a range of speeds; a single speed is both ends.
 pub(super) fn rpm_or_range(text: &str) -> Result<[f64; 2], String> {
     match speeds(text)? {
         Speeds::One(rpm) => Ok([rpm; 2]),
@@ -208,10 +208,10 @@ pub(super) fn rpm_or_range(text: &str) -> Result<[f64; 2], String> {
     }
 }
 
-/// The name of a number, and the values that it takes.
+/// Name of a number, and its range.
 pub(super) type NamedSpan = (String, Span);
 
-/// An axis.
+/// Parses an axis.
 pub(super) fn axis(text: &str) -> Result<NamedSpan, String> {
     let Some((name, values)) = text.split_once('=') else {
         return Err(
@@ -224,7 +224,7 @@ pub(super) fn axis(text: &str) -> Result<NamedSpan, String> {
     Ok((name.into(), span?))
 }
 
-/// An axis of a command that chooses its own values.
+/// Parses an axis of a command that chooses its own values.
 pub(super) fn followed(text: &str) -> Result<(String, [f64; 2]), String> {
     if !text.contains(':') {
         return Err("must be NAME=LO:HI, a number with its lowest and highest value".into());

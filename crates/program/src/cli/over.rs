@@ -1,4 +1,4 @@
-//! The axis of a survey, and its one speed where the axis is another number.
+//! Axis of a survey, and its fixed speed if the axis is another number.
 
 use super::numbers::{NamedSpan, Span, Speeds};
 use super::{CommandError, ModelArgument};
@@ -7,13 +7,14 @@ use corner_impact::orbit::Parameter;
 use corner_impact::study::StudyError;
 use corner_impact::study::survey::Axis;
 
-/// A number of values that are run one by one.
+/// Checks a number of values that are run one by one.
 pub(super) fn values(count: usize) -> Result<u32, CommandError> {
     let count = u32::try_from(count).ok().filter(|few| (2..=100_000).contains(few)).ok_or(count);
     count.map_err(|count| CommandError::Words(format!("{count} values: there must be 2 to 100000")))
 }
 
-/// Speed of a survey that has one, and name and range of its axis: the speed, or a number of the model. The axis is `None` if no option names it.
+/// Fixed speed of a survey, if any, and name and range of its axis: the speed, or a number of the model. The axis is `None` if no option
+/// names it.
 pub(super) fn varied(
     rpm: Option<Speeds>,
     over: Option<&NamedSpan>,
@@ -31,7 +32,7 @@ pub(super) fn varied(
     }
 }
 
-/// Speed and axis of a survey, with the values along the axis: `usual` of them if their number is not written.
+/// Speed and axis of a survey, with the values along the axis; their number is `usual` if none is given.
 pub(super) fn over(
     (argument, model): (&ModelArgument, &Model),
     rpm: Option<Speeds>,

@@ -1,4 +1,4 @@
-//! Figures to files: the name says whether SVG, PNG or PDF, and options how they stand on paper.
+//! Figures as files: the name determines SVG, PNG or PDF, and options the appearance on paper.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -17,7 +17,7 @@ use corner_impact_plot::layout::WIDTH;
 use corner_impact_plot::look::length;
 use corner_impact_plot::{Figure, LegendPlace, Look, Theme, TitleChoice, pdf, png, svg};
 
-/// The heading of these options in `--help`.
+/// Heading of these options in `--help`.
 const LOOKS: &str = "How a picture looks";
 
 /// How pictures stand on paper.
@@ -74,7 +74,7 @@ pub(super) struct PictureArguments {
     open: bool,
 }
 
-/// A look and what is written beside the picture, as asked for.
+/// Requested look, and the files beside the picture.
 #[derive(Clone, Default)]
 pub(super) struct PictureRequest {
     look: Option<Look>,
@@ -87,7 +87,7 @@ impl PictureRequest {
         self.look.as_ref().map_or(WIDTH, Look::across)
     }
 
-    /// Names of the files beside the picture, with the option that each is of.
+    /// Names of the files beside the picture, each with its option.
     pub(super) fn files(&self) -> Option<[(&'static str, PathBuf); 2]> {
         let script = self.script.as_ref()?;
         Some([("--script", script.clone()), ("the data of --script", data(script))])
@@ -95,7 +95,7 @@ impl PictureRequest {
 }
 
 impl LookArguments {
-    /// The look, found before the work that the picture shows; none where nothing is asked for.
+    /// Returns the look, before the work for the picture; `None` if no option sets it.
     pub(super) fn look(&self) -> Result<Option<Look>, CommandError> {
         let Self { width, size, font, title, no_title, legend, theme } = self;
         let is_plain = width.is_none() && size.is_none() && font.is_none() && legend.is_none() && theme.is_none();
@@ -120,7 +120,7 @@ impl LookArguments {
 }
 
 impl PictureArguments {
-    /// The look with the part that is shown, and the files beside the picture.
+    /// Returns the look with the ranges of the axes, and the files beside the picture.
     pub(super) fn request(&self) -> Result<PictureRequest, CommandError> {
         let (look, script) = (self.look.look()?, self.script.clone());
         if self.x_range.is_none() && self.y_range.is_none() && self.height.is_none() {
@@ -134,7 +134,7 @@ impl PictureArguments {
 /// Largest file of a font, bytes.
 const LARGEST_FONT: usize = 64 << 20;
 
-/// The letters of a font that is installed, or of a file.
+/// Loads an installed font, or a font file.
 fn fonts(name: &str) -> Result<Fonts, CommandError> {
     if !Fonts::is_file(name) {
         return Ok(Fonts::named(name)?);
@@ -144,18 +144,18 @@ fn fonts(name: &str) -> Result<Fonts, CommandError> {
     Ok(Fonts::of_file(name, data)?)
 }
 
-/// A file name of a script, for clap.
+/// Parses the file name of a script, for clap.
 fn script(text: &str) -> Result<PathBuf, String> {
     let path = PathBuf::from(text);
     if ends_in(&path, &["py"]) { Ok(path) } else { Err("must end in .py".into()) }
 }
 
-/// Name of the data of a script.
+/// Name of the data file of a script.
 fn data(script: &Path) -> PathBuf {
     script.with_extension("csv")
 }
 
-/// The kinds of picture.
+/// Kind of picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
     Svg,
@@ -165,24 +165,24 @@ pub(super) enum Kind {
 
 const KINDS: [(&str, Kind); 3] = [("svg", Kind::Svg), ("png", Kind::Png), ("pdf", Kind::Pdf)];
 
-/// Whether a file name ends in one of some extensions, in either case.
+/// Whether a file name ends in one of some extensions, in upper or lower case.
 pub(super) fn ends_in(path: &Path, extensions: &[&str]) -> bool {
     path.extension().is_some_and(|extension| extensions.iter().any(|known| extension.eq_ignore_ascii_case(known)))
 }
 
-/// The kind that a file name asks for.
+/// Kind of picture of a file name.
 pub(super) fn kind(path: &Path) -> Option<Kind> {
     KINDS.into_iter().find(|(name, _)| ends_in(path, &[name])).map(|(_, kind)| kind)
 }
 
-/// A file name of a picture, for clap.
+/// Parses the file name of a picture, for clap.
 pub(super) fn picture(text: &str) -> Result<PathBuf, String> {
     let path = PathBuf::from(text);
     if kind(&path).is_some() { Ok(path) } else { Err("must end in .svg, .png or .pdf".into()) }
 }
 
-/// A file name of a picture or a table, for clap. Devices and pipes have names of any kind; what ends like another kind of
-/// picture is not to hold a table.
+/// Parses the file name of a picture or a table, for clap. Devices and pipes may have any name; a name with the ending of an unsupported
+/// kind of picture is rejected for a table.
 pub(super) fn picture_or_table(text: &str) -> Result<PathBuf, String> {
     let path = PathBuf::from(text);
     if path.extension().is_none() || ends_in(&path, &["csv"]) || kind(&path).is_some() {
@@ -192,23 +192,23 @@ pub(super) fn picture_or_table(text: &str) -> Result<PathBuf, String> {
     }
 }
 
-/// Files that a figure goes to, all of them or none; opened before the work that the figure shows.
+/// Files of a figure, all or none of which are written; opened before the work for the figure.
 pub(super) struct Canvas {
     file: Output<'static>,
     kind: Kind,
     look: Look,
-    /// The script and its data, and the name of the data.
+    /// Script and its data, and the name of the data file.
     script: Option<([Output<'static>; 2], String)>,
 }
 
 impl Canvas {
-    /// Begins to write `path`, which names a kind of picture, and what is asked for beside it.
+    /// Begins to write `path`, whose name is that of a picture, and the requested files beside it.
     pub(super) fn create(path: &Path, request: PictureRequest) -> Result<Self, CommandError> {
         let beside = request.files();
         let all = [("--out", path)].into_iter();
         file::distinct(all.chain(beside.iter().flatten().map(|(option, path)| (*option, path.as_path()))))?;
         let mut look = request.look.unwrap_or_default();
-        // A file is to have the same letters wherever it is looked at.
+        // A file must have the same letters on every machine.
         look.fonts.get_or_insert_default();
         let script = beside.map(|[(_, script), (_, data)]| -> Result<_, CommandError> {
             let name = data.file_name().unwrap_or_default().to_string_lossy().into_owned();
@@ -217,7 +217,7 @@ impl Canvas {
         Ok(Self { file: Output::file(path)?, kind: kind(path).unwrap_or(Kind::Svg), look, script: script.transpose()? })
     }
 
-    /// The figure with the units of a model, written but not yet files of those names.
+    /// Writes the figure with the units of a model into files that do not have their names yet.
     pub(super) fn draw(mut self, figure: Figure, units: &Units) -> Result<Vec<Output<'static>>, CommandError> {
         let mut figure = figure.in_units(|unit| units.spelled(unit));
         figure.title = untrusted::visible(&figure.title).into_owned();
@@ -244,7 +244,7 @@ impl Canvas {
     }
 }
 
-/// Where a table or a picture goes, as its name says; opened before the work.
+/// Destination of a table or a picture, by its name; opened before the work.
 pub(super) enum Target<'a> {
     Table(Output<'a>),
     Picture(Box<Canvas>),
@@ -268,7 +268,7 @@ impl<'a> Target<'a> {
         })
     }
 
-    /// Writes the one or the other in the units of a model, and gives the files their names.
+    /// Writes the table or the picture in the units of a model, and gives the files their names.
     pub(super) fn fill(
         self,
         units: &Units,
@@ -286,19 +286,19 @@ impl<'a> Target<'a> {
     }
 }
 
-/// Where a command writes that prints its table unless a document is asked for; none if the document is all.
+/// Destination of a command that prints its table unless a document is requested; `None` if only the document is printed.
 pub(super) fn table(out: Option<&PathBuf>, json: bool) -> Result<Option<&Path>, CommandError> {
     out_is_standard(out, json)?;
     let standard = (!json).then_some(Path::new("-"));
     Ok(out.map(PathBuf::as_path).or(standard))
 }
 
-/// Whether a name stands for standard output.
+/// Whether a name denotes standard output.
 pub(super) fn is_standard(path: Option<&PathBuf>) -> bool {
     path.is_some_and(|path| path.as_os_str() == "-")
 }
 
-/// Whether `--out` is standard output, which then has no room for a document.
+/// Whether `--out` is standard output, which then leaves no room for a document.
 pub(super) fn out_is_standard(out: Option<&PathBuf>, json: bool) -> Result<bool, CommandError> {
     let standard = is_standard(out);
     if standard && json {

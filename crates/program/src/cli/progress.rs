@@ -1,4 +1,4 @@
-//! A progress bar on standard error, for work that takes longer than a second in front of a person.
+//! Progress bar on standard error, for work that takes longer than a second at a terminal.
 
 use std::io::IsTerminal;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -11,15 +11,15 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use corner_impact::progress::Watch;
 
-/// Does some work, which may tell how far it has come; it begins at `what`.
+/// Runs work that may report its progress; `what` names its first step.
 pub(super) fn watched<T>(what: &str, work: impl FnOnce(&dyn Watch) -> T) -> T {
     work(&Progress::spinner(what))
 }
 
-/// Whether progress is shown to nobody.
+/// Whether progress is hidden.
 static HIDDEN: AtomicBool = AtomicBool::new(false);
 
-/// Time at which the command began.
+/// Time when the command began.
 static BEGUN: Mutex<Option<Instant>> = Mutex::new(None);
 
 /// Shows progress of the command that begins now, or hides it.
@@ -31,30 +31,30 @@ pub(super) fn begin(is_hidden: bool) {
 /// Progress of a command: a bar if the total is known, otherwise a spinner, and the current step.
 pub(super) struct Progress {
     bar: ProgressBar,
-    /// State that the bar was styled for: whether something is done, and the total.
+    /// State for which the bar was styled: whether something is done, and the total.
     looks: Mutex<(bool, u64)>,
-    /// Ends when this does.
+    /// Thread that shows the bar, which ends when this value is dropped.
     shows: Option<(Sender<()>, JoinHandle<()>)>,
 }
 
 impl Progress {
-    /// Time from the beginning of a command until its bar appears, and least time of any work that has one.
+    /// Time from the beginning of a command until its bar appears, and least duration of work with a bar.
     const PATIENCE: Duration = Duration::from_millis(900);
     const LEAST: Duration = Duration::from_millis(100);
-    /// Between two looks of a bar that nobody moves.
+    /// Time between two updates of an idle bar.
     const TICK: Duration = Duration::from_millis(120);
 
     const BAR: &'static str = "{bar:30} {percent:>3} %  {elapsed} of about {duration}  {wide_msg}";
-    /// How long nothing takes says nothing of the rest.
+    /// Bar before the first piece is done, without an estimate of the remaining time.
     const BEGUN: &'static str = "{bar:30} {percent:>3} %  {elapsed}  {wide_msg}";
     const SPINNER: &'static str = "{spinner} {elapsed}  {wide_msg}";
 
-    /// At something that takes as long as it takes, until it says more.
+    /// Builds a spinner for work of unknown duration.
     pub(super) fn spinner(what: &str) -> Self {
         let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden());
         look(&bar, (false, 0));
         bar.set_message(what.to_owned());
-        // Appears by itself: what is watched may have nothing to tell for longer than patience lasts.
+        // The bar appears by itself: the work may report nothing for longer than the patience.
         let is_shown = std::io::stderr().is_terminal() && !HIDDEN.load(Ordering::Relaxed);
         let begun = *BEGUN.lock().unwrap_or_else(PoisonError::into_inner);
         let over = begun.map_or(Duration::ZERO, |begun| begun.elapsed());
@@ -92,7 +92,7 @@ impl Watch for Progress {
     fn at(&self, what: &str, done: u64, total: u64) {
         let mut known = self.looks.lock().unwrap_or_else(PoisonError::into_inner);
         if known.1 != total {
-            // Each kind of work has its own pace.
+            // Each kind of work has a different pace.
             self.bar.reset_eta();
         }
         if *known != (done > 0, total) {
@@ -110,7 +110,7 @@ impl Drop for Progress {
     fn drop(&mut self) {
         if let Some((ended, thread)) = self.shows.take() {
             drop(ended);
-            // It only waits, and then for nothing any more.
+            // The thread only waits, and ends at once.
             let _ = thread.join();
         }
         self.bar.finish_and_clear();

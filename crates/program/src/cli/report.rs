@@ -49,7 +49,7 @@ pub(super) struct Arguments {
     external: ExternalArguments,
 }
 
-/// A file name of a page, for clap.
+/// Parses the file name of a page, for clap.
 pub(super) fn page(text: &str) -> Result<PathBuf, String> {
     let path = PathBuf::from(text);
     let is_page = path.extension().is_none() || ends_in(&path, &["html", "htm"]);
@@ -71,7 +71,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     if let (Some(_), Err(why)) = (&path, live::module()) {
         session.note(&format!("the pictures of the page will not be live: {why}"));
     }
-    // The file is begun before the work: a name that cannot be is told at once.
+    // The file is begun before the work, so that an impossible name is reported at once.
     let file = match &path {
         Some(path) => Some(Output::create(path, &mut *session.out)?),
         None => None,
@@ -98,7 +98,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     Ok(if report.agrees { Exit::Agrees } else { Exit::Disagrees })
 }
 
-/// Named after the model file and the numbers that are changed, where the command is run.
+/// Default name of the page, from the model file and the changed numbers, in the current folder.
 fn default_name(model: &Model) -> Result<PathBuf, ModelError> {
     let mut name = match model.path().and_then(Path::file_stem) {
         Some(stem) => stem.to_string_lossy().into_owned(),

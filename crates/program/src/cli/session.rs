@@ -1,4 +1,4 @@
-//! The two streams of a command, and the terminal behind them.
+//! Streams of a command, and the terminal behind them.
 
 use std::ffi::OsString;
 use std::io::{ErrorKind, IsTerminal, Write};
@@ -29,14 +29,13 @@ pub(super) fn said(words: &[OsString]) -> ColorChoice {
     said
 }
 
-/// The ranges of `--over`, as `NAME=LO:HI`.
+/// Ranges of `--over`, as `NAME=LO:HI`.
 fn axes(of_command: &clap::ArgMatches) -> impl Iterator<Item = String> {
     let all = of_command.try_get_raw("over").ok().flatten().into_iter().flatten();
     all.filter_map(|axis| Some(axis.to_str()?.split(':').take(2).collect::<Vec<_>>().join(":")))
 }
 
-/// The lowest and the highest of the speeds that a command line asks for by `--rpm` or `--over rpm=`, as far as they can be read. The axis
-/// comes first.
+/// Lowest and highest speed requested by `--rpm` or `--over rpm=`, if they can be parsed. The axis takes precedence.
 pub(super) fn speeds(matches: &clap::ArgMatches) -> Option<[f64; 2]> {
     let (_, of_command) = matches.subcommand()?;
     let axis = axes(of_command).find_map(|axis| axis.strip_prefix("rpm=").map(str::to_owned));
@@ -47,7 +46,7 @@ pub(super) fn speeds(matches: &clap::ArgMatches) -> Option<[f64; 2]> {
     Some([low, parts.next().flatten().unwrap_or(low)])
 }
 
-/// Words of a command line as a complaint shows them.
+/// Words of a command line for an error message.
 fn shown(value: &ContextValue) -> ContextValue {
     match value {
         ContextValue::String(text) => ContextValue::String(untrusted::value(text).into_owned()),
@@ -58,14 +57,14 @@ fn shown(value: &ContextValue) -> ContextValue {
     }
 }
 
-/// The option that a command does not know, without its hyphens.
+/// Unknown option of a command, without its hyphens.
 fn unknown_option(error: &clap::Error) -> Option<&str> {
     let unknown = error.get(ContextKind::InvalidArg).filter(|_| error.kind() == Kind::UnknownArgument);
     let Some(ContextValue::String(option)) = unknown else { return None };
     option.strip_prefix("--")?.split(['=', ' ']).next()
 }
 
-/// Words that other programs, or earlier versions of other commands, have for an option.
+/// Words for an option in other programs, or in earlier versions of other commands.
 const SYNONYMS: [(&str, &str); 15] = [
     ("parameter", "over"),
     ("against", "over"),
@@ -84,7 +83,7 @@ const SYNONYMS: [(&str, &str); 15] = [
     ("verbose", "all"),
 ];
 
-/// The option of a command that an unknown one stands for: by a typing error, or in the words of other programs.
+/// Option of a command for which an unknown one was meant: a typing error, or a word of other programs.
 fn near_option(command: &clap::Command, error: &clap::Error) -> Option<String> {
     let longs = || command.get_arguments().filter(|argument| !argument.is_hide_set()).filter_map(clap::Arg::get_long);
     let unknown = unknown_option(error)?;
@@ -92,7 +91,7 @@ fn near_option(command: &clap::Command, error: &clap::Error) -> Option<String> {
     same.map(|(_, own)| *own).or_else(|| nearest(unknown, longs())).map(|near| format!("--{near}"))
 }
 
-/// The first example in the help of a command.
+/// First example in the help of a command.
 fn example(command: &clap::Command) -> Option<String> {
     let help = command.get_after_help()?.to_string();
     help.lines().map(str::trim).find(|line| line.starts_with("corner-impact ")).map(str::to_owned)
@@ -103,7 +102,7 @@ fn is_of(error: &clap::Error, context: ContextKind, option: &str) -> bool {
     matches!(error.get(context), Some(ContextValue::String(name)) if name.starts_with(option))
 }
 
-/// The commands that take an option which another refuses; none if there are none.
+/// Commands that accept an option which another one rejects; `None` if there are none.
 fn taken_by(command: &clap::Command, error: &clap::Error) -> Option<String> {
     if error.kind() == Kind::ArgumentConflict && is_of(error, ContextKind::InvalidArg, "--over") {
         return is_of(error, ContextKind::PriorArg, "--over").then(|| "note: `chart` varies two numbers".into());
@@ -116,7 +115,7 @@ fn taken_by(command: &clap::Command, error: &clap::Error) -> Option<String> {
     (!names.is_empty()).then(|| format!("note: --{name} is an option of {}", names.join(", ")))
 }
 
-/// Lines in the columns of a terminal, if there is one.
+/// Wraps lines to the columns of a terminal, if there is one.
 pub(super) fn in_columns(text: &str, columns: Option<usize>) -> String {
     let Some(columns) = columns else { return text.to_owned() };
     let wrapped = |line: &str| {
@@ -126,11 +125,11 @@ pub(super) fn in_columns(text: &str, columns: Option<usize>) -> String {
     text.lines().map(wrapped).collect()
 }
 
-/// Whether nothing that a command line asks for goes to a file.
+/// Whether a command line requests no file.
 pub(super) fn only_prints(command: &clap::Command, matches: &clap::ArgMatches) -> bool {
     let Some((name, given)) = matches.subcommand() else { return false };
     let arguments = command.find_subcommand(name).map(clap::Command::get_arguments).into_iter().flatten();
-    // A report has a file if none is named, and a live page is read in a browser.
+    // A report writes a file even if none is named, and a live page is shown in a browser.
     let of_files = |names: &[Str]| names.iter().any(|name| ["FILE", "DIR"].contains(&name.as_str()));
     let mut files = arguments.filter(|argument| argument.get_value_names().is_some_and(of_files));
     !["report", "explore"].contains(&name)
@@ -142,22 +141,22 @@ pub(super) fn only_prints(command: &clap::Command, matches: &clap::ArgMatches) -
 pub struct Terminal {
     /// Whether standard output is a terminal.
     pub out: bool,
-    /// Whether standard error is.
+    /// Whether standard error is a terminal.
     pub err: bool,
-    /// Columns of the page, where something says how many there are.
+    /// Columns of the page, if known.
     pub columns: Option<usize>,
-    /// The environment wants no colour: NO_COLOR.
+    /// Whether the environment forbids colour: NO_COLOR.
     pub plain: bool,
-    /// The environment wants colour everywhere: CLICOLOR_FORCE.
+    /// Whether the environment requests colour everywhere: CLICOLOR_FORCE.
     pub forced: bool,
-    /// The terminal has none, or is not to be asked for it: TERM=dumb, CLICOLOR=0.
+    /// Whether the terminal has no colour, or colour is switched off: TERM=dumb, CLICOLOR=0.
     pub dumb: bool,
-    /// Results go to standard output of this process, and not into the hands of a program that calls the library.
+    /// Whether results go to standard output of this process, and not to a program that calls the library.
     pub is_process: bool,
 }
 
 impl Terminal {
-    /// The fewest that a page is laid out for, and the most that can be read with ease.
+    /// Smallest number of columns of a page, and the largest that is easy to read.
     const ALLOWED: [usize; 2] = [40, 120];
 
     /// Terminal of this process. COLUMNS takes precedence over the measured width.
@@ -194,27 +193,27 @@ impl Terminal {
     }
 }
 
-/// The streams of one command line.
+/// Streams of one command line.
 pub(super) struct Session<'a> {
     /// Results.
     pub(super) out: &'a mut dyn Write,
-    /// Complaints, notes and accounts.
+    /// Errors, notes and accounts.
     pub(super) err: &'a mut dyn Write,
     /// Terminals behind both streams.
     pub(super) terminal: Terminal,
     /// Value of `--color`.
     pub(super) color: ColorChoice,
-    /// Whether results and errors alone are printed.
+    /// Whether only results and errors are printed.
     pub(super) quiet: bool,
-    /// Threads that share the work; none for as many as there are.
+    /// Number of threads that share the work; `None` for the default.
     pub(super) threads: Option<usize>,
-    /// The speeds that the command line asks for, rpm.
+    /// Speeds requested on the command line, rpm.
     pub(super) rpm: Option<[f64; 2]>,
     /// Units of the model that the command is about.
     pub(super) units: Units,
-    /// Its name.
+    /// Name of the model.
     pub(super) model: String,
-    /// The words that name it on a command line, each after a blank.
+    /// Words that name the model on a command line, each after a blank.
     pub(super) named: String,
     /// Destination and form of the result.
     pub(super) wishes: Wishes,
@@ -231,21 +230,21 @@ pub(super) struct AnswerArguments {
     pub(super) all: bool,
 }
 
-/// Destination and form of a result, as the command line asks for them.
+/// Destination and form of a result, as requested on the command line.
 #[derive(Debug, Default)]
 pub(super) struct Wishes {
-    /// The file that the result goes to, if it goes to one.
+    /// File of the result, if any.
     pub(super) file: Option<PathBuf>,
-    /// Whether it is to be opened.
+    /// Whether to open the file.
     open: bool,
     /// Whether the result is for a program.
     json: bool,
-    /// The range of a number other than the speed, without the number of its values.
+    /// Range of a number other than the speed, without the number of its values.
     axis: Option<String>,
 }
 
 impl Wishes {
-    /// Reads them from the parsed command line. A command that chooses the name of its file adds it later.
+    /// Reads the requests from the parsed command line. A command that chooses the name of its file adds it later.
     pub(super) fn of(matches: &clap::ArgMatches) -> Self {
         let Some((_, given)) = matches.subcommand() else { return Self::default() };
         let flag = |name: &str| given.try_get_one::<bool>(name).ok().flatten() == Some(&true);
@@ -266,26 +265,26 @@ impl Session<'_> {
         self.terminal.coloured(self.color, self.terminal.out)
     }
 
-    /// Whether complaints are.
+    /// Whether errors are coloured.
     pub(super) fn colours_err(&self) -> bool {
         self.terminal.coloured(self.color, self.terminal.err)
     }
 
-    /// Says something on standard error.
+    /// Prints a note on standard error.
     pub(super) fn note(&mut self, words: &str) {
         if self.quiet {
             return;
         }
-        // A closed pipe leaves nobody to tell.
+        // If the pipe is closed, the failure cannot be reported.
         let _ = writeln!(self.err, "{}", self.in_width(&format!("note: {}", untrusted::sentence(words))));
     }
 
-    /// Columns of the terminal behind standard error, if that is one.
+    /// Columns of the terminal behind standard error, if any.
     pub(super) fn columns_err(&self) -> Option<usize> {
         self.terminal.err.then(|| self.width())
     }
 
-    /// A sentence in lines of a terminal; for a program it is one line.
+    /// Wraps a sentence to the lines of a terminal; without a terminal it stays in one line.
     fn in_width(&self, words: &str) -> String {
         if self.terminal.err {
             textwrap::fill(words, options(self.width()).subsequent_indent("  "))
@@ -294,12 +293,12 @@ impl Session<'_> {
         }
     }
 
-    /// Notes that some of the parts of a survey failed, and the first of them: tables do not say why.
+    /// Notes how many parts of a survey failed, and the first reason: tables do not give reasons.
     pub(super) fn failures(&mut self, what: &str, [count, all]: [usize; 2], first: &str) {
         self.note(&format!("{count} of {all} {what} could not be run; the first is {first}"));
     }
 
-    /// Says to a person at a terminal which file was written, and opens it, if that was asked for, by the program that is there for its kind.
+    /// Tells a user at a terminal which file was written, and opens it on request with the program for its kind.
     pub(super) fn open(&mut self) {
         let Some(path) = self.wishes.file.clone().filter(|path| path.is_file()) else { return };
         // `report` prints the name of its page.
@@ -311,7 +310,7 @@ impl Session<'_> {
         }
     }
 
-    /// Says to a person at a terminal which command usually follows.
+    /// Tells a user at a terminal which command usually follows.
     pub(super) fn tell_next(&mut self, template: &str) -> Result<(), CommandError> {
         let is_table = self.wishes.file.as_ref().is_some_and(|path| path.as_os_str() == "-");
         if template.is_empty() || !self.terminal.out || self.quiet || self.wishes.json || is_table {
@@ -321,25 +320,25 @@ impl Session<'_> {
         self.print(&format!("next: corner-impact {next}\n"))
     }
 
-    /// Complains on standard error, in the words that every complaint begins with.
+    /// Prints an error on standard error, with the usual beginning.
     pub(super) fn complain(&mut self, words: &str) {
-        // A closed pipe leaves nobody to tell.
+        // If the pipe is closed, the failure cannot be reported.
         let words = format!("{} {}", complaint::word(self.colours_err()), untrusted::sentence(words));
         let _ = writeln!(self.err, "{}", self.in_width(&words));
     }
 
-    /// Prints a complaint with the line of the model file that it is about.
+    /// Prints an error with its line of the model file.
     pub(super) fn complain_at(&mut self, words: &str, at: &ModelError) {
         self.complain(words);
         let shown = complaint::shown(words, at, self.colours_err(), self.terminal.err, self.width());
-        // A message is to fit a page.
+        // A message must fit a page.
         if shown.chars().count() + untrusted::sentence(words).chars().count() > untrusted::MESSAGE - untrusted::PREFIX {
             return;
         }
         let _ = self.err.write_all(shown.as_bytes());
     }
 
-    /// Says what is wrong with a command line, or what help was asked for.
+    /// Prints the error of a command line, or the requested help.
     pub(super) fn refuse(
         &mut self,
         command: &clap::Command,
@@ -352,7 +351,7 @@ impl Session<'_> {
         let unknown = unknown_option(&error).and_then(|option| place(&format!("--{option}")));
         let is_early = unknown.zip(called).is_some_and(|(option, called)| Some(option) < place(called.get_name()));
         if error.kind() == Kind::UnknownArgument {
-            // "-- --json" would be the name of a file.
+            // The suggestion "-- --json" would make it the name of a file.
             error.remove(ContextKind::Suggested);
             error.remove(ContextKind::SuggestedArg);
             if let Some(near) = called.filter(|_| !is_early).and_then(|called| near_option(called, &error)) {
@@ -362,7 +361,7 @@ impl Session<'_> {
             let usage = called.filter(|_| !is_early).unwrap_or(command).clone().render_usage();
             error.insert(ContextKind::Usage, ContextValue::StyledStr(usage));
         }
-        // Advice that repeats what nobody can read is none.
+        // Advice that repeats an unreadable word is omitted.
         let is_odd =
             |value: &ContextValue| matches!(value, ContextValue::String(text) if untrusted::value(text) != *text);
         if error.context().any(|(_, value)| is_odd(value)) {
@@ -388,7 +387,7 @@ impl Session<'_> {
             let others = others.map_or(String::new(), |others| format!("{}\n", self.in_width(&others)));
             let example = called.and_then(example).map_or(String::new(), |line| format!("example: {line}\n"));
             let text = format!("{text}{others}{example}");
-            // A closed pipe leaves nobody to tell.
+            // If the pipe is closed, the failure cannot be reported.
             let _ = self.err.write_all(text.as_bytes());
             Ok(Exit::BadInput)
         } else {
@@ -398,12 +397,12 @@ impl Session<'_> {
         }
     }
 
-    /// A page as it is printed.
+    /// Returns a page as it is printed.
     pub(super) fn shown(&self, page: &Page) -> String {
         if self.colours_out() { page.coloured().to_owned() } else { page.plain() }
     }
 
-    /// Prints a result whole.
+    /// Prints a complete result.
     pub(super) fn print(&mut self, text: &str) -> Result<(), CommandError> {
         self.out.write_all(text.as_bytes()).and_then(|()| self.out.flush()).map_err(|error| match error.kind() {
             ErrorKind::BrokenPipe => CommandError::Unread,
@@ -411,7 +410,7 @@ impl Session<'_> {
         })
     }
 
-    /// Prints what was found: one document for a program, or the page for people, in as many columns as there are.
+    /// Prints a result: one document for programs, or the page for people, in the available columns.
     pub(super) fn answer(
         &mut self,
         found: &(impl Serialize + Paged),

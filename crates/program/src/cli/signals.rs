@@ -1,4 +1,4 @@
-//! Signals that end the program. They wait while a file gets its name. Before the end, hidden files and private folders are removed,
+//! Signals that end the program. They are delayed while a file gets its name. Before the end, hidden files and private folders are removed,
 //! and started programs are ended.
 //!
 //! A separate thread waits for signals, removes unfinished files and then lets the signal take effect: no loop has to poll a flag, and the
@@ -6,8 +6,8 @@
 
 use std::io;
 
-/// Installs a handler for signals that end the program. Such signals wait while a file gets its name, remove unfinished files and end
-/// started programs.
+/// Installs a handler for signals that end the program. Such signals are delayed while a file gets its name; the handler removes unfinished
+/// files and ends started programs.
 #[cfg(unix)]
 pub fn watch() -> io::Result<()> {
     use std::sync::atomic::AtomicBool;
@@ -25,14 +25,14 @@ pub fn watch() -> io::Result<()> {
     static WATCHED: Once = Once::new();
     let mut result = Ok(());
     WATCHED.call_once(|| {
-        // A file at its size limit gives an error message, as a full disk does.
+        // A file at its size limit gives an error message, like a full disk.
         let too_large = signal_hook::flag::register(SIGXFSZ, Arc::new(AtomicBool::new(false)));
         let ignored = ignored();
         let heeded = ENDING.into_iter().filter(|signal| ignored >> (signal - 1) & 1 == 0);
         result = too_large.and_then(|_| Signals::new(heeded)).and_then(|mut signals| {
             std::thread::Builder::new().name("signals".into()).spawn(move || {
                 for signal in signals.forever() {
-                    // Held until the end: no other thread may begin or finish a file now.
+                    // Kept until the end: no other thread may begin or finish a file now.
                     let _cleared = corner_impact::file::clear();
                     let _ = emulate_default_handler(signal);
                 }
@@ -43,8 +43,8 @@ pub fn watch() -> io::Result<()> {
     result
 }
 
-/// Signals that this program was started to ignore, as under `nohup`, a bit for each. If the system does not
-/// report them, the signal of a lost terminal is assumed.
+/// Signals that this program was started to ignore, as under `nohup`, one bit for each. If the system does not report them, the signal of a
+/// lost terminal is assumed to be ignored.
 #[cfg(unix)]
 fn ignored() -> u64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
@@ -52,7 +52,7 @@ fn ignored() -> u64 {
     mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(1 << (signal_hook::consts::SIGHUP - 1))
 }
 
-/// Installs nothing: this system has no such signals.
+/// Does nothing: this system has no such signals.
 #[cfg(not(unix))]
 pub fn watch() -> io::Result<()> {
     Ok(())

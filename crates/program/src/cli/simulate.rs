@@ -72,7 +72,7 @@ pub(super) struct Arguments {
     picture: PictureArguments,
 }
 
-/// Revolutions that are drawn where nothing else is asked for.
+/// Number of revolutions that are drawn by default.
 const DRAWN: u64 = 2;
 
 pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Exit, CommandError> {
@@ -113,7 +113,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
         long_run: arguments.lyapunov.then(|| arguments.budget.budget(Budget::SURVEY)).transpose()?,
     };
 
-    // Every file is begun before the run: a name that cannot be is told at once.
+    // Every file is begun before the run, so that an impossible name is reported at once.
     let plane = phase_plane.as_deref().map(|path| Canvas::create(path, request.clone())).transpose()?;
     // At most one of the tables is standard output.
     let mut out = Some(&mut *session.out);

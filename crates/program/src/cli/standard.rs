@@ -1,11 +1,11 @@
-//! Standard output of this process: whether somebody reads it, and whether there is room.
+//! Checks of standard output: whether somebody reads it, and whether there is room.
 
 use std::io;
 
 use super::CommandError;
 use corner_impact::cancel::Question;
 
-/// Refuses to begin what nobody would ever have.
+/// Returns an error if the output could not be read or stored.
 pub(super) fn takes_more() -> Result<(), CommandError> {
     match room() {
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Err(CommandError::Unread),
@@ -14,7 +14,7 @@ pub(super) fn takes_more() -> Result<(), CommandError> {
     }
 }
 
-/// Writes nothing: a device that is full says so, and a pipe that nobody reads has an event.
+/// Writes nothing: a full device returns an error, and a pipe without a reader has an event.
 #[cfg(unix)]
 fn room() -> io::Result<()> {
     let out = io::stdout();
@@ -24,7 +24,7 @@ fn room() -> io::Result<()> {
     rustix::io::write(&out, &[]).map(drop).map_err(io::Error::from)
 }
 
-/// Waits until nobody reads any more, for so long or as long as it takes; whether it is so.
+/// Waits, for a limited time or without limit, until nobody reads any more; returns whether this is the case.
 #[cfg(unix)]
 fn has_ended(patience: Option<&rustix::event::Timespec>) -> bool {
     use rustix::event::{PollFd, PollFlags, poll};
@@ -34,14 +34,14 @@ fn has_ended(patience: Option<&rustix::event::Timespec>) -> bool {
     polled.is_ok() && wanted[0].revents().intersects(PollFlags::ERR)
 }
 
-/// Whether whoever read it has had enough, asked as often as work likes.
+/// Question whether the reader has stopped reading, which work may ask often.
 #[cfg(unix)]
 pub(super) fn is_unread() -> Question {
     use std::sync::Arc;
     use std::sync::atomic::{AtomicBool, Ordering};
     let unread = Arc::new(AtomicBool::new(false));
     let seen = Arc::clone(&unread);
-    // Waits with the program, and ends with it. Where it cannot, work goes on to its end.
+    // This thread waits while the program runs, and ends with it. If it cannot start, work continues to its end.
     let _ = std::thread::Builder::new().name("reader".into()).spawn(move || {
         if has_ended(None) {
             seen.store(true, Ordering::Relaxed);

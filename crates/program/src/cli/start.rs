@@ -1,4 +1,4 @@
-//! Where runs start, and for how long they are followed.
+//! Starts of runs, and the number of revolutions for which they are followed.
 
 use std::f64::consts::TAU;
 
@@ -25,12 +25,12 @@ pub(super) struct StartArguments {
 }
 
 impl StartArguments {
-    /// Asks about the angle, once.
+    /// Asks once about a doubtful angle.
     pub(super) fn doubt(&self, session: &mut Session<'_>) {
         cam_angle("--start-angle", self.start_angle, session);
     }
 
-    /// The one start of a run.
+    /// Returns the start of a single run.
     pub(super) fn start(&self) -> Result<Start, CommandError> {
         match self.given().as_deref() {
             None => Ok(self.on_cam(0.0)),
@@ -42,7 +42,7 @@ impl StartArguments {
         }
     }
 
-    /// The starts that are named, if any are.
+    /// Returns the given starts, if any.
     pub(super) fn given(&self) -> Option<Vec<Start>> {
         let at = |state: &State| Start { follower: Placed::At(*state), ..self.on_cam(0.0) };
         let states: Vec<Start> = self.state.iter().map(at).collect();
@@ -81,12 +81,12 @@ pub(super) struct BudgetArguments {
 }
 
 impl BudgetArguments {
-    /// The budget that is asked for; numbers that are not named are those of `usual`. A record of no revolutions is refused.
+    /// Returns the requested budget; missing numbers are those of `usual`. A record of no revolutions is rejected.
     pub(super) fn budget(&self, usual: Budget) -> Result<Budget, CommandError> {
         self.asked(usual).judging().map_err(|words| CommandError::Words(format!("--{words}")))
     }
 
-    /// The revolutions that are asked for, of a diagram that judges no run.
+    /// Returns the requested numbers of revolutions, for a diagram that judges no run.
     pub(super) fn lengths(&self, usual: Budget) -> Result<Budget, CommandError> {
         self.asked(usual).checked().map_err(|words| CommandError::Words(format!("--{words}")))
     }
@@ -101,7 +101,7 @@ impl BudgetArguments {
     }
 }
 
-/// An angle of the cam, in [0, 2 pi): one of more than a turn is asked about, since whoever forgets the unit means degrees.
+/// Angle of the cam, in [0, 2 pi). An angle of more than a turn is questioned, since without a unit degrees are usually meant.
 pub(super) fn cam_angle(option: &str, angle: f64, session: &mut Session<'_>) -> f64 {
     let of_turn = within_a_turn(angle);
     if angle.abs() > TAU {

@@ -1,4 +1,4 @@
-//! How many threads the work is shared by: as many as `--threads` says, or else RAYON_NUM_THREADS, or else one for each core.
+//! Number of threads that share the work: from `--threads`, else from RAYON_NUM_THREADS, else one per core.
 
 use std::error::Error;
 
@@ -10,13 +10,13 @@ use corner_impact::untrusted;
 /// Environment variable with the number of threads for all programs that use rayon.
 const VARIABLE: &str = "RAYON_NUM_THREADS";
 
-/// How many, for clap.
+/// Parses a number of threads, for clap.
 pub(super) fn threads(text: &str) -> Result<usize, String> {
-    // No number is no number of threads either.
+    // Text that is not a number is rejected as 0 is.
     thread_count(text.trim().parse().unwrap_or(0))
 }
 
-/// Starts those that are there for everything. The variable may also be empty or 0, which says nothing.
+/// Starts the global threads. The variable may be empty or 0, which has no effect.
 pub(super) fn start(asked: Option<usize>) -> Result<(), CommandError> {
     let said = std::env::var_os(VARIABLE).unwrap_or_default();
     let said = said.to_string_lossy();
@@ -26,7 +26,7 @@ pub(super) fn start(asked: Option<usize>) -> Result<(), CommandError> {
         (None, text) => threads(text)
             .map_err(|words| CommandError::Words(format!("{VARIABLE} = {}: {words}", untrusted::value(text))))?,
     };
-    // Where a program runs several commands, the first has started them.
+    // In a program that runs several commands, the first command has already started them.
     let builder = rayon::ThreadPoolBuilder::new().num_threads(asked);
     let builder = builder
         .spawn_handler(|thread| std::thread::Builder::new().spawn(cancel::carry(move || thread.run())).map(drop));

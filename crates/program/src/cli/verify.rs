@@ -34,7 +34,7 @@ pub(super) fn run(arguments: &Arguments, session: &mut Session<'_>) -> Result<Ex
     let findings =
         watched("looking for the corner impact", |watch| verify_watched(&model, arguments.external.routes(), watch))?;
     for failure in findings.skipped.iter().filter(|skipped| skipped.failed) {
-        // The page says the same.
+        // The page contains the same message.
         session.complain(&format!("{} did not run: {}", failure.route, failure.why));
     }
     session.answer(&findings, &arguments.answer)?;

@@ -1,6 +1,6 @@
-//! Explains a name: a number, an equation's label, a claim, a tolerance or a column. Gives its formula, its proof and its test.
+//! Explanation of a name: a number, an equation's label, a claim, a tolerance or a column, with its formula, proof and test.
 //!
-//! `links.toml` states once where each is evaluated, derived and tested; values are read from the documents of results.
+//! The file `links.toml` states where each is evaluated, derived and tested; values are read from the documents of results.
 
 use std::collections::BTreeMap;
 
@@ -88,7 +88,7 @@ impl Explanation {
     }
 }
 
-/// An input of a number.
+/// Input of a number.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Input {
     /// Name of a field of the model, or a name that can be explained.
@@ -155,7 +155,7 @@ fn hint(meant: &Option<String>) -> String {
 #[serde(deny_unknown_fields)]
 struct Link {
     name: String,
-    /// Whether there is one for each side of the corner.
+    /// Whether there is one number for each side of the corner.
     #[serde(default)]
     sides: bool,
     #[serde(default)]

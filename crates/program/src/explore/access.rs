@@ -1,4 +1,4 @@
-//! Requests that may come in: those of the page itself, from the browser that was given the address.
+//! Access control: only requests of the page itself, from the browser that received the address.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -9,34 +9,34 @@ use subtle::ConstantTimeEq;
 use super::reply::{self, Refused, Reply};
 use super::request::Head;
 
-/// Returns a random word that nobody guesses: 192 bits, in letters that an address may have.
+/// Returns a random word that cannot be guessed: 192 bits, in letters that are valid in an address.
 pub(super) fn secret() -> Result<String, getrandom::Error> {
     let mut bytes = [0; 24];
     getrandom::fill(&mut bytes)?;
     Ok(BASE64_URL_SAFE_NO_PAD.encode(bytes))
 }
 
-/// Purpose of a request that may come in.
+/// Purpose of an accepted request.
 #[derive(Debug)]
 pub(super) enum Purpose {
-    /// The browser that the program opened asks where the page is.
+    /// First visit: the opened browser asks for the address of the page.
     Ticket,
     Page,
-    /// The long poll of a page that is open.
+    /// Long poll of an open page.
     Alive,
-    /// A question. Lanes of two pages are different lanes.
+    /// Question; lanes of two pages are different lanes.
     Answer {
         page: String,
     },
 }
 
-/// Addresses that the server answers to, and the secrets in them.
+/// Addresses to which the server responds, and the secrets in them.
 pub(super) struct Access {
     /// Values of `Host` for this server.
     hosts: Vec<String>,
     token: String,
-    /// Secret of the first visit, which opens the access once. The command line of a browser can be read by other users of the machine, and
-    /// the token should not be there.
+    /// Secret of the first visit, which is valid once. Other users of the machine can read the command line of a browser, so it must not
+    /// contain the token.
     ticket: Mutex<Option<String>>,
 }
 
@@ -56,7 +56,7 @@ impl Access {
         format!("/{}/", self.token)
     }
 
-    /// Path of the first visit; that of nothing once the visit has been made.
+    /// Path of the first visit; invalid after the visit.
     pub(super) fn first_visit(&self) -> String {
         format!("/{}", self.ticket().as_deref().unwrap_or_default())
     }
@@ -65,7 +65,7 @@ impl Access {
         self.ticket.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Decides what a request is for. Without the token, every request is answered alike.
+    /// Determines the purpose of a request. Without the token, every request gets the same response.
     pub(super) fn judge(&self, head: &Head) -> Result<Purpose, Refused> {
         let nothing = || Some(Reply::empty(reply::NOT_FOUND));
         let path = head.path.strip_prefix('/').ok_or_else(nothing)?;
@@ -89,15 +89,15 @@ impl Access {
             return Err(Some(Reply::empty(reply::METHOD_NOT_ALLOWED).with("Allow", method)));
         }
         if has_ticket {
-            // Of two that come at once, one is the first.
+            // If two come at once, only one is the first.
             self.ticket().take().ok_or_else(nothing)?;
         }
         Ok(purpose)
     }
 
-    /// Refuses requests that another page makes. `Host` is a name that somebody else's page has where that name leads here (DNS rebinding).
-    /// `Origin` and `Sec-Fetch-Site` are written by the browser, and no script can change them. Another page may lead to this one by a link,
-    /// as a whole page of its own, because it sees nothing of it.
+    /// Rejects requests by another page. `Host` is another name if the name of another page leads here (DNS rebinding). `Origin` and
+    /// `Sec-Fetch-Site` are written by the browser, and no script can change them. Another page may link to this one as a whole page,
+    /// because it cannot see its contents.
     fn is_own(&self, head: &Head, opens_page: bool) -> Result<(), Refused> {
         let foreign = || Some(Reply::sentence(reply::FORBIDDEN, "This server answers its own page, and no other."));
         let host = head.field("host")?.unwrap_or_default().to_ascii_lowercase();
@@ -113,14 +113,14 @@ impl Access {
         match head.field("origin")? {
             None => Ok(()),
             Some(origin) if origin.strip_prefix("http://") == Some(&host) => Ok(()),
-            // Where no referrer is sent, browsers may leave out the page's own origin as well.
+            // Without a referrer, browsers may also omit the page's own origin.
             Some("null") if is_own_site => Ok(()),
             Some(_) => Err(foreign()),
         }
     }
 }
 
-/// Whether two secrets are the same, in a time that says nothing about where they differ.
+/// Whether two secrets are equal, in a time independent of the position of a difference.
 fn same(one: &str, other: &str) -> bool {
     one.as_bytes().ct_eq(other.as_bytes()).into()
 }

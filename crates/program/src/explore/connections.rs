@@ -1,37 +1,37 @@
-//! Connections that are open, at most so many at once.
+//! Open connections, with a limit on their number.
 
 use std::collections::VecDeque;
 use std::net::{Shutdown, TcpStream};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-/// Most connections at once. A browser has six to one server.
+/// Largest number of connections at once. A browser opens six to one server.
 const MOST_CONNECTIONS: usize = 64;
-/// Most threads for connections: those that were just closed to make room may take a moment to end.
+/// Largest number of threads for connections: threads of connections closed to make room may take a moment to end.
 const MOST_THREADS: usize = 2 * MOST_CONNECTIONS;
-/// Longest wait for one of these threads to end. Meanwhile, the system holds new connections.
+/// Longest wait for one of these threads to end. Meanwhile, the system queues new connections.
 const MOMENT: Duration = Duration::from_secs(2);
 
-/// Connections that are open.
+/// Open connections.
 #[derive(Default)]
 pub(super) struct Connections {
     places: Mutex<Places>,
-    /// A thread of a connection has ended.
+    /// Signal that a thread of a connection has ended.
     ended: Condvar,
 }
 
 #[derive(Default)]
 struct Places {
-    /// Threads of connections.
+    /// Number of threads of connections.
     threads: usize,
-    /// Connections with a request that may come in.
+    /// Number of connections with an accepted request.
     admitted: usize,
-    /// Connections without such a request, oldest first.
+    /// Connections without an accepted request, oldest first.
     unadmitted: VecDeque<Arc<TcpStream>>,
 }
 
 impl Places {
-    /// Takes a connection out of the unadmitted ones. Returns whether it was one of them.
+    /// Removes a connection from the unadmitted ones. Returns whether it was one of them.
     fn forget(&mut self, connection: &Arc<TcpStream>) -> bool {
         let place = self.unadmitted.iter().position(|other| Arc::ptr_eq(other, connection));
         place.and_then(|place| self.unadmitted.remove(place)).is_some()
@@ -44,7 +44,7 @@ impl Connections {
     }
 }
 
-/// Place of a connection among those that are open, until it is dropped.
+/// Place of an open connection, until it is dropped.
 pub(super) struct Admission {
     connections: Arc<Connections>,
     pub(super) connection: Arc<TcpStream>,
@@ -52,8 +52,8 @@ pub(super) struct Admission {
 }
 
 impl Admission {
-    /// Gives a place to a connection, or hands it back if there is none. If all places are taken, the oldest unadmitted connection loses its
-    /// place, so that connections that send nothing cannot keep a page from its answers.
+    /// Gives a place to a connection, or returns it if there is none. If all places are taken, the oldest unadmitted connection loses its
+    /// place, so that silent connections cannot block the answers of a page.
     pub(super) fn enter(connections: &Arc<Connections>, connection: TcpStream) -> Result<Self, TcpStream> {
         let waited =
             connections.ended.wait_timeout_while(connections.places(), MOMENT, |places| places.threads >= MOST_THREADS);
@@ -63,7 +63,7 @@ impl Admission {
         }
         if places.admitted + places.unadmitted.len() >= MOST_CONNECTIONS {
             match places.unadmitted.pop_front() {
-                // Its thread notices, and ends.
+                // The thread of that connection notices, and ends.
                 Some(oldest) => drop(oldest.shutdown(Shutdown::Both)),
                 None => return Err(connection),
             }
@@ -74,7 +74,7 @@ impl Admission {
         Ok(Self { connections: Arc::clone(connections), connection, is_admitted: false })
     }
 
-    /// Notes that the connection has a request that may come in. It keeps its place then.
+    /// Records that the connection has an accepted request, so that it keeps its place.
     pub(super) fn admit(&mut self) {
         let mut places = self.connections.places();
         if places.forget(&self.connection) {
@@ -83,7 +83,7 @@ impl Admission {
         }
     }
 
-    /// Notes that the request has its response. The connection counts as unadmitted again, until the other side closes it.
+    /// Records that the request has its response. The connection counts as unadmitted again, until the other side closes it.
     pub(super) fn dismiss(&mut self) {
         let mut places = self.connections.places();
         if std::mem::take(&mut self.is_admitted) {

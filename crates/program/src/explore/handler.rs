@@ -1,4 +1,4 @@
-//! One request, from its head to its response.
+//! Handling of one request, from its head to its response.
 
 use std::io::{Read, Write};
 use std::net::TcpStream;
@@ -16,7 +16,7 @@ const LARGEST_QUESTION: u64 = 4 << 20;
 /// Longest name of a lane, bytes.
 const LONGEST_LANE: usize = 100;
 
-/// Carries out an purpose; returns the response, or none if nobody waits for one.
+/// Handles an accepted request; returns the response, or `None` if nobody waits for one.
 pub(super) fn run(purpose: Purpose, head: &Head, connection: &TcpStream, state: &ServerState) -> Option<Reply> {
     let done = match purpose {
         Purpose::Ticket => Ok(Reply::empty(reply::SEE_OTHER).with("Location", &state.access.page())),
@@ -27,7 +27,7 @@ pub(super) fn run(purpose: Purpose, head: &Head, connection: &TcpStream, state: 
     done.map_or_else(|refused| refused, Some)
 }
 
-/// The page: inline scripts and styles that bear this response's own word run, and nothing from elsewhere.
+/// Serves the page: only inline scripts and styles with this response's nonce run.
 fn page(state: &ServerState) -> Result<Reply, Refused> {
     let nonce = secret().map_err(|_| Some(Reply::empty(reply::UNAVAILABLE)))?;
     let load = state.loads.fetch_add(1, Ordering::Relaxed);
@@ -40,19 +40,19 @@ fn page(state: &ServerState) -> Result<Reply, Refused> {
     Ok(Reply::new(reply::OK, "text/html", Some(&policy), page))
 }
 
-/// The long poll of an open page. It ends early if the page is closed.
+/// Handles the long poll of an open page. It ends early if the page is closed.
 fn alive(connection: &TcpStream, state: &ServerState) -> Result<Reply, Refused> {
     let _poll = state.presence.poll();
     let waits = connection.set_read_timeout(Some(state.timeouts.poll)).is_ok();
     match connection.peek(&mut [0]) {
         Ok(0) => Err(None),
         Err(error) if waits => late(&error).map_or(Err(None), |_| Ok(Reply::empty(reply::OK))),
-        // Nothing more belongs to this request.
+        // A request must not have further bytes.
         _ => Err(Some(Reply::empty(reply::BAD_REQUEST))),
     }
 }
 
-/// The answer to a question.
+/// Answers a question.
 fn answer(page: &str, head: &Head, connection: &TcpStream, state: &ServerState) -> Result<Reply, Refused> {
     let refused = |words: &str| Some(Reply::sentence(reply::BAD_REQUEST, words));
     let lane = head.parameter("lane").filter(|lane| (1..=LONGEST_LANE).contains(&lane.len()));
@@ -80,13 +80,13 @@ fn answer(page: &str, head: &Head, connection: &TcpStream, state: &ServerState) 
     Ok(Reply::new(reply::OK, "application/json", None, found))
 }
 
-/// The document of a question that has no answer, for the reason that is given.
+/// Document of a question without an answer, with the reason.
 fn unanswered(question: &str, words: &str) -> String {
     let question: serde_json::Value = serde_json::from_str(question).unwrap_or_default();
     serde_json::json!({ "view": question.get("view"), "error": { "sentence": words } }).to_string()
 }
 
-/// The body of a request. A body that is too large is refused before it is read.
+/// Reads the body of a request. A body that is too large is rejected before it is read.
 fn body(head: &Head, connection: &TcpStream, state: &ServerState) -> Result<Vec<u8>, Refused> {
     let length = head.field("content-length")?.and_then(|length| length.parse::<u64>().ok());
     let (Some(length), None) = (length, head.field("transfer-encoding")?) else {
@@ -102,6 +102,6 @@ fn body(head: &Head, connection: &TcpStream, state: &ServerState) -> Result<Vec<
     let mut body = head.begun.clone();
     let missing = length.saturating_sub(body.len() as u64);
     timed.take(missing).read_to_end(&mut body).map_err(|error| late(&error))?;
-    // Nothing more belongs to this request, and nothing less.
+    // The body must have exactly the announced length.
     if body.len() as u64 == length { Ok(body) } else { Err(Some(Reply::empty(reply::BAD_REQUEST))) }
 }

@@ -7,20 +7,20 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// Reason to stop the work on a question.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Why {
-    /// A newer question of the same lane.
+    /// Newer question of the same lane.
     Newer = 1,
-    /// The time limit.
+    /// Time limit.
     Late = 2,
-    /// Nobody waits for the answer.
+    /// Closed connection: nobody waits for the answer.
     Gone = 3,
 }
 
-/// Whether the work on a question is to stop, and why.
+/// Flag to stop the work on a question, with the reason.
 #[derive(Debug, Default)]
 pub(super) struct Stop(AtomicU8);
 
 impl Stop {
-    /// Stops the work. The first reason is kept.
+    /// Stops the work; the first reason is kept.
     pub(super) fn set(&self, why: Why) {
         let _ = self.0.compare_exchange(0, why as u8, Ordering::Relaxed, Ordering::Relaxed);
     }
@@ -37,18 +37,18 @@ impl Stop {
     }
 }
 
-/// Question of a lane that is being worked on.
+/// Question of a lane that is being answered.
 struct Asked {
     sequence: u64,
     stop: Arc<Stop>,
 }
 
-/// Questions that are being worked on, at most one for each lane.
+/// Questions that are being answered, at most one for each lane.
 #[derive(Default)]
 pub(super) struct Lanes(Mutex<HashMap<String, Asked>>);
 
 impl Lanes {
-    /// Takes a question into its lane and stops the older one there; none if the one there is newer.
+    /// Places a question in its lane and stops the older one there; `None` if the one there is newer.
     pub(super) fn take(&self, lane: String, sequence: u64) -> Option<Turn<'_>> {
         let mut lanes = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(other) = lanes.get(&lane) {
@@ -78,7 +78,7 @@ pub(super) struct Turn<'a> {
 impl Drop for Turn<'_> {
     fn drop(&mut self) {
         let mut lanes = self.lanes.0.lock().unwrap_or_else(PoisonError::into_inner);
-        // A newer question may have the place.
+        // A newer question may occupy the lane.
         if lanes.get(&self.lane).is_some_and(|asked| Arc::ptr_eq(&asked.stop, &self.stop)) {
             lanes.remove(&self.lane);
         }

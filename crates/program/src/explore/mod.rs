@@ -3,14 +3,14 @@
 //! ```text
 //!  server        accepts connections, and ends when the page has been closed
 //!    ▲
-//!  handler       carries out one request: the page, its long poll, an answer
-//!  state         what all connections share
+//!  handler       handles one request: the page, its long poll, an answer
+//!  state         state that all connections share
 //!    ▲
-//!  connections   limits the connections that are open
+//!  connections   limits the number of open connections
 //!  access        decides which requests are answered: token, Host, Origin, method
-//!  work          answers a question on threads of its own, until it is stopped
+//!  work          answers a question on separate threads, until it is stopped
 //!  lanes         keeps the newest question of each lane, and stops older ones
-//!  presence      knows whether a page is open
+//!  presence      records whether a page is open
 //!    ▲
 //!  request       reads a head within limits of size and time
 //!  reply         writes a response with the headers that every response has
@@ -21,7 +21,7 @@
 //! no time limit for a slow client (issue 143), and a thread for each connection, however many there are. It accepts the connections
 //! itself, so that no limit can be put in front. `hyper` has these limits, and needs an asynchronous runtime for them.
 //!
-//! Each connection carries one request and is then closed: there is no second request to be confused with the body of the first.
+//! Each connection carries one request and is then closed, so that no second request can be confused with the body of the first.
 
 mod access;
 mod connections;
@@ -42,19 +42,19 @@ pub(crate) use server::Server;
 /// Waiting times of the server.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Timeouts {
-    /// For the head of a request, from the beginning of its connection.
+    /// Limit for the head of a request, from the beginning of its connection.
     head: Duration,
-    /// For the body of a request, and for the other side to take a response.
+    /// Limit for the body of a request, and for the other side to receive a response.
     transfer: Duration,
-    /// For the other side to close the connection after a response.
+    /// Limit for the other side to close the connection after a response.
     parting: Duration,
-    /// For the answer to a question.
+    /// Limit for the answer to a question.
     question: Duration,
-    /// Until a long poll of the page is answered.
+    /// Time until a long poll of the page is answered.
     poll: Duration,
-    /// Without a page that is open, after the first was served.
+    /// Time without an open page, after the first was served, until the server ends.
     closed: Duration,
-    /// Until the first page is asked for.
+    /// Time until the server ends if no page is requested.
     unopened: Duration,
 }
 

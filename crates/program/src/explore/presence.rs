@@ -1,4 +1,4 @@
-//! Whether a page is open: each open page waits for the answer to a long poll.
+//! Record of open pages: each open page waits for the answer to a long poll.
 
 use std::sync::{Condvar, Mutex, PoisonError};
 use std::time::Instant;
@@ -8,24 +8,24 @@ use super::Timeouts;
 /// Reason why the server ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum End {
-    /// The page was closed, and not opened again for a minute.
+    /// Page that was closed, and not opened again for a minute.
     Closed,
-    /// Nobody opened the page within ten minutes.
+    /// Page that nobody opened within ten minutes.
     Unopened,
 }
 
-/// Pages that are open.
+/// Open pages.
 pub(super) struct Presence {
     state: Mutex<State>,
     changed: Condvar,
 }
 
 struct State {
-    /// Long polls that wait for their answer.
+    /// Number of long polls that wait for their answer.
     polls: usize,
     /// Whether a page was ever served.
     is_opened: bool,
-    /// Moment of the last sign of a page; of the beginning, before the first.
+    /// Moment of the last sign of a page, or of the server's start.
     last: Instant,
 }
 
@@ -42,7 +42,7 @@ impl Presence {
         self.changed.notify_all();
     }
 
-    /// Notes that a page was served.
+    /// Records that a page was served.
     pub(super) fn served(&self) {
         self.change(|state| state.is_opened = true);
     }
@@ -63,7 +63,7 @@ impl Presence {
             };
             let left = match state.polls {
                 0 => (state.last + timeouts).saturating_duration_since(Instant::now()),
-                // Until something changes.
+                // Waits until something changes.
                 _ => timeouts,
             };
             if left.is_zero() {

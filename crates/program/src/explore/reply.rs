@@ -20,7 +20,7 @@ pub(super) const TOO_LARGE: Status = (413, "Content Too Large");
 pub(super) const HEAD_TOO_LARGE: Status = (431, "Request Header Fields Too Large");
 pub(super) const UNAVAILABLE: Status = (503, "Service Unavailable");
 
-/// Headers of every response: nothing is stored, framed, guessed at, or read by another page.
+/// Headers of every response: nothing may be stored, framed, guessed, or read by another page.
 const ALWAYS: &str = "Connection: close\r\n\
     Cache-Control: no-store\r\n\
     Cross-Origin-Opener-Policy: same-origin\r\n\
@@ -36,28 +36,28 @@ const NOTHING: &str = "default-src 'none'; frame-ancestors 'none'";
 #[derive(Debug)]
 pub(super) struct Reply {
     status: Status,
-    /// Lines of headers beside those of every response.
+    /// Further header lines.
     headers: String,
     body: String,
 }
 
-/// Reason why a request goes no further: a response, or none if nobody waits for one.
+/// Reason to end a request: a response, or `None` if nobody waits for one.
 pub(super) type Refused = Option<Reply>;
 
 impl Reply {
-    /// Makes a response with a body of this media type.
+    /// Builds a response with a body of this media type.
     pub(super) fn new(status: Status, kind: &str, policy: Option<&str>, body: String) -> Self {
         let policy = policy.unwrap_or(NOTHING);
         let headers = format!("Content-Type: {kind}; charset=utf-8\r\nContent-Security-Policy: {policy}\r\n");
         Self { status, headers, body }
     }
 
-    /// Makes a response that says in a sentence why there is no other.
+    /// Builds a response with a sentence that gives the reason.
     pub(super) fn sentence(status: Status, words: &str) -> Self {
         Self::new(status, "text/plain", None, format!("{words}\n"))
     }
 
-    /// Makes a response without a body.
+    /// Builds a response without a body.
     pub(super) fn empty(status: Status) -> Self {
         Self::new(status, "text/plain", None, String::new())
     }
@@ -77,7 +77,7 @@ impl Reply {
     }
 }
 
-/// Connection whose reads and writes end at a moment, however slowly the other side goes on.
+/// Connection whose reads and writes end at a given moment, however slow the other side is.
 pub(super) struct Timed<'a> {
     stream: &'a TcpStream,
     until: Instant,
@@ -112,12 +112,12 @@ impl Write for Timed<'_> {
     }
 }
 
-/// Ends a connection so that the other side gets the response: what it still sends is dropped unread, for a while. A socket that is closed
+/// Ends a connection so that the other side gets the response: for a while, further input is read and discarded. A socket that is closed
 /// with unread bytes resets the connection, and the response may be lost.
 pub(super) fn part(stream: &TcpStream, timeouts: Duration) {
     let mut dropped = [0; 65536];
     let mut timed = Timed::new(stream, timeouts);
-    // Whoever has gone already needs no farewell.
+    // A connection that is already closed needs no further action.
     if stream.shutdown(Shutdown::Write).is_ok() {
         while timed.read(&mut dropped).is_ok_and(|count| count > 0) {}
     }

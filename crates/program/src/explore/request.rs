@@ -6,7 +6,7 @@ use super::reply::{self, Refused, Reply};
 
 /// Largest head of a request, bytes. Browsers send less than a thousand.
 const LARGEST_HEAD: usize = 16 * 1024;
-/// Most header fields of a request.
+/// Largest number of header fields of a request.
 const MOST_FIELDS: usize = 64;
 
 /// Head of a request.
@@ -24,7 +24,7 @@ pub(super) struct Head {
 }
 
 impl Head {
-    /// Reads a head, and no more of the body than comes with it.
+    /// Reads a head, and no more of the body than arrives with it.
     pub(super) fn read(from: &mut impl Read) -> Result<Self, Refused> {
         let (mut read, mut part) = (Vec::new(), [0; 4096]);
         loop {
@@ -43,7 +43,7 @@ impl Head {
         }
     }
 
-    /// Parses a head; none while its end is missing.
+    /// Parses a head; `None` while its end is missing.
     fn parsed(read: &[u8]) -> Result<Option<Self>, Refused> {
         let malformed = || Some(Reply::empty(reply::BAD_REQUEST));
         let mut fields = [httparse::EMPTY_HEADER; MOST_FIELDS];
@@ -69,8 +69,7 @@ impl Head {
         }))
     }
 
-    /// Value of a header field, by its name in small letters. A field that is there twice has no value: whoever stands between may have
-    /// read the other one.
+    /// Value of a header field, by its name in lower case. A repeated field has no value: a proxy may have read the other one.
     pub(super) fn field(&self, name: &str) -> Result<Option<&str>, Refused> {
         let mut values = self.fields.iter().filter(|(other, _)| other == name).map(|(_, value)| value.as_str());
         match (values.next(), values.next()) {
@@ -79,7 +78,7 @@ impl Head {
         }
     }
 
-    /// Value of a parameter of the query, as it is written there.
+    /// Value of a parameter of the query, as written.
     pub(super) fn parameter(&self, name: &str) -> Option<&str> {
         self.query
             .split('&')
@@ -89,7 +88,7 @@ impl Head {
     }
 }
 
-/// Response to a request that did not come in time; none if its connection broke.
+/// Response to a request that was too slow; `None` if its connection broke.
 pub(super) fn late(error: &io::Error) -> Refused {
     let is_late = matches!(error.kind(), io::ErrorKind::TimedOut | io::ErrorKind::WouldBlock);
     is_late.then(|| Reply::empty(reply::TIMEOUT))

@@ -1,4 +1,4 @@
-//! The server: accepts connections until the page has been closed for a while.
+//! Server that accepts connections until the page has been closed for a while.
 
 use std::io;
 use std::net::{Ipv4Addr, SocketAddr, TcpListener, TcpStream};
@@ -17,7 +17,7 @@ use super::{Timeouts, handler};
 /// Pause after the system could not accept a connection, for example because too many files are open.
 const PAUSE: Duration = Duration::from_millis(50);
 
-/// Server that listens, and serves once it is told to.
+/// Server that listens, and serves when `serve` is called.
 pub(crate) struct Server {
     listener: TcpListener,
     address: SocketAddr,
@@ -25,7 +25,7 @@ pub(crate) struct Server {
 }
 
 impl Server {
-    /// Listens on the loopback interface, at this port or at any that is free.
+    /// Listens on the loopback interface, at this port or at any free port.
     pub(crate) fn listen(
         port: Option<u16>,
         threads: Option<usize>,
@@ -57,7 +57,7 @@ impl Server {
         let end = state.presence.wait(&state.timeouts);
         state.is_over.store(true, Ordering::Relaxed);
         state.lanes.stop_all();
-        // The acceptor waits for a connection, and gets one. Otherwise it ends with the program.
+        // The acceptor waits for a connection, and gets one here. Otherwise it ends with the program.
         if TcpStream::connect(address).is_ok() {
             let _ = acceptor.join();
         }
@@ -65,7 +65,7 @@ impl Server {
     }
 }
 
-/// Accepts connections, each on a thread of its own.
+/// Accepts connections, each on a separate thread.
 fn accept(listener: &TcpListener, state: &Arc<ServerState>) {
     for connection in listener.incoming() {
         if state.is_over.load(Ordering::Relaxed) {
@@ -78,11 +78,11 @@ fn accept(listener: &TcpListener, state: &Arc<ServerState>) {
         match Admission::enter(&state.connections, connection) {
             Ok(admission) => {
                 let state = Arc::clone(state);
-                // Where no thread can be started, the connection is closed.
+                // If no thread can be started, the connection is closed.
                 let _ = std::thread::Builder::new().name("connection".into()).spawn(move || attend(admission, &state));
             }
             Err(connection) => {
-                // A few bytes fit into any socket. Nothing is waited for.
+                // A few bytes fit into any socket, so that writing never waits.
                 let _ = connection.set_nonblocking(true);
                 let _ = Reply::empty(reply::UNAVAILABLE).write(&connection);
             }

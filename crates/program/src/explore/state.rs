@@ -9,7 +9,8 @@ use super::connections::Connections;
 use super::lanes::Lanes;
 use super::presence::Presence;
 
-/// Writes the page for a server whose addresses begin with the first word, with the second as the `nonce` of its scripts and styles.
+/// Function that writes the page for a server whose addresses begin with the first word, with the second as the `nonce` of its scripts and
+/// styles.
 pub(super) type PageSource = Box<dyn Fn(&str, &str) -> String + Send + Sync>;
 
 /// State that all connections share.
@@ -20,9 +21,9 @@ pub(super) struct ServerState {
     pub(super) presence: Presence,
     pub(super) timeouts: Timeouts,
     pub(super) page: PageSource,
-    /// Pages that were served so far.
+    /// Number of pages served so far.
     pub(super) loads: AtomicU64,
-    /// Threads that share the work on one question.
+    /// Number of threads that share the work on one question.
     pub(super) threads: Option<usize>,
     pub(super) is_over: AtomicBool,
 }

@@ -1,4 +1,4 @@
-//! Work on one question, on threads of its own, which ends within a fraction of a second once it is stopped.
+//! Work on one question, on separate threads, which ends within a fraction of a second once it is stopped.
 
 use std::io;
 use std::net::TcpStream;
@@ -11,13 +11,13 @@ use corner_impact::study::survey::{SweepError, threads};
 
 use super::lanes::{Stop, Why};
 
-/// Time between two looks at whether somebody still waits for the answer.
+/// Time between two checks whether somebody still waits for the answer.
 const LOOK: Duration = Duration::from_millis(50);
 
-/// Answers a question on as many threads as are given; none if the work was stopped.
+/// Answers a question on the given number of threads; `None` if the work was stopped.
 ///
-/// The threads belong to this question alone, since a thread that two questions share would not know which of them is to stop. This thread
-/// watches the clock and the connection meanwhile.
+/// The threads serve only this question: a thread shared by two questions could not tell which of them is to stop. Meanwhile this thread
+/// checks the clock and the connection.
 pub(super) fn answer(
     question: &str,
     stop: &Arc<Stop>,
@@ -31,7 +31,7 @@ pub(super) fn answer(
             let is_stopped = Arc::new(move || asked.is_set());
             let respond = || Ok::<_, SweepError>(threads(count)?.install(|| corner_impact_explore::respond(question)));
             let done = cancel::run(is_stopped, respond);
-            // The other end is there until this thread has ended.
+            // The receiver exists until this thread has ended.
             let _ = sender.send(());
             done
         };

@@ -1,4 +1,4 @@
-//! Basins on a section: the ending of each start, the orbits, and the boundary curve of the basins.
+//! Basins on a section: the end of each start, the orbits, and the boundary curve of the basins.
 
 use crate::figures::{Across, position};
 use crate::show::words;
@@ -10,8 +10,8 @@ use corner_impact_plot::{BREAK, Colour, Data, Density, Figure, FigureAxis, Marke
 const COLOURS: [(Colour, f64); 5] =
     [(Colour::Blue, 1.0), (Colour::Vermilion, 0.6), (Colour::Green, 0.4), (Colour::Purple, 0.15), (Colour::Grey, 0.8)];
 
-/// Basins with position across, velocity up, and a colour for each ending. The figure also marks where stable orbits and saddles cross the
-/// section, and draws the saddles' stable manifolds.
+/// Draws basins with position across, velocity up, and a colour for each end. The figure also marks the crossings of stable orbits and
+/// saddles with the section, and draws the saddles' stable manifolds.
 pub fn basins_figure(title: &str, grid: &Grid, basins: &Basins, border: &BasinBoundary) -> Figure {
     let BasinBoundary { stable, saddles, curves } = border;
     let (x, y) = (grid.positions, grid.velocities);
@@ -44,7 +44,7 @@ pub fn basins_figure(title: &str, grid: &Grid, basins: &Basins, border: &BasinBo
     )
 }
 
-/// Share of the starts that end on each kind of motion against the varied number, for the kinds with the most starts.
+/// Draws the share of the starts that end on each kind of motion against the varied number, for the kinds with the most starts.
 pub fn shares_figure(found: &BasinsOver) -> Figure {
     const STROKES: [Stroke; 5] = [Stroke::Solid, Stroke::Dashed, Stroke::Dotted, Stroke::Thick, Stroke::Thin];
     let across = Across::named(&found.over.name, &found.over.unit, found.over.spacing, found.range);

@@ -1,5 +1,5 @@
-//! Branches of orbits over the brute-force diagram. Stable branches are solid, unstable ones dashed; each kind of special point has its
-//! own shape; attractors of runs lie behind them. No distinction needs colour.
+//! Branches of orbits over the brute-force diagram. Stable branches are solid, unstable ones dashed; each kind of special point has its own
+//! shape; attractors of runs are drawn behind them. No distinction needs colour.
 
 use crate::figures::cam::{CornerMark, corner_marks};
 use crate::figures::impacts::{WHOLE_CAM, at_most_the_cam, cloud, impact_angles, shown_impacts};
@@ -75,8 +75,8 @@ fn mark(kind: &SpecialKind) -> usize {
     }
 }
 
-/// Impact phases, degrees, along branches against the named parameter over its range, drawn over the impacts on which runs settle; those
-/// are sorted by the parameter. The parameter is drawn across; phases are drawn up, over the range of the branches.
+/// Draws impact phases, degrees, along branches against the named parameter over its range, over the impacts on which runs settle. These
+/// impacts are sorted by the parameter. The parameter is drawn across; phases are drawn up, over the range of the branches.
 pub fn branches_figure(
     title: &str,
     (name, unit, range): (&str, &str, [f64; 2]),
@@ -109,7 +109,7 @@ pub fn branches_figure(
     Figure::new(title, FigureAxis::new(label, unit).over(range), vec![panel])
 }
 
-/// Splits the impacts of runs: one period at each value where the run recurs, and all impacts at the other values.
+/// Splits the impacts of runs: one period at each value where the run is periodic, and all impacts at the other values.
 fn by_recurrence(settled: &[[f64; 2]]) -> (Vec<[f64; 2]>, Vec<[f64; 2]>) {
     let (mut repeating, mut others) = (Vec::new(), Vec::new());
     for run in settled.chunk_by(|[one, _], [other, _]| one == other) {
@@ -122,8 +122,8 @@ fn by_recurrence(settled: &[[f64; 2]]) -> (Vec<[f64; 2]>, Vec<[f64; 2]>) {
     (repeating, others)
 }
 
-/// Position of a special point of one of the marked kinds: at its own impact, or at the first one. For an orbit without impacts, the
-/// position is at the grazing point.
+/// Position of a special point of one of the marked kinds: at its own impact, or at the first impact. For an orbit without impacts, it is
+/// at the grazing point.
 fn place(point: &BranchPoint, which: usize) -> Option<[f64; 2]> {
     let special = point.special.filter(|special| mark(&special.kind) == which)?;
     let index = if let SpecialKind::Corner { impact, .. } = special.kind { impact } else { 0 };

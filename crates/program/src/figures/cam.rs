@@ -1,4 +1,4 @@
-//! The cam against its angle: lift and two derivatives, with gaps at jumps; and the marks of its corners in every figure.
+//! Cam against its angle: lift and two derivatives, with gaps at jumps; and the marks of its corners in every figure.
 
 use std::f64::consts::TAU;
 
@@ -23,12 +23,12 @@ pub(crate) const CAM: Entry = Entry {
     },
 };
 
-/// Most corners with a label.
+/// Largest number of labelled corners.
 const LABELLED: usize = 12;
-/// Samples of a revolution: four to a unit of the page.
+/// Number of samples per revolution: four per unit of the page.
 const SAMPLES: usize = 2400;
 
-/// A corner as it appears in figures.
+/// Corner as it appears in figures.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CornerMark {
     /// Cam angle, rad.
@@ -51,8 +51,8 @@ impl CornerMark {
     }
 }
 
-/// The corners to label, without knots of a spline: at most a dozen, ordered by angle. Low orders are chosen first, then large
-/// jumps. Corners of a cam of three circles have the letters of the paper's drawing, with an apostrophe on the way down.
+/// Corners to label, without knots of a spline: at most a dozen, ordered by angle. Low orders are chosen first, then large jumps. Corners
+/// of a cam of three circles have the letters of the paper's drawing, with an apostrophe on the way down.
 pub fn corner_marks(cam: &Cam) -> Vec<CornerMark> {
     let corners = cam.corners();
     let letters: &[&str] = if of_circles(cam) { &["R", "P", "Q", "Q'", "P'", "R'"] } else { &[] };
@@ -101,7 +101,7 @@ pub(crate) fn corners_in_words(cam: &Cam, marks: &str) -> String {
     format!("{marks} {which}, where {what}.")
 }
 
-/// Whether the cam is base circle, flank, nose, top, and the mirror image of these.
+/// Whether the cam consists of base circle, flank, nose, top, and their mirror image.
 pub(crate) fn of_circles(cam: &Cam) -> bool {
     let dwells: Vec<bool> = cam.segments().iter().map(|segment| matches!(segment.law, Law::Dwell(_))).collect();
     let arcs = cam
@@ -111,7 +111,7 @@ pub(crate) fn of_circles(cam: &Cam) -> bool {
     arcs && cam.corners().len() == 6 && dwells == [true, false, false, true, false, false, true]
 }
 
-/// Lift, velocity and acceleration of the cam against its angle in degrees, its corners marked.
+/// Draws lift, velocity and acceleration of the cam against its angle in degrees, with its corners marked.
 pub(crate) fn lift_figure(cam: &Cam, title: &str) -> Figure {
     let corners = cam.corners();
     let marks = corner_marks(cam);

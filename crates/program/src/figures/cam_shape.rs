@@ -1,4 +1,4 @@
-//! Shape of the cam seen along its axis at angle 0, with the follower straight above the axis.
+//! Shape of the cam, viewed along its axis at angle 0, with the follower straight above the axis.
 //!
 //! The outline is the contour that the follower touches; for the paper's follower, a point above the axis, it is the lift as a
 //! radius. At cam angle `theta` the ray `(sin theta, cos theta)` is on top; the cam turns to the left.
@@ -43,7 +43,7 @@ pub(crate) const CAM_SHAPE: Entry = Entry {
     },
 };
 
-/// The circles and the top of a cam of three circles, from angle 0 to half a turn, with their colour and stroke.
+/// Circles and top of a cam of three circles, from angle 0 to half a turn, with their colour and stroke.
 const CIRCLES: [(&str, Colour, Stroke); 4] = [
     ("base circle", Colour::Ink, Stroke::Solid),
     ("flank", Colour::Blue, Stroke::Dashed),
@@ -53,9 +53,9 @@ const CIRCLES: [(&str, Colour, Stroke); 4] = [
 /// Colours and strokes of other cams' segments, used in rotation.
 const OTHERS: [(Colour, Stroke); 3] =
     [(Colour::Blue, Stroke::Solid), (Colour::Vermilion, Stroke::Dashed), (Colour::Green, Stroke::Thick)];
-/// Corners nearer to one another than this share of the largest radius get one label.
+/// Distance below which corners share one label, relative to the largest radius.
 const NEAR: f64 = 0.12;
-/// Most segments that are drawn separately; with more, the outline is one line.
+/// Largest number of segments that are drawn separately; with more, the outline is one line.
 const MOST: usize = 24;
 
 /// Draws the shape of a model's cam, and the end of the follower on it.
@@ -86,7 +86,7 @@ fn shape_panel(cam: &Cam, outline: &Outline) -> (FigureAxis, Panel) {
     let mut series = if of_circles(cam) { circles(&outline.pieces) } else { segments(&outline.pieces) };
     let letters = letters(cam, outline, farthest);
     series.push(Series::points("", Colour::Ink, Marker::Dot, letters.iter().map(|word| word.at)));
-    // Of labels that would overlap, keep the first.
+    // If labels would overlap, the first is kept.
     let mut apart: Vec<Label> = Vec::new();
     for word in letters {
         let near =
@@ -96,9 +96,9 @@ fn shape_panel(cam: &Cam, outline: &Outline) -> (FigureAxis, Panel) {
         }
     }
     series.push(Series::words(apart));
-    // The axis, the follower above it, and a stretch of a circle for the way that the cam turns.
+    // The axis, the follower above it, and an arc for the direction of rotation.
     let first = outline.pieces.first().and_then(|piece| piece.points.first()).map_or(0.0, |[_, y]| *y);
-    // Of a roller from its centre.
+    // The line of a roller starts at its centre.
     let from = outline.pitch.first().copied().unwrap_or([0.0, first]);
     let follower = [from, [from[0], from[1] + 0.45 * farthest]];
     let pitch = if outline.pitch.is_empty() { "" } else { "path of the roller's centre" };
@@ -154,10 +154,10 @@ fn letters(cam: &Cam, outline: &Outline, farthest: f64) -> Vec<Label> {
     let letter = |mark: &super::CornerMark| {
         let (_, at) = outline.corners.iter().find(|(angle, _)| *angle == mark.angle_rad)?;
         let steep = at[1].abs() > 2.0 * at[0].abs();
-        // Moved up where the corner is beside the axis, because the line of centres may be there.
+        // Moved up if the corner is beside the axis, because the line of centres may be there.
         let low = at[1] < -0.1 * farthest;
         let beside = match (steep, at[0] > 0.0, low) {
-            // Beside the follower's own line.
+            // Beside the follower's line.
             (true, _, false) if at[0].abs() < NEAR * farthest => Beside::AboveLeft,
             (true, _, false) => Beside::Above,
             (true, _, true) => Beside::Below,

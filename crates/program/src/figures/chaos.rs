@@ -1,4 +1,4 @@
-//! An h-set over the impacts of a run: its strips and their images.
+//! H-set over the impacts of a run: its strips and their images.
 
 use crate::figures::{Entry, drawn};
 use crate::show::words::hypotheses;
@@ -31,7 +31,7 @@ pub(crate) const CHAOTIC_SET: Entry = Entry {
             "Impacts of a long run, and a parallelogram N of impacts: each strip is carried along N and beyond both its ends, as the \
              line of its colour, by the number of impacts that stands at it. So every sequence of these numbers is followed by a motion, \
              which is proved: a set of chaotic motions exists, with a topological entropy of at least {:.5} a revolution. {}",
-            // Rounded down, as a lower bound must be.
+            // Rounded down, because it is a lower bound.
             (1e5 * set.entropy()).floor() / 1e5,
             hypotheses(&corner_impact::study::hypotheses(subject.machine(rpm).cam())).unwrap_or_default()
         );
@@ -42,7 +42,7 @@ pub(crate) const CHAOTIC_SET: Entry = Entry {
 /// Colours of the strips in order, used in rotation.
 const COLOURS: [Colour; 5] = [Colour::Blue, Colour::Vermilion, Colour::Green, Colour::Purple, Colour::Ink];
 
-/// The h-set over a portrait of impacts: cam angle at an impact across, velocity after it relative to the cam up.
+/// Draws the h-set over a portrait of impacts: cam angle at an impact across, velocity after it relative to the cam up.
 pub fn chaos_figure(title: &str, set: &HSet, portrait: &Portrait) -> Figure {
     let corners = corners(set.x, set.y).map(|place| set.at(place));
     let [across, up] = [0, 1].map(|side: usize| widened(extent(corners.map(|corner| corner[side])), 0.06));
@@ -80,7 +80,7 @@ pub fn chaos_figure(title: &str, set: &HSet, portrait: &Portrait) -> Figure {
 /// Number of lines that fill a strip.
 const FILLED: usize = 400;
 
-/// Corners of the parallelogram, in order round it.
+/// Corners of the parallelogram, in cyclic order.
 fn corners(x: [f64; 2], y: [f64; 2]) -> [[f64; 2]; 4] {
     [[x[0], y[0]], [x[1], y[0]], [x[1], y[1]], [x[0], y[1]]]
 }

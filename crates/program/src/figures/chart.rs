@@ -1,4 +1,4 @@
-//! A chart: a grid over two numbers, coloured by the motion at each point.
+//! Chart: a grid over two numbers, coloured by the motion at each point.
 
 use serde::Serialize;
 
@@ -14,7 +14,7 @@ use corner_impact::study::survey::{self, Point};
 use corner_impact_plot::ticks::{Tick, TickSpacing, Ticks, ticks};
 use corner_impact_plot::{Colour, Data, Density, Figure, FigureAxis, Panel, Series};
 
-/// The quantity that the colours of a chart show.
+/// Quantity shown by the colours of a chart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Coloured {
@@ -22,9 +22,9 @@ pub enum Coloured {
     Period,
     /// Growth of a small deviation.
     Growth,
-    /// The kind of motion.
+    /// Kind of motion.
     Regime,
-    /// Impacts a revolution.
+    /// Impacts per revolution.
     Impacts,
     /// Speed of the fastest impact.
     ImpactSpeed,
@@ -35,10 +35,10 @@ corner_impact::named!(Coloured);
 /// Name of a class, its colour, and the strength of the colour.
 type Class = (String, Colour, f64);
 
-/// Most bands of a coloured number.
+/// Largest number of bands of a coloured number.
 const BANDS: usize = 9;
 
-/// The classes, and the function that maps a point to its class; the last class is for failed points.
+/// Classes, and the function that maps a point to its class; the last class is for failed points.
 fn classes(found: &Charted, coloured: Coloured, units: &Units) -> (Vec<Class>, impl Fn(&Point) -> usize) {
     let number: fn(&Point) -> f64 = match coloured {
         Coloured::Growth => |point| point.growth.value,
@@ -48,7 +48,7 @@ fn classes(found: &Charted, coloured: Coloured, units: &Units) -> (Vec<Class>, i
     };
     let mut finite: Vec<f64> = found.points.iter().flatten().map(number).filter(|value| value.is_finite()).collect();
     finite.sort_unstable_by(f64::total_cmp);
-    // A few outliers fall into the outermost bands.
+    // A few outliers are assigned to the outermost bands.
     let part = |share: f64| finite.get((share * finite.len() as f64) as usize).copied().unwrap_or(f64::NAN);
     let range = [part(0.01), part(0.99)];
     let Ticks { ticks: edges, exponent } = ticks(range, TickSpacing::Decimal, BANDS, |_| true);

@@ -1,6 +1,5 @@
-//! The paper's composition of its Poincaré map, P = P2 ∘ PD ∘ P1, on a visibly distant neighbour of the corner impact's orbit.
-//! The three maps are free flight to the time of the corner as if no impact happened, the discontinuity mapping PD, and
-//! free flight onwards.
+//! Composition of the paper's Poincaré map, P = P2 ∘ PD ∘ P1, for a visibly distant neighbour of the corner impact's orbit. The three maps
+//! are free flight to the time of the corner as if no impact happened, the discontinuity mapping PD, and free flight onwards.
 //!
 //! Times are measured from the passage of the corner; sections are at -T/2 (Π1), 0 (ΠD) and T/2 (Π2). The neighbours reach the cam
 //! before and after the corner, somewhat slower than the orbit reaches the corner:
@@ -27,7 +26,7 @@ use corner_impact::section::StroboscopicMap;
 use corner_impact::simulate::Machine;
 use corner_impact_plot::{BREAK, Beside, Colour, Figure, FigureAxis, Label, Marker, Panel, Series, Stroke};
 
-/// The revolution around the corner, for the neighbour whose impact is before the corner.
+/// Figure of the revolution around the corner, for the neighbour with its impact before the corner.
 pub(crate) const COMPOSITION: Entry = Entry {
     id: "composition",
     place: "Figure 6",
@@ -49,45 +48,45 @@ const FARTHEST: f64 = 0.27;
 const IMPACT: f64 = 0.6;
 /// Relative reduction of the neighbour's impact velocity, compared with the orbit's, at the largest distance from the corner.
 const SLOWER: f64 = 0.15;
-/// Most halvings tried until the simulated revolution has one impact.
+/// Largest number of halvings until the simulated revolution has one impact.
 const HALVINGS: usize = 8;
 /// Samples of each curve.
 const SAMPLES: u32 = 240;
 
-/// A line of points: time from the corner, s, and position, m.
+/// Line of points: time from the corner, s, and position, m.
 pub type Line = Vec<[f64; 2]>;
 
-/// The orbit, the cam, and a neighbour on each side of the corner.
+/// Orbit, cam, and a neighbour on each side of the corner.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Composition {
-    /// T*, s.
+    /// Period T*, s.
     pub period: f64,
     /// Half of the displayed time around the corner, s.
     pub window: f64,
     /// Orbit of the corner impact from -T to T.
     pub orbit: Line,
-    /// The cam from -T to T.
+    /// Lift of the cam from -T to T.
     pub cam: Line,
     /// Cam law before the corner: the part up to the corner, and its continuation.
     pub before: [Line; 2],
     /// Cam law after the corner: the part from the corner on, and its continuation backwards.
     pub after: [Line; 2],
-    /// x* on Π1 and Π2, and the orbit's state at the corner before and after the impact.
+    /// State x* on Π1 and Π2, and the orbit's state at the corner before and after the impact.
     pub states: [State; 3],
     /// Two neighbours, with impacts equally far before and after the corner.
     pub neighbours: [Neighbour; 2],
-    /// A neighbour with its impact before the corner, farther away if the cam has room for it.
+    /// Neighbour with its impact before the corner, farther away if the cam has room for it.
     pub far: Neighbour,
 }
 
-/// A neighbour of the corner impact's orbit.
+/// Neighbour of the corner impact's orbit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Neighbour {
     /// Side of the corner on which its impact is.
     pub side: Side,
     /// Time of the impact, s.
     pub time: f64,
-    /// x_1, x_d^-, x_d^+ and x_2.
+    /// States x_1, x_d^-, x_d^+ and x_2.
     pub sections: [State; 4],
     /// States before and after the impact.
     pub impact: [State; 2],
@@ -121,14 +120,14 @@ fn flown(flight: &Flight, state: State, from: f64, to: f64) -> Option<(State, Li
 }
 
 impl FigureContext {
-    /// Computes the composition at a visible size, or says why there is none.
+    /// Computes the composition at a visible size, or returns the reason why there is none.
     pub fn composition(&self) -> Result<Composition, String> {
         let at = &self.found()?.at;
         let machine = self.machine(at.speed_rpm());
         let (corner, omega) = (&at.corner, at.angular_velocity());
         let sides = [self.cam.before(corner.segment), corner.segment].map(|index| &self.cam.segments()[index]);
         let widths = sides.map(|segment| segment.end - segment.start);
-        // Start from the widest reach that the cam allows, and halve it.
+        // Starts from the largest reach that the cam allows, and halves it.
         let reaches = |width: f64| successors(Some((FARTHEST / IMPACT).min(0.9 * width)), |reach| Some(0.5 * reach));
         let beside = |side, reach| neighbour(at, &machine, side, reach);
         let both = |reach| Some((reach, [beside(Side::Minus, reach)?, beside(Side::Plus, reach)?]));
@@ -174,7 +173,7 @@ impl FigureContext {
     }
 }
 
-/// The neighbour that reaches the cam close to the corner, if the simulator confirms that this is its only impact.
+/// Neighbour that reaches the cam close to the corner, if the simulator confirms that this is its only impact.
 fn neighbour(at: &CornerImpact, machine: &Machine, side: Side, reach: f64) -> Option<Neighbour> {
     let (corner, omega, flight) = (&at.corner, at.angular_velocity(), machine.flight());
     let turn = if side == Side::Minus { -IMPACT * reach } else { IMPACT * reach };

@@ -6,8 +6,8 @@ use corner_impact::border_collision::feigin::Scenario;
 use corner_impact::orbit::branch::Bifurcation;
 use corner_impact_plot::{BREAK, Colour, Figure, FigureAxis, Mark, Marker, Panel, Series, Stroke};
 
-/// Kinds of corner impact with their strokes. Curves are in ink, which no class of motion behind them has at full strength: corner
-/// impacts are thick, other events thin, and strokes distinguish kinds.
+/// Kinds of corner impact with their strokes. Curves are in ink, which no class of motion behind them has at full strength. Corner impacts
+/// are thick and other events thin; strokes distinguish kinds.
 const KINDS: [(Happening, Stroke); 5] = [
     (Happening::BorderCollision(Scenario::NonsmoothFold), Stroke::Thick),
     (Happening::BorderCollision(Scenario::NonsmoothFlip), Stroke::ThickDashed),
@@ -32,7 +32,7 @@ const MARKED: [(&str, &str, Marker); 3] = [
     ("class", "class of a graze", Marker::Square),
 ];
 
-/// Event curves with the speed up and the parameter across. The parameter comes with name, unit, range, and its value in the model, which
+/// Draws event curves with the speed up and the parameter across. The parameter has a name, unit, range, and its value in the model, which
 /// is marked.
 pub fn curve_figure(
     title: &str,
@@ -47,7 +47,7 @@ pub fn curve_figure(
     Figure { marks, ..Figure::new(title, FigureAxis::new(name, unit).over(range), vec![panel]) }
 }
 
-/// A line for each kind of event, and their marks; `place` maps a speed, rpm, and a value of the number to a point of the figure.
+/// Lines for each kind of event, and their marks; `place` maps a speed, rpm, and a value of the number to a point of the figure.
 pub(super) fn lines(curves: &[EventCurve], place: impl Fn(f64, f64) -> [f64; 2]) -> Vec<Series> {
     let place = |point: &EventPoint| place(point.rpm, point.value);
     let mut series = Vec::new();

@@ -1,4 +1,4 @@
-//! Figures for design: the contact force round the cam, forces and loads against the speed, or one number against another.
+//! Figures for design: the contact force over a turn of the cam, forces and loads against the speed, or one number against another.
 
 use crate::figures::Across;
 use crate::figures::impacts::WHOLE_CAM;
@@ -11,7 +11,7 @@ use corner_impact::study::design::{Design, RequiredPair, Trade};
 use corner_impact::study::survey::Place;
 use corner_impact_plot::{Beside, Colour, Figure, FigureAxis, Label, Mark, Marker, Panel, Series, Stroke, extent};
 
-/// Draws trades if there are any, else the force round the cam at one speed, else forces and loads against the speed.
+/// Draws trades, if any, else the force over a turn at one speed, else forces and loads against the speed.
 pub fn design_figure(found: &Design) -> Figure {
     if !found.trades.is_empty() {
         return trades(found);
@@ -33,7 +33,7 @@ fn round(found: &Design) -> Figure {
     let rpm = found.forces.first().map_or(f64::NAN, |at| at.place.rpm);
     let title = format!("{} at {rpm} rpm: contact force round the cam", found.model.name);
     let figure = Figure::new(&title, FigureAxis::degrees("cam angle").over(WHOLE_CAM), vec![panel]);
-    // A negative force would pull, which a cam cannot do.
+    // A negative force would be a pull, which a cam cannot exert.
     let pulls = found.round.iter().any(|[_, force]| *force < 0.0);
     Figure {
         note: if pulls { "below 0 the cam would have to pull: they separate".into() } else { String::new() },
@@ -41,7 +41,7 @@ fn round(found: &Design) -> Figure {
     }
 }
 
-/// A quantity over the varied number: its place, its value, and the range that its uncertainty leaves.
+/// Quantity over the varied number: its position, its value, and its uncertainty range.
 type Known = (f64, f64, Option<[f64; 2]>);
 
 fn speeds(found: &Design) -> Figure {
@@ -74,7 +74,7 @@ fn speeds(found: &Design) -> Figure {
         ("energy lost", "J/rev", 1.0, Some(Load::Energy)),
     ];
     if !curves.loads.is_empty() {
-        // In the order of `Loads::numbers`.
+        // The panels are in the order of `Loads::numbers`.
         panels.extend(quantities.into_iter().enumerate().map(|(index, (name, unit, scale, load))| {
             let value = |loads: &Loads| {
                 let bounds = loads.bounds(index).map(|bounds| bounds.map(|end| scale * end));
@@ -120,7 +120,7 @@ fn plain(values: &[Known]) -> impl Iterator<Item = [f64; 2]> {
     values.iter().map(|(x, y, _)| [*x, *y])
 }
 
-/// The band that the uncertainty of the machine leaves around values; `None` where there is no uncertainty.
+/// Band of the machine's uncertainty around values; `None` without uncertainty.
 fn band(label: &str, values: &[Known]) -> Option<Series> {
     let is_open = values.iter().any(|(.., bounds)| bounds.is_some_and(|[low, high]| low < high));
     let edges = values.iter().map(|(x, _, bounds)| {
@@ -130,7 +130,7 @@ fn band(label: &str, values: &[Known]) -> Option<Series> {
     is_open.then(|| Series::band(label, Colour::Grey, edges))
 }
 
-/// One load in each revolution of a sweep against the varied number.
+/// Draws one load in each revolution of a sweep against the varied number.
 pub fn loads_diagram(title: &str, across: &Across, sweep: &[Vec<Loads>], load: Load, units: &Units) -> Figure {
     let told = |value: f64| if load == Load::Force { units.force.told(value) } else { value };
     let points = sweep.iter().flatten().map(|loads| [across.place(loads.place.across()), told(loads.of(load))]);
@@ -179,7 +179,7 @@ fn trades(found: &Design) -> Figure {
     Figure::new(&title, FigureAxis::new(&against, unit).over(range), panels.collect())
 }
 
-/// Label, once in a panel, of the band that shows the uncertainty of the machine.
+/// Label of the band of the machine's uncertainty, shown once per panel.
 fn open(found: &Design) -> String {
     let sources = Sources::of(&found.measured, found.errors);
     let leave = if sources.errors.are_none() { "leaves" } else { "leave" };

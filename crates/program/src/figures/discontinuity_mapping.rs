@@ -1,4 +1,4 @@
-//! The discontinuity mapping P_D near the corner: an impact before it in the upper panel, one after it in the lower.
+//! Discontinuity mapping P_D near the corner: an impact before it in the upper panel, one after it in the lower.
 
 use crate::figures::composition::{Composition, Neighbour};
 use crate::figures::{Entry, drawn};
@@ -40,8 +40,8 @@ fn mapping(shown: &Composition, near: &Neighbour) -> Panel {
     let range = [low - room, high + room];
     let [coming, going] = [&near.coming, &near.going].map(|line| [0, 1].map(|part| scaled(&line[part])));
     let real = [coming[0].as_slice(), &going[0]].concat();
-    // The unreal motion in the order in which the mapping passes it; the law at the impact, continued beyond
-    // the corner; and the sides of words at the section and at the impact.
+    // The virtual motion in the order in which the mapping follows it; the law at the impact, continued beyond the corner; and the sides of
+    // words at the section and at the impact.
     let is_before = near.side == Side::Minus;
     let (name, unreal, label, law, [at_section, at_impact]) = if is_before {
         let end = before[1].last().copied().unwrap_or(BREAK);

@@ -9,7 +9,7 @@ use corner_impact::study::survey::{
 use corner_impact_plot::layout::widened;
 use corner_impact_plot::{Cloud, Colour, Data, Density, Figure, FigureAxis, Panel, Series, Stroke};
 
-/// Impacts above the speed at which the follower begins to leave the cam.
+/// Impacts above the speed at which the follower first leaves the cam.
 pub(crate) const SLOW_IMPACTS: Entry = Entry {
     id: "slow-impacts",
     place: "Figure 5(a)",
@@ -37,14 +37,14 @@ pub(crate) const SLOW_IMPACTS: Entry = Entry {
     },
 };
 
-/// The points that a picture of a sweep shows: impact angles, in degrees, or positions at the section, m, and Lyapunov exponents. The
-/// horizontal axis has the spacing of the values.
+/// Points of a picture of a sweep: impact angles, in degrees, or positions at the section, m, and Lyapunov exponents. The horizontal axis
+/// has the spacing of the values.
 #[derive(Clone, Debug)]
 pub struct Shown {
     in_degrees: bool,
     spacing: Spacing,
     cloud: Cloud,
-    /// Place of each value that has a Lyapunov exponent, and that exponent per revolution.
+    /// Position of each value with a Lyapunov exponent, and the exponent per revolution.
     pub exponents: Vec<[f64; 2]>,
 }
 
@@ -75,10 +75,10 @@ impl Shown {
 
 /// Range of cam angles, degrees.
 pub(crate) const WHOLE_CAM: [f64; 2] = [0.0, 360.0];
-/// Note below a diagram in which some exponent cannot be drawn.
+/// Note below a diagram with an exponent that cannot be drawn.
 const FORGETS: &str = "λ = −∞, not drawn, where the follower sticks to the cam: every deviation is lost there";
 
-/// Impact phases in degrees against speed in rpm, with the cam's corners as lines. A second panel has
+/// Draws impact phases in degrees against speed in rpm, with the cam's corners as lines. A second panel shows
 /// `[rpm, Lyapunov exponent per revolution]`.
 pub fn impact_diagram(title: &str, points: Density, corners: &[CornerMark], exponents: Option<&[[f64; 2]]>) -> Figure {
     let shown = shown_impacts(&points);
@@ -89,7 +89,7 @@ pub fn impact_diagram(title: &str, points: Density, corners: &[CornerMark], expo
     figure
 }
 
-/// Positions at the section, m, against speed in rpm, with exponents as in [`impact_diagram`].
+/// Draws positions at the section, m, against speed in rpm, with exponents as in [`impact_diagram`].
 pub fn strobe_diagram(title: &str, points: Density, exponents: Option<&[[f64; 2]]>) -> Figure {
     let shown = points.extent().map(|extent| widened(extent, 0.02));
     figure(title, points, position(), shown, exponents)
@@ -107,12 +107,12 @@ pub(crate) fn impact_angles() -> FigureAxis {
     FigureAxis::degrees("cam angle at impact φ")
 }
 
-/// Range of impact phases, degrees, of the points, slightly widened, and at most the whole cam.
+/// Range of the points' impact phases, degrees, slightly widened, and at most the whole cam.
 pub(crate) fn shown_impacts(points: &Density) -> Option<[f64; 2]> {
     Some(at_most_the_cam(widened(points.extent()?, 0.02)))
 }
 
-/// A range of angles, degrees, without what is beyond a revolution.
+/// Limits a range of angles, degrees, to one revolution.
 pub(crate) fn at_most_the_cam([low, high]: [f64; 2]) -> [f64; 2] {
     [low.max(WHOLE_CAM[0]), high.min(WHOLE_CAM[1])]
 }

@@ -26,22 +26,22 @@ pub(crate) const LOCAL_MAP: Entry = Entry {
     },
 };
 
-/// Smallest share of a panel's height for the lower of two rays whose slopes differ in size.
+/// Smallest height of the lower of two rays with different slopes, relative to the panel.
 const SEEN: f64 = 0.15;
 
 impl FigureContext {
-    /// Computes the local map's diagram, or says why there is none.
+    /// Computes the local map's diagram, or returns the reason why there is none.
     pub fn next_to_corner(&self) -> Result<NextToCorner, String> {
         NextToCorner::new(&self.model, &self.cam, self.found()?)
     }
 }
 
-/// A unit in which the changes of period are some tens or hundreds, and that unit's number per second.
+/// Unit in which the changes of period are some tens or hundreds, and the number of these units per second.
 fn unit(reach: f64) -> (&'static str, f64) {
     if reach * 1e3 < 1.0 { ("µs", 1e6) } else { ("ms", 1e3) }
 }
 
-/// Positions relative to x* against the change of the period; a second panel enlarges the flatter rays.
+/// Draws positions relative to x* against the change of the period; a second panel enlarges the flatter rays.
 fn figure(title: &str, shown: &NextToCorner) -> Figure {
     let (unit, per_second) = unit(shown.reach);
     let reach = shown.reach * per_second;
@@ -103,7 +103,7 @@ fn panel(shown: &NextToCorner, range: [f64; 2], name: &str, with_names: bool) ->
     Panel::new(FigureAxis::new(name, "m").over(range), 0.3, series).with_zero()
 }
 
-/// The side of a ray, at one of its points, with more room to the next line or to the edge of the panel.
+/// Side of a ray, at one of its points, with more room to the next line or to the edge of the panel.
 fn free_side(shown: &NextToCorner, at: [f64; 2], range: [f64; 2]) -> Beside {
     let (_, per_second) = unit(shown.reach);
     let change = at[0] / per_second;
@@ -114,7 +114,7 @@ fn free_side(shown: &NextToCorner, at: [f64; 2], range: [f64; 2]) -> Beside {
         line.points.iter().min_by(|one, other| off(one).total_cmp(&off(other)))
     });
     let machine = machine.filter(|point| point[0] * change > 0.0).map(|point| point[1]);
-    // A line that coincides with the ray takes no side.
+    // A line that coincides with the ray occupies no side.
     let apart = 0.01 * (range[1] - range[0]);
     let others = rays.chain(machine).chain([0.0, range[0], range[1]]).map(|height| height - at[1]);
     let (above, below): (Vec<f64>, Vec<f64>) = others.filter(|off| off.abs() > apart).partition(|off| *off > 0.0);

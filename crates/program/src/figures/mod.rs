@@ -1,5 +1,5 @@
-//! Figures, one per file: data, plot, title, caption and row of the
-//! table. Figures that only a command draws ([`basins_figure`], [`curve_figure`], ...) are not in the table.
+//! Figures, one per file: data, plot, title, caption and row of the table. Figures that only a command draws ([`basins_figure`],
+//! [`curve_figure`], ...) are not in the table.
 
 mod basins;
 mod branches;
@@ -72,16 +72,16 @@ pub(crate) fn around_corner() -> &'static str {
     branches::FAST_IMPACTS.id
 }
 
-/// A row of the table of figures.
+/// Row of the table of figures.
 pub(crate) struct Entry {
     /// Name in commands.
     pub(crate) id: &'static str,
     /// Corresponding figure of the paper; empty for none.
     place: &'static str,
-    /// Whether it is drawn at the speeds of `--rpm`, rather than at those of the corner impact.
+    /// Whether it is drawn at the speeds of `--rpm`, and not at those of the corner impact.
     pub(crate) takes_rpm: bool,
     title: fn(&FigureContext) -> String,
-    /// Draws the figure under a title, or says why there is none.
+    /// Draws the figure under a title, or returns the reason why there is none.
     draw: fn(&FigureContext, &str) -> Result<Captioned, String>,
 }
 
@@ -96,11 +96,11 @@ pub struct RenderedFigure {
     pub title: String,
     /// Command that draws this figure.
     pub command: String,
-    /// The figure, or the reason why there is none.
+    /// Figure, or the reason why there is none.
     pub drawn: Result<Captioned, String>,
 }
 
-/// A figure with its caption.
+/// Figure with its caption.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Captioned {
     /// The figure.
@@ -123,7 +123,7 @@ corner_impact::document!(RenderedFigure as plate {
     absent: plate.drawn.as_ref().err(),
 });
 
-/// A figure that a command can draw.
+/// Figure that a command can draw.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Listed {
     /// Name in commands.
@@ -141,7 +141,7 @@ pub fn listed(subject: &FigureContext) -> Vec<Listed> {
 
 const SCHEMA: &str = "corner-impact/figure/1";
 
-/// The figures of a model: the document of `figure --json`.
+/// Figures of a model: the document of `figure --json`.
 #[derive(Clone, Debug, Serialize)]
 pub struct FigureList {
     schema: &'static str,
@@ -157,7 +157,7 @@ impl FigureList {
     }
 }
 
-/// One figure with every number that it shows: the document of `figure ID --json`.
+/// Figure with every number that it shows: the document of `figure ID --json`.
 #[derive(Clone, Debug, Serialize)]
 pub struct OneFigure {
     schema: &'static str,
@@ -168,7 +168,7 @@ pub struct OneFigure {
 }
 
 impl OneFigure {
-    /// Names the model of a figure.
+    /// Builds the document of a figure of a model.
     pub fn new(subject: &FigureContext, plate: RenderedFigure) -> Self {
         Self { schema: SCHEMA, model: subject.model.name.clone(), plate }
     }
@@ -207,7 +207,7 @@ impl Entry {
 /// Name and unit of the axis of speeds.
 const SPEED: [&str; 2] = ["cam speed ω", "rpm"];
 
-/// Horizontal axis of a survey: its number or the decimal logarithm of that, with the positions of values.
+/// Horizontal axis of a survey: a number or its decimal logarithm, with the positions of values.
 #[derive(Clone, Debug)]
 pub struct Across {
     axis: FigureAxis,
@@ -242,13 +242,13 @@ impl Across {
         self.spacing.place(value)
     }
 
-    /// Puts this axis under a figure, keeping the figure's range.
+    /// Sets this axis in a figure, with the figure's range.
     pub fn under(&self, figure: Figure) -> Figure {
         let axis = FigureAxis { range: figure.x.range, ..self.axis() };
         Figure { x: axis, ..figure }
     }
 
-    /// The axis as drawn; if it has a single value, with room on both sides.
+    /// Axis as drawn; a single value gets room on both sides.
     pub(crate) fn axis(&self) -> FigureAxis {
         match self.axis.range {
             Some([low, high]) if low == high => self.axis.clone().over([0.99 * low, 1.01 * low]),

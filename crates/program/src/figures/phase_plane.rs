@@ -33,7 +33,7 @@ pub(crate) const SLOW_PHASE_PLANE: Entry = Entry {
     },
 };
 
-/// Draws the gap against its velocity, with arrows in the direction of time, and marks where impacts begin and end.
+/// Draws the gap against its velocity, with arrows in the direction of time, and marks the beginning and end of each impact.
 pub fn phase_plane(title: &str, run: &TracedRun) -> Figure {
     let point = |sample: &TraceSample| [sample.gap, sample.state.velocity - sample.cam_velocity];
     let points: Vec<[f64; 2]> = run.samples.iter().map(point).collect();
@@ -51,7 +51,7 @@ pub fn phase_plane(title: &str, run: &TracedRun) -> Figure {
     Figure { marks: vec![Mark::zero()], ..Figure::new(title, FigureAxis::new("gap q − c", "m"), vec![panel]) }
 }
 
-/// Short pieces of a line, in the direction in which it is run through, evenly spaced along its length in the picture.
+/// Short pieces of a line, in the direction of motion, evenly spaced along its length in the picture.
 fn arrows(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     /// Arrows along the whole line.
     const ARROWS: f64 = 10.0;
@@ -59,7 +59,7 @@ fn arrows(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
         let [low, high] = extent(points.iter().map(|point| point[direction]));
         high - low
     });
-    // An impact changes the velocity alone: it has no direction in between.
+    // An impact changes only the velocity: the line has no direction there.
     let is_jump = |pair: &[[f64; 2]]| pair[0][0] == pair[1][0];
     let length = |pair: &[[f64; 2]]| {
         let parts = [0, 1].map(|direction| (pair[1][direction] - pair[0][direction]) / spans[direction]);

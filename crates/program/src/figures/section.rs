@@ -1,5 +1,5 @@
-//! Follower position once a revolution against speed, with branches of orbits over the attractors of runs; and
-//! the states of one long run at the section.
+//! Follower position once a revolution against speed, with branches of orbits over the attractors of runs; and the states of one long run
+//! at the section.
 
 use crate::figures::trace::TRANSIENT;
 use crate::figures::{Entry, Fast, FigureContext, SPEED, by_stability, drawn, position};
@@ -62,7 +62,7 @@ pub(crate) const BEYOND_ATTRACTOR: Entry = Entry {
 /// Number of states of the attractor.
 const STATES: usize = 20_000;
 
-/// Positions at the section against speed, with the corner impact at its speed, rpm, and position, m.
+/// Draws positions at the section against speed, with the corner impact at its speed, rpm, and position, m.
 fn section_diagram(title: &str, runs: Density, branches: &[Crossings], corner: [f64; 2]) -> Figure {
     let [rpm, all] = runs.ranges();
     let shown = |[speed, _]: &&[f64; 2]| (rpm[0]..=rpm[1]).contains(speed);
@@ -78,7 +78,7 @@ fn section_diagram(title: &str, runs: Density, branches: &[Crossings], corner: [
     Figure::new(title, FigureAxis::new(SPEED[0], SPEED[1]).over(rpm), vec![panel])
 }
 
-/// States of a long run at the section, with the former position of an orbit that no longer exists if it lies among them.
+/// Draws states of a long run at the section, with the former position of an orbit that no longer exists if it lies among them.
 fn attractor(title: &str, states: &[State], gone: State) -> Figure {
     let ends = |value: fn(&State) -> f64| widened(extent(states.iter().map(value)), 0.03);
     let (x, y) = (ends(|state| state.position), ends(|state| state.velocity));

@@ -22,14 +22,14 @@ fn marker(attractor: &AttractorRow, colour: Colour) -> Marker {
     COLOURS.iter().zip(markers).find(|(known, _)| **known == colour).map_or(Marker::Dot, |(_, marker)| marker)
 }
 
-/// Whether the attractor has too many impacts to mark one by one.
+/// Whether the attractor has too many impacts to mark individually.
 fn is_cloud(attractor: &AttractorRow) -> bool {
     attractor.kind != Kind::Periodic
 }
 
 /// A few impacts of a cloud, over all of its speeds; their marks distinguish clouds in grey.
 fn few(across: &Across, attractor: &AttractorRow) -> impl Iterator<Item = [f64; 2]> {
-    /// Most speeds, and most impacts at each of them.
+    /// Largest number of speeds, and of impacts at each of them.
     const FEW: [usize; 2] = [8, 3];
     let speeds = attractor.at.iter().filter(|at| !at.impact_angles.is_empty());
     let apart = attractor.at.len().div_ceil(FEW[0]).max(1);
@@ -48,14 +48,14 @@ const BARS: [(Kind, Stroke); 5] = [
     (Kind::Undecided, Stroke::Thin),
 ];
 
-/// Result of `speeds`: impact phases in degrees, a bar for each attractor, and shares of starts, against the speed.
+/// Draws the result of `speeds`: impact phases in degrees, a bar for each attractor, and shares of starts, against the speed.
 ///
 /// The page is `across` units wide; a letter is [`TEXT`] high. Attractors whose names would touch are placed in separate lanes.
 pub fn speeds_figure(found: &SpeedSurvey, corners: &[CornerMark], across: f64) -> Figure {
     with_folded(found, corners, across).0
 }
 
-/// The figure, and the note on what is folded into one line in it.
+/// Builds the figure, and a note on the attractors folded into one line.
 fn with_folded(found: &SpeedSurvey, corners: &[CornerMark], across: f64) -> (Figure, Option<String>) {
     let over = over(found);
     let colours = colours(found);
@@ -69,7 +69,7 @@ fn with_folded(found: &SpeedSurvey, corners: &[CornerMark], across: f64) -> (Fig
     let mut impacts: Vec<Series> = shade(WHOLE_CAM[1]).into_iter().collect();
     let folding = Folding::of(found, &colours, across);
     let (short, long): (Vec<_>, Vec<_>) = each().partition(|(_, attractor)| folding.folds(found, attractor));
-    // What lives briefly is folded into one series.
+    // Short-lived attractors are folded into one series.
     let brief = short.iter().flat_map(|(_, attractor)| places(&over, attractor));
     impacts.extend(Series::points("", Colour::Grey, Marker::Dot, brief).called(BRIEF).if_any());
     impacts.extend(
@@ -95,7 +95,7 @@ fn with_folded(found: &SpeedSurvey, corners: &[CornerMark], across: f64) -> (Fig
     let shares = long.iter().map(|(index, attractor)| {
         let stroke = BARS.iter().find(|(kind, _)| *kind == attractor.kind).map_or(Stroke::Thin, |(_, stroke)| *stroke);
         let points = attractor.at.iter().map(|at| [over.place(at.value()), 100.0 * at.share.value]);
-        // One point makes no line.
+        // A single point makes no line.
         let of_one = || Series::points("", colour(*index), marker(attractor, colour(*index)), points.clone());
         let shares =
             if attractor.at.len() == 1 { of_one() } else { Series::line("", colour(*index), stroke, points.clone()) };
@@ -118,7 +118,7 @@ fn with_folded(found: &SpeedSurvey, corners: &[CornerMark], across: f64) -> (Fig
 /// Name of the series of folded attractors in tables.
 const BRIEF: &str = "brief";
 
-/// Impacts of an attractor: its place on the axis and the cam angle, degrees.
+/// Impacts of an attractor: the position on the axis and the cam angle, degrees.
 fn places(over: &Across, attractor: &AttractorRow) -> impl Iterator<Item = [f64; 2]> {
     let of = |at: &At| {
         let place = over.place(at.value());
@@ -127,17 +127,17 @@ fn places(over: &Across, attractor: &AttractorRow) -> impl Iterator<Item = [f64;
     attractor.at.iter().flat_map(of)
 }
 
-/// Which attractors are folded into one line: those that live for less than a share of the range.
+/// Rule for folding short-lived attractors into one line: the smallest range of those drawn separately.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Folding {
     Thousandth,
-    /// Where there are more lanes than can be looked through.
+    /// Share of the range below which attractors are folded if there are too many lanes.
     Hundredth,
 }
 
 impl Folding {
     fn of(found: &SpeedSurvey, colours: &[Colour], across: f64) -> Self {
-        /// Most lanes that are looked through.
+        /// Largest number of lanes that a reader can survey.
         const LANES: usize = 12;
         let lanes = placed(found, colours, across, Self::Thousandth).count;
         if lanes > LANES { Self::Hundredth } else { Self::Thousandth }
@@ -175,9 +175,10 @@ fn bar(over: &Across, attractor: &AttractorRow) -> [f64; 2] {
     attractor.range().map(|end| over.place(end))
 }
 
-/// A colour for each attractor. It differs from those of coexisting and closely preceding attractors while there are enough colours.
+/// Chooses a colour for each attractor. It differs from the colours of coexisting and closely preceding attractors while there are enough
+/// colours.
 fn colours(found: &SpeedSurvey) -> Vec<Colour> {
-    /// Share of the range.
+    /// Largest distance of closely preceding attractors, as a share of the range.
     const CLOSE: f64 = 0.02;
     let over = over(found);
     let [low, high] = found.range.map(|end| over.place(end));
@@ -195,8 +196,8 @@ fn colours(found: &SpeedSurvey) -> Vec<Colour> {
 /// Axis of shares, slightly wider than 0 to 100 %.
 const SHARES: [f64; 2] = [-5.0, 105.0];
 
-/// An attractor, its colour, its lane (0 is uppermost), and the side of its start where its name is written; none where there is no room
-/// for names.
+/// Attractor, its colour, its lane (0 is uppermost), and the side of its start where its name is written; `None` if there is no room for
+/// names.
 type Placed<'a> = (&'a AttractorRow, Colour, usize, Option<Beside>);
 
 /// Attractors in lanes.
@@ -204,11 +205,11 @@ struct Lanes<'a> {
     placed: Vec<Placed<'a>>,
     /// Number of lanes of named attractors.
     count: usize,
-    /// Attractors that are folded into a lane below.
+    /// Attractors folded into a lane below.
     brief: Vec<&'a AttractorRow>,
 }
 
-/// Places the attractors in as few lanes as they and their names need.
+/// Places the attractors in the smallest number of lanes for them and their names.
 fn placed<'a>(found: &'a SpeedSurvey, colours: &[Colour], across: f64, folding: Folding) -> Lanes<'a> {
     /// Smallest gap between two bars of a lane, as a share of the range.
     const APART: f64 = 0.004;
@@ -240,7 +241,7 @@ fn placed<'a>(found: &'a SpeedSurvey, colours: &[Colour], across: f64, folding: 
     Lanes { placed, count: ends.len(), brief: brief.into_iter().map(|(attractor, _)| attractor).collect() }
 }
 
-/// Range of speeds of each attractor as a bar, with a stroke for its kind.
+/// Draws the range of speeds of each attractor as a bar, with a stroke for its kind.
 fn bars(over: &Across, Lanes { placed, count, brief }: Lanes<'_>) -> Panel {
     let place = |lane: usize| -(lane as f64);
     let bars = BARS.iter().filter_map(|(kind, stroke)| {
@@ -268,7 +269,7 @@ fn bars(over: &Across, Lanes { placed, count, brief }: Lanes<'_>) -> Panel {
         Label::new([bar(over, first)[0], place(count)], &text, Beside::AboveRight)
     });
     let series = bars.chain(marks).chain(dots).chain(Series::words(names.chain(number)).if_any()).collect();
-    // Room for the names above the first lane, in a narrow figure, too.
+    // Room for the names above the first lane, even in a narrow figure.
     let range = [0.5 + place(lanes), 1.3];
     let axis = FigureAxis { spacing: TickSpacing::Nothing, ..FigureAxis::new("attractor", "").over(range) };
     Panel::new(axis, 0.05 + 0.03 * (range[1] - range[0]), series)

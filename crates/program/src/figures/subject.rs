@@ -13,7 +13,7 @@ use corner_impact::study::design::contact::Contact;
 use corner_impact::study::speeds::usual_range;
 use corner_impact::study::verify::{External, Verification, verify};
 
-/// A model and the results shown for it.
+/// Model and the results shown for it.
 #[derive(Clone, Debug)]
 pub struct FigureContext {
     /// The model.
@@ -48,7 +48,7 @@ pub struct Effort {
 }
 
 impl Effort {
-    /// Effort of a report above detachment: a chattering follower has forgotten its start once it has come to rest.
+    /// Effort of a report above detachment: a chattering follower forgets its start when it comes to rest.
     pub(crate) const SLOW: Self = Self { speeds: 800, transient: 40, record: 5 };
     /// Effort of a report around the corner impact.
     pub(crate) const FAST: Self = Self { speeds: 480, transient: 300, record: 150 };
@@ -84,13 +84,13 @@ pub struct Fast {
 }
 
 impl ShownSpeeds {
-    /// The paper's speeds.
+    /// Speeds of the paper.
     pub(crate) const PAPERS: (Slow, Fast) = (
         Slow { chattering: 183.0, range: [115.0, 200.0], interrupted: 175.0 },
         Fast { range: [660.0, 750.0], beyond: 670.0 },
     );
-    /// Speeds at which the paper's follower leaves its cam and at which its corner impact occurs, rpm. For other models, speeds are
-    /// in the same proportion to theirs.
+    /// Speeds at which the paper's follower leaves its cam and at which its corner impact occurs, rpm. For other models, the shown speeds
+    /// are in the same proportion to the model's.
     const PAPERS_OWN: [f64; 2] = [114.978_9, 673.234_445];
 
     /// Speeds in proportion to the detachment speed.
@@ -109,7 +109,7 @@ impl ShownSpeeds {
         Slow { chattering: rounded(0.5 * (low + high)), range: [low, high], interrupted: high }
     }
 
-    /// Speeds in proportion to that of the corner impact.
+    /// Speeds in proportion to the corner-impact speed.
     fn fast(at: &CornerImpact, falls: bool) -> Fast {
         let (_, fast) = Self::PAPERS;
         let own = at.speed_rpm();
@@ -139,7 +139,7 @@ impl FigureContext {
         Self::with(model, findings, rpm)
     }
 
-    /// FigureContext from a model and the result of `verify`, or the reason for its failure.
+    /// Builds the context from a model and the result of `verify`, or the reason for its failure.
     pub(crate) fn with(
         model: &Model,
         findings: Result<Verification, String>,

@@ -61,7 +61,7 @@ pub(crate) const CORNER_ORBIT: Entry = Entry {
     draw: corner_orbit,
 };
 
-/// Trace beyond a fold, where no orbit of one impact exists any more.
+/// Trace beyond a fold, where no orbit of one impact exists.
 pub(crate) const BEYOND_TRACE: Entry = Entry {
     id: "beyond-trace",
     place: "Figure 5(f)",
@@ -81,7 +81,7 @@ pub(crate) const BEYOND_TRACE: Entry = Entry {
     },
 };
 
-/// Displayed revolutions of a slow motion, and of a fast one, which takes several to repeat.
+/// Displayed revolutions of a slow motion, and of a fast one, which repeats only after several.
 pub(crate) const SLOW_TURNS: u64 = 2;
 const FAST_TURNS: u64 = 12;
 /// Revolutions before the displayed ones.
@@ -94,17 +94,17 @@ pub struct TracedRun {
     pub rpm: f64,
     /// Samples, evenly spaced in angle, and twice at every event.
     pub samples: Vec<TraceSample>,
-    /// The events.
+    /// Events.
     pub events: Vec<Event>,
 }
 
 impl TracedRun {
-    /// Samples of each revolution in a picture: every tenth of a degree, so that short hops are curves too.
+    /// Number of samples per revolution in a picture: every tenth of a degree, so that short hops are curves, too.
     pub const DRAWN: u32 = 3600;
-    /// Samples of each revolution in a table.
+    /// Number of samples per revolution in a table.
     pub const WRITTEN: u32 = 360;
 
-    /// `revolutions` of a machine from a motion on, with the given number of samples of each.
+    /// Traces `revolutions` of a machine from a motion on, with the given number of samples each.
     pub(crate) fn new(
         machine: &Machine,
         motion: Motion,
@@ -122,7 +122,8 @@ impl TracedRun {
 }
 
 impl FigureContext {
-    /// `revolutions`, from cam angle 0 on, of the attractor on which a start at rest on the cam settles; or the reason for a failure.
+    /// Traces `revolutions`, from cam angle 0 on, of the attractor on which a start at rest on the cam settles; or returns the reason for a
+    /// failure.
     pub fn settled(&self, rpm: f64, revolutions: u64) -> Result<TracedRun, String> {
         let machine = self.machine(rpm);
         let run = || {
@@ -135,7 +136,7 @@ impl FigureContext {
         Ok(TracedRun { rpm, ..run().map_err(|error| format!("at {rpm} rpm: {error}"))? })
     }
 
-    /// One revolution, from the section on, of the orbit with its impact at the corner.
+    /// Traces one revolution, from the section on, of the orbit with its impact at the corner.
     pub fn corner_orbit(&self) -> Result<TracedRun, String> {
         let at = &self.found()?.at;
         let machine = self.machine(at.speed_rpm());
@@ -150,7 +151,7 @@ fn corner_orbit(subject: &FigureContext, title: &str) -> Result<Captioned, Strin
     let mark = marks.iter().find(|mark| mark.angle_rad == corner);
     let name = mark.map_or_else(|| "the corner".into(), |mark| format!("the corner {}", mark.label()));
     let mut figure = time_trace(title, &subject.corner_orbit()?);
-    // The legend says that the impact is at the corner.
+    // The legend states that the impact is at the corner.
     let is_impact = |data: &Data| matches!(data, Data::Points { marker: Marker::Below, .. });
     let legend = figure.panels.iter_mut().flat_map(|panel| &mut panel.series);
     for series in legend.filter(|series| is_impact(&series.data) && !series.label.is_empty()) {
@@ -188,14 +189,14 @@ pub fn with_force(mut figure: Figure, run: &TracedRun, mass: f64, unit: &Unit) -
     figure
 }
 
-/// Follower and cam over revolutions, with impacts and contact marked, and the gap in a panel below.
+/// Draws follower and cam over revolutions, with impacts and contact marked, and the gap in a panel below.
 pub fn time_trace(title: &str, run: &TracedRun) -> Figure {
     let first = run.samples.first().map_or(0.0, |sample| sample.turned);
     let line = |value: fn(&TraceSample) -> f64| {
         run.samples.iter().map(move |sample| [(sample.turned - first) / TAU, value(sample)])
     };
     let impacts = || run.events.iter().filter(|event| event.kind == EventKind::Impact);
-    // Contact and impacts, on the line of the follower or of the gap.
+    // Contact and impacts, on the curve of the follower or of the gap.
     let marks = |value: fn(&TraceSample) -> f64, height: fn(&Event) -> f64, [contact, impact]: [&str; 2]| {
         let riding = run.samples.iter().zip(line(value));
         let riding = riding.map(|(sample, at)| if sample.contact { at } else { [f64::NAN; 2] });

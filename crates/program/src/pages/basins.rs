@@ -1,4 +1,4 @@
-//! The page of `basins`: the share of the starts that end on each motion.
+//! Page of `basins`: the share of the starts that end on each motion.
 
 use crate::show::Paged;
 use crate::show::block::Block;
@@ -42,7 +42,7 @@ impl Paged for BasinsOver {
     }
 }
 
-/// A motion with the share of the starts that end on it, and their number.
+/// Line of a motion: the share of the starts that end on it, and their number.
 fn ending(part: &Basin) -> String {
     // Given starts are counted.
     let error = if part.share.error > 0.0 { format!(" ± {:.4}", part.share.error) } else { String::new() };

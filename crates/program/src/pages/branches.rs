@@ -1,4 +1,4 @@
-//! The texts of `continue` and `curve`: special points along a branch of orbits and along a curve of events, and their ends.
+//! Texts of `continue` and `curve`: special points along a branch of orbits and along a curve of events, and their ends.
 
 use crate::show::digits::Digits;
 use crate::show::words;
@@ -10,7 +10,7 @@ use corner_impact::tolerance;
 
 /// Special points of a branch, and its ends.
 pub(crate) fn branch(branch: &Branch, (parameter, units): (&str, &Units), index: usize) -> String {
-    /// Most special points that are listed.
+    /// Largest number of special points that are listed.
     const LISTED: usize = 40;
     let points = &branch.points;
     let (Some(first), Some(last)) = (points.first(), points.last()) else { return String::new() };
@@ -93,7 +93,7 @@ fn on_curve(kind: SpecialKind) -> String {
     }
 }
 
-/// Special points and ends of a curve over the named number, which is `own` in the model.
+/// Special points and ends of a curve over the named number, whose value in the model is `own`.
 pub(crate) fn curve(
     curve: &EventCurve,
     (parameter, own, units): (&str, f64, &Units),

@@ -1,4 +1,4 @@
-//! The page of `cam`: segments and corners.
+//! Page of `cam`: segments and corners.
 
 use crate::pages::source;
 use crate::show::Paged;
@@ -10,7 +10,7 @@ use corner_impact::measured::Measured;
 use corner_impact::model::FollowerContact;
 use corner_impact::study::cam::{CamGeometry, CamSheet, Largest};
 
-/// Most items that a terminal prints line by line.
+/// Largest number of items that a terminal prints line by line.
 const LONGEST: usize = 40;
 
 impl Paged for CamSheet {
@@ -26,7 +26,7 @@ impl Paged for CamSheet {
     }
 }
 
-/// The end of the follower that the lift is of, and what the contour asks of it.
+/// End of the follower that has this lift, and the requirements of the contour on it.
 pub(crate) fn follower(geometry: Option<&CamGeometry>, lever_ratio: f64) -> Block {
     let lever = match lever_ratio {
         1.0 => Words::default(),
@@ -79,7 +79,7 @@ pub(crate) fn follower(geometry: Option<&CamGeometry>, lever_ratio: f64) -> Bloc
     Block::paragraph(words!["follower: ", end, pressed, sharpest, hollow, lever])
 }
 
-/// The largest velocity, acceleration and jerk, a line each.
+/// Largest velocity, acceleration and jerk, one line each.
 fn largest(sheet: &CamSheet) -> Vec<Block> {
     const NAMES: [(&str, &str); 3] = [("velocity", "m/rad"), ("acceleration", "m/rad^2"), ("jerk", "m/rad^3")];
     let line = |(largest, (name, unit)): (&Largest, (&'static str, &'static str))| {

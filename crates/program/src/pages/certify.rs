@@ -1,4 +1,4 @@
-//! The page of `certify`: what is proved about each corner impact, with the proved digits, and what is not.
+//! Page of `certify`: the proofs about each corner impact, with the proved digits, and what is not proved.
 
 use crate::pages::some_of;
 use crate::show::block::{Block, Column, Span, Table, TextMark, Words, words};

@@ -1,4 +1,4 @@
-//! The page of `chaos`: the theorem first, then its basis, then the places where nothing is proved.
+//! Page of `chaos`: the theorem first, then its basis, then the places where nothing is proved.
 
 use crate::show::block::{Block, Column, Span, Table, TextMark, Words, words};
 use crate::show::digits::{Digits, at_least};
@@ -94,7 +94,7 @@ pub(crate) fn statement(found: &Chaos) -> String {
     )
 }
 
-/// States what is proved about a region.
+/// States the proof about a region.
 fn trapped(found: &Trapped, rpm: f64) -> Words {
     let Region { cells, velocities_m_s, part, angles_deg, .. } = found.region;
     let chaos = match found.holds_chaos {

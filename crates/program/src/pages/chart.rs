@@ -1,4 +1,4 @@
-//! The page of `chart`: the number of points of each kind.
+//! Page of `chart`: the number of points of each kind.
 
 use crate::show::Paged;
 use crate::show::block::Block;
@@ -16,7 +16,7 @@ impl Paged for Charted {
         lines.push("  share of the points, motion (number of points)".into());
         for (kind, number) in self.counts() {
             let share = number as f64 / points as f64;
-            // Chaos is said with how long it was seen.
+            // For chaos, the number of revolutions for which it was followed is added.
             let chaotic = self.points.iter().flatten().filter(|_| kind == Some(Kind::Chaotic));
             let seen = words::followed_for(chaotic.filter(|it| it.kind == Kind::Chaotic).map(|it| it.followed));
             lines.push(format!("  {share:.4}  {} ({number}){seen}", kind.map_or("failed", words::kind)));

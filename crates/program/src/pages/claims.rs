@@ -1,4 +1,4 @@
-//! The pages of `claims`: one for a terminal, and one under `docs/`.
+//! Pages of `claims`: one for a terminal, and one under `docs/`.
 
 use crate::explain::{ExplainError, Links};
 use crate::pages::explain::behind;
@@ -8,7 +8,7 @@ use corner_impact::known::Evidence;
 use corner_impact::paper::{Claims, Held};
 use corner_impact::published::Verdict;
 
-/// The page for a terminal.
+/// Page for a terminal.
 pub(crate) fn terminal(found: &Claims) -> Vec<Block> {
     let title = format!("What the paper states, checked with {}", found.model);
     let about = format!("The statements are from {}.", found.source);
@@ -39,7 +39,7 @@ pub(crate) fn terminal(found: &Claims) -> Vec<Block> {
     blocks
 }
 
-/// Number of statements with a verdict. For a wrong verdict, also the number with an error of their own.
+/// Number of statements with a verdict. For a wrong verdict, also the number of statements with an independent error.
 fn count(found: &Claims, verdict: Verdict, all: usize) -> String {
     if !verdict.is_wrong() {
         return all.to_string();
@@ -53,7 +53,7 @@ fn by_slip(claim: &Held) -> Option<String> {
     (!others.is_empty()).then(|| format!("Wrong because of the error in: {}", others.join("; ")))
 }
 
-/// The page under `docs/`: its introduction and its sections.
+/// Page under `docs/`: its introduction and its sections.
 pub fn document(found: &Claims) -> Result<(Vec<Block>, Vec<PageSection>), ExplainError> {
     let links = Links::read()?;
     let behind_claims = links.of_claims();

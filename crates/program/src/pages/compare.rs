@@ -1,4 +1,4 @@
-//! The page of `compare`: the verdict, the fields that differ, then the numbers that changed, the largest change first.
+//! Page of `compare`: the verdict, the fields that differ, then the numbers that changed, the largest change first.
 
 use serde_json::Value;
 
@@ -11,7 +11,7 @@ use corner_impact::study::compare::{Change, ModelComparison};
 
 /// Ratio of a difference to its error above which only a bound is shown.
 const MANY: f64 = 1e6;
-/// Most names in a list.
+/// Largest number of names in a list.
 const LONGEST: usize = 40;
 
 impl Paged for ModelComparison {
@@ -171,7 +171,7 @@ fn moved(title: &str, changes: &[&Change]) -> Vec<Block> {
     for alike in alike(changes) {
         let change = alike[0];
         let percent = change.relative.map_or("".into(), |part| {
-            // Fewer digits than the column has places for would show 0.
+            // With fewer digits than the column has places, the value would be shown as 0.
             let digits = if part.abs() < 0.001 { Digits::Size } else { Digits::Significant(3) };
             words![(100.0 * part, digits)]
         });

@@ -1,4 +1,4 @@
-//! The page of `design`: the answer in sentences first, then speeds, limits and required changes.
+//! Page of `design`: the answer in sentences first, then speeds, limits and required changes.
 
 use crate::pages::cam::follower;
 use crate::pages::source;
@@ -14,7 +14,7 @@ use corner_impact::study::design::needs::Answer;
 use corner_impact::study::design::{Design, RequiredPair, SeparationPlace, Trade};
 use corner_impact::uncertainty::SourcedUncertainty;
 
-/// A column of numbers with a gap before it.
+/// Column of numbers with a gap before it.
 fn number(head: impl Into<Words>) -> Column {
     Column { gap: 2, ..Column::number(head) }
 }
@@ -51,7 +51,7 @@ impl Paged for Design {
     }
 }
 
-/// The uncertain numbers that are exact in a part of the page.
+/// Uncertain numbers that are exact in a part of the page.
 fn exact(found: &Design) -> String {
     let is_uncertain = |name: &str| found.errors.uncertain().any(|(uncertain, _)| uncertain == name);
     let varied = [Some(found.over.own_name()), found.trades.first().map(|trade| trade.against.as_str())];
@@ -68,7 +68,7 @@ fn sources(found: &Design) -> Option<Sources<'_>> {
     Sources::of(&found.measured, found.errors).if_any()
 }
 
-/// Sources of the uncertainty in the table, where the number that varies is exact.
+/// Sources of the uncertainty in the table, in which the varied number is exact.
 fn table_sources(found: &Design) -> Option<Sources<'_>> {
     Sources::of(&found.measured, found.table_errors()).if_any()
 }
@@ -79,7 +79,7 @@ pub(crate) fn separation(found: &Design) -> Words {
     leaves(found.separation, &found.places, sources(found), error)
 }
 
-/// Sentence about a separation, with the angle or the places that compete.
+/// Sentence about a separation, with its angle or the competing places.
 pub(crate) fn leaves(
     separation: Separation,
     places: &[SeparationPlace],
@@ -142,13 +142,13 @@ pub(crate) fn leaves(
     }
 }
 
-/// One of the places that the follower may leave first.
+/// One of the places at which the follower may first leave the cam.
 fn place(place: &SeparationPlace, machines: &str) -> Words {
     let share = (100.0 * place.share, Digits::Fixed(0));
     words![angles(place), " for ", share, format!(" % of {} equally likely {machines}", place.cams)]
 }
 
-/// The angles of a place.
+/// Angles of a place.
 fn angles(place: &SeparationPlace) -> Words {
     let ([from, to], width) = place.within_a_turn();
     let ([from, to], width) = ([from, to].map(f64::to_degrees), width.to_degrees());
@@ -264,7 +264,7 @@ pub(crate) fn speeds(found: &Design) -> Vec<Block> {
     blocks
 }
 
-/// Where the uncertainty of the impact speed comes from, at the last value with loads.
+/// Sources of the uncertainty of the impact speed, at the last value with loads.
 fn hardest(found: &Design) -> Option<Words> {
     let sources = table_sources(found).filter(|sources| !sources.errors.are_none())?;
     let loads = found.loads.iter().rfind(|loads| loads.impact_speed > 0.0 && loads.errors.is_some())?;
@@ -342,7 +342,7 @@ fn needs(found: &Design) -> Vec<Block> {
             let Answer { lever, now, unit, note, known, .. } = answer;
             let digits = |value: f64| Digits::of(value, if *known == Evidence::Computed { 9 } else { 3 });
             let bound = if answer.is_upper_bound { "at most" } else { "at least" };
-            // If any value will do, there is no uncertainty, and the note says so.
+            // If any value will do, there is no uncertainty, and the note states this.
             let unknown = if sources.is_some() && answer.error.is_none() && note.is_empty() { " ± ?" } else { "" };
             let value = answer.value.map(|value| words![positive(value, total(answer.error), digits(value)), unknown]);
             let other = answer.other.map(|other| positive(other, total(answer.other_error), digits(other)));
@@ -402,7 +402,7 @@ fn rounded(found: &Design) -> Vec<Block> {
     vec![Block::Heading("Jumps of the acceleration".into()), Block::paragraph(words), Block::Table(table)]
 }
 
-/// A load with its uncertainty, or in the digits that this leaves. A load that may be zero is shown as an upper bound.
+/// Load with its uncertainty, or in the digits that the uncertainty leaves. A load that may be zero is shown as an upper bound.
 fn load(value: f64, error: Option<f64>, digits: Digits, is_told: bool) -> Words {
     /// Relative uncertainty that leaves a value three digits.
     const KNOWN: f64 = 0.005;
@@ -417,7 +417,7 @@ fn load(value: f64, error: Option<f64>, digits: Digits, is_told: bool) -> Words 
     }
 }
 
-/// A value with its uncertainty.
+/// Value with its uncertainty.
 fn with_open(value: f64, error: Option<f64>, digits: Digits) -> Words {
     match error.filter(|error| *error > 0.0).map(with_error) {
         Some((digits, error)) => words![(value, digits), " ± ", (error, digits)],
@@ -425,7 +425,7 @@ fn with_open(value: f64, error: Option<f64>, digits: Digits) -> Words {
     }
 }
 
-/// A value of a quantity that is not negative, with its uncertainty.
+/// Value of a quantity that is not negative, with its uncertainty.
 fn positive(value: f64, error: Option<f64>, digits: Digits) -> Words {
     match error.filter(|error| *error >= value.abs()) {
         Some(error) => words![(value, digits), ", ", at_most(value + error)],

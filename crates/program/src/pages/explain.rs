@@ -1,4 +1,4 @@
-//! The page of `explain`, also used for the numbers of the report.
+//! Page of `explain`, also used for the numbers of the report.
 
 use serde_json::Value;
 
@@ -77,7 +77,7 @@ pub(crate) fn explained(it: &Explanation) -> Vec<Block> {
     blocks
 }
 
-/// The function, the proof and the tests of a quantity; each is empty if there is none.
+/// Function, proof and tests of a quantity; each is empty if there is none.
 pub(crate) fn behind(it: &Explanation) -> [Words; 3] {
     let code = |text: &str| Words::from(Span::Code(text.into()));
     let place = |file: &str, name: &str| code(&format!("{file}: {name}"));

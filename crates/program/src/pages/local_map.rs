@@ -1,4 +1,4 @@
-//! The page section on the local map: how generic it is, its own predictions, and its range of validity.
+//! Page section on the local map: its distance from degenerate cases, its predictions, and its range of validity.
 
 use corner_impact::border_collision::feigin::{Speeds, speeds_at};
 use corner_impact::border_collision::local_map::MapOrbit;
@@ -17,10 +17,10 @@ use corner_impact::tolerance;
 /// Start of the second column.
 const COLUMN: usize = 20;
 
-/// Most orbits of a kind in a line.
+/// Largest number of orbits of a kind in a line.
 const SHOWN: usize = 6;
 
-/// The condition nearest to failing, and the failing ones.
+/// Condition nearest to failing, and the failing conditions.
 pub(crate) fn conditions(found: &Verification) -> Vec<(Words, Words)> {
     let (holding, count) =
         (found.conditions.iter().filter(|condition| condition.holds()).count(), found.conditions.len());

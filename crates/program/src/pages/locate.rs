@@ -1,4 +1,4 @@
-//! The page of `locate`: the corner impacts in a range of speeds, and the scenario at each.
+//! Page of `locate`: the corner impacts in a range of speeds, and the scenario at each.
 
 use crate::show::Paged;
 use crate::show::block::{Block, Column, Table, TextMark, Words, words};
@@ -80,7 +80,7 @@ fn table(found: &[LocatedImpact]) -> Table {
     table
 }
 
-/// A sentence for each scenario of border collision, and one for each other kind of event.
+/// Sentence for each scenario of border collision, and for each other kind of event.
 fn meanings(found: &[LocatedImpact]) -> Vec<Block> {
     let mut said: Vec<String> = Vec::new();
     let mut meanings = Vec::new();
@@ -114,7 +114,7 @@ fn meanings(found: &[LocatedImpact]) -> Vec<Block> {
 }
 
 fn rejected(found: &Located) -> Vec<Block> {
-    /// Most refusals that are printed line by line.
+    /// Largest number of rejected speeds that are printed line by line.
     const LONGEST: usize = 12;
     let all = &found.looked_at.rejected;
     if all.is_empty() {
@@ -179,12 +179,12 @@ fn searched(found: &Located) -> String {
     words
 }
 
-/// Numbers of corner impacts that each search found, that only one search found, and that are probably missing.
+/// Numbers of corner impacts found by each search, by only one search, and estimated as missing.
 fn found_by(found: &Located) -> String {
     let recaptured = found.looked_at.recaptured();
     let sum = |count: fn(&Recaptured) -> usize| recaptured.values().map(count).sum::<usize>();
     let (branches, shots, both) = (sum(|it| it.branches), sum(|it| it.shots), sum(|it| it.both));
-    /// Fewest corner impacts found by both searches from which the missing ones are estimated.
+    /// Smallest number of corner impacts found by both searches for an estimate of the missing ones.
     const TELLING: usize = 10;
     let missing = match recaptured.values().map(Recaptured::missing).sum::<f64>() {
         _ if both < TELLING => "too few for an estimate of how many both missed".to_owned(),

@@ -1,4 +1,4 @@
-//! The page of each command, laid out from its results.
+//! Page of each command, laid out from its results.
 
 use crate::show::block::{Block, Words};
 use crate::show::words;
@@ -26,9 +26,9 @@ fn source(said: &str) -> Option<Block> {
     (!said.is_empty()).then(|| Block::paragraph(said))
 }
 
-/// One line for each item, up to a limit.
+/// Lines for the items, up to a limit.
 fn some_of<T>(all: &[T], what: &str, line: impl Fn(&T) -> Words) -> Vec<Block> {
-    /// Most items that are printed line by line.
+    /// Largest number of items that are printed line by line.
     const LONGEST: usize = 12;
     let mut lines: Vec<_> = all.iter().take(LONGEST).map(|one| Block::Paragraph(4, line(one))).collect();
     if all.len() > LONGEST {

@@ -1,4 +1,4 @@
-//! The page of `orbit`: each periodic orbit, its multipliers, and its impacts on the cam.
+//! Page of `orbit`: each periodic orbit, its multipliers, and its impacts on the cam.
 
 use corner_impact::known::{Complete, Evidence};
 
@@ -56,7 +56,7 @@ fn undecided(at: &Undecided) -> Words {
     format!("Not decided: impacts at {} deg.", angles.collect::<Vec<_>>().join(" and ")).into()
 }
 
-/// States what is proved about the orbits, and what is only computed.
+/// States which results about the orbits are proved, and which are only computed.
 fn how_known(orbits: &[PeriodicOrbit]) -> Option<Block> {
     let proved = orbits.iter().filter(|orbit| orbit.known == Evidence::Proved).count();
     let judged = orbits.iter().filter(|orbit| orbit.judgement.known == Evidence::Proved).count();
@@ -105,7 +105,7 @@ fn left_open(sources: Sources<'_>, error: Option<&OrbitUncertainty>) -> Block {
     Block::paragraph(text)
 }
 
-/// The given number of places, or fewer if the uncertainty is larger.
+/// Given number of places, or fewer if the uncertainty is larger.
 fn known(places: usize, error: Option<f64>) -> Digits {
     match error.filter(|error| *error > 0.0).map(|error| with_error(error).0) {
         Some(Digits::Fixed(left)) => Digits::Fixed(left.min(places)),
@@ -114,7 +114,7 @@ fn known(places: usize, error: Option<f64>) -> Digits {
 }
 
 fn one(number: usize, orbit: &PeriodicOrbit, error: Option<&OrbitErrors>) -> Vec<Block> {
-    /// Most impacts that are shown of an orbit.
+    /// Largest number of impacts shown for an orbit.
     const SHOWN: usize = 8;
     let impacts = orbit.impacts().count();
     let turns = words::many(orbit.revolutions, "revolution");

@@ -1,4 +1,4 @@
-//! The pages of `simulate` and `diagram`: the results of a run and of a sweep.
+//! Pages of `simulate` and `diagram`: the results of a run and of a sweep.
 
 use crate::show::block::{Block, Span, Words, words as sentence};
 use crate::show::digits::Digits;

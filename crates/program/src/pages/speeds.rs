@@ -1,4 +1,4 @@
-//! The page of `speeds`: the short answer first, then every attractor with its beginning and end.
+//! Page of `speeds`: the short answer first, then every attractor with its beginning and end.
 
 use crate::show::Paged;
 use crate::show::block::{Block, Column, Table, TextMark, Words, words};
@@ -64,20 +64,20 @@ fn ends(found: &SpeedSurvey) -> impl Iterator<Item = &Transition> {
     found.attractors.iter().flat_map(|attractor| attractor.birth.iter().chain(&attractor.death))
 }
 
-/// A value at which an attractor begins or ends, in the digits that its uncertainty leaves.
+/// Value at which an attractor begins or ends, in the digits that its uncertainty leaves.
 fn open_to(found: &SpeedSurvey, value: f64) -> Words {
     let usual = if found.over.is_speed() { Digits::Fixed(2) } else { Digits::Significant(5) };
     let end = ends(found).find(|end| end.value() == value);
     words![(value, end.and_then(|end| open(found, end)).map_or(usual, |error| with_error(error).0))]
 }
 
-/// The unit after a value, with a space.
+/// Unit after a value, with a space.
 fn unit(found: &SpeedSurvey) -> String {
     found.over.words("").trim_end().to_owned()
 }
 
-/// Uncertainty of an end, for the choice of digits. An end of unknown uncertainty gets the smallest known one. If none is known, a speed gets
-/// no decimals, and another value three digits of the range.
+/// Uncertainty of an end, for the choice of digits. An end of unknown uncertainty gets the smallest known one. If none is known, a speed
+/// gets no decimals, and another value three digits of the range.
 fn open(found: &SpeedSurvey, end: &Transition) -> Option<f64> {
     const WHOLE: f64 = 10.0;
     let coarse = if found.over.is_speed() { WHOLE } else { 0.1 * (found.range[1] - found.range[0]) };
@@ -144,7 +144,7 @@ pub(crate) fn how(found: &SpeedSurvey) -> String {
     )
 }
 
-/// Meaning of the errors, and where those of each event come from.
+/// Meaning of the errors, and the sources of the error of each event.
 pub(crate) fn uncertainty(found: &SpeedSurvey) -> Vec<Block> {
     let unknown = found.measured.as_ref().and_then(|measured| measured.noise_unknown.as_deref());
     let mut blocks: Vec<Block> = unknown.map(|why| Block::paragraph(words::noise_unknown(why))).into_iter().collect();
@@ -174,7 +174,7 @@ fn parts(sources: Sources<'_>, attractor: &AttractorRow, unit: &str) -> Vec<Word
     [("from", &attractor.birth), ("to", &attractor.death)].into_iter().filter_map(of_end).collect()
 }
 
-/// Frequency of rests of a motion that bounces chaotically in between; for how long chaos was seen, where runs were too short for that.
+/// Frequency of rests of a motion that bounces chaotically in between; or, if runs were too short, the time for which chaos was followed.
 fn rests(attractor: &AttractorRow) -> Option<String> {
     let id = &attractor.id;
     let Some(rests) = attractor.rests() else {
@@ -252,7 +252,7 @@ pub(crate) fn remarks(found: &SpeedSurvey) -> impl Iterator<Item = Block> {
     found.attractors.iter().flat_map(of_one).map(Block::paragraph)
 }
 
-/// Other kinds that an attractor is of at some values than at most.
+/// Kinds of an attractor at some values that differ from its most frequent kind.
 fn other_kinds(found: &SpeedSurvey, attractor: &AttractorRow) -> Option<String> {
     let all = words::many(attractor.at.len() as u64, found.over.value());
     let others = kinds(&attractor.at).into_iter().filter(|(kind, _)| *kind != attractor.kind);
@@ -266,9 +266,9 @@ fn digits(found: &SpeedSurvey) -> Digits {
     if found.over.is_speed() { Digits::Fixed(6) } else { Digits::Significant(9) }
 }
 
-/// A value in the digits that are known.
+/// Value in the known digits.
 fn end(found: &SpeedSurvey, value: f64, change: Option<&Transition>) -> Words {
-    /// Most decimals of a speed, as many as a located one has, and of another number.
+    /// Largest number of decimals: of a speed, the same as of a located speed; and of another number.
     const MOST: [f64; 2] = [6.0, 12.0];
     let most = MOST[usize::from(!found.over.is_speed())];
     let Some(change) = change else { return words![(value, Digits::UpTo(most as usize))] };

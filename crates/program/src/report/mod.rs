@@ -29,7 +29,7 @@ use corner_impact::uncertainty::{PlausibleMachines, SourcedUncertainty};
 use corner_impact_plot::Look;
 use corner_impact_plot::layout::WIDTH;
 
-/// A report on one model; serializes to the document `corner-impact/report/1`.
+/// Report on one model; serializes to the document `corner-impact/report/1`.
 #[derive(Clone, Debug)]
 pub struct Report {
     /// Whether no check disagrees.
@@ -38,15 +38,15 @@ pub struct Report {
     pub is_paper: bool,
     /// Description of the model.
     pub model: ModelSheet,
-    /// The corner impact and its map by every route, or the reason why there is none.
+    /// Corner impact and its map by every route, or the reason why there is none.
     pub verification: Result<Verification, String>,
     /// The paper's statements, if the model is the paper's.
     pub claims: Option<Claims>,
     /// Speed at which the follower first leaves the cam, from the contact force.
     pub separation: Separation,
-    /// Uncertainty of the machine in the separation speed, rpm; none if the machine is exact.
+    /// Uncertainty of the machine in the separation speed, rpm; `None` if the machine is exact.
     pub separation_error: Option<SourcedUncertainty>,
-    /// Places that compete for the first separation; none where its angle is known.
+    /// Places that compete for the first separation; empty if its angle is certain.
     pub separation_places: Vec<SeparationPlace>,
     /// Accuracy of the cam, if it is measured.
     pub measured: Option<Measured>,
@@ -68,7 +68,7 @@ pub struct Report {
     pub loads: Option<RenderedFigure>,
     /// Figure of the overview with every attractor and its share of the starts.
     pub attractors: Option<RenderedFigure>,
-    /// The figures, in the paper's order.
+    /// Figures, in the paper's order.
     pub plates: Vec<RenderedFigure>,
     /// Commands that reproduce the report, each with its purpose.
     pub commands: Vec<(String, &'static str)>,
@@ -81,7 +81,7 @@ pub struct Margin {
     pub separation_rpm: f64,
     /// Speed of this margin, rpm.
     pub speed_rpm: f64,
-    /// Least force round the cam at that speed, and on the resting cam, in `force_unit`.
+    /// Least force over a turn of the cam at that speed, and on the resting cam, in `force_unit`.
     pub least_force: [f64; 2],
     /// Cam angle of the least force at that speed, deg.
     pub cam_angle_deg: f64,
@@ -150,7 +150,7 @@ corner_impact::document!(Headline<'_> as it {
     claims_otherwise: it.0.claims_otherwise(),
 });
 
-/// The matrices of one side by every route.
+/// Matrices of one side by every route.
 struct MapTable<'a> {
     found: &'a Verification,
     side: Side,
@@ -181,17 +181,17 @@ pub struct ModelSheet {
 /// Reason why there is no report.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ReportError {
-    /// The model is impossible.
+    /// Impossible model.
     #[error(transparent)]
     Model(#[from] ModelError),
-    /// The ledger cannot be checked against the model.
+    /// Ledger that cannot be checked against the model.
     #[error(transparent)]
     Ledger(#[from] LedgerError),
 }
 
 /// Number of speeds for the section on speeds, and of starts at each speed.
 const SPEEDS: (u32, usize) = (30, 12);
-/// Number of speeds and of starts for the paper's machine, whose chaos is quick to run.
+/// Number of speeds and of starts for the paper's machine, whose chaos is quick to simulate.
 const PAPERS_SPEEDS: (u32, usize) = (100, 32);
 /// Number of speeds at which loads are computed.
 const LOADED: u32 = 21;
@@ -204,7 +204,7 @@ const LOADS: f64 = 0.58;
 impl Report {
     /// Computes the report on a model, at speeds of this range, rpm, or of the model's own.
     ///
-    /// A model without a corner impact to verify has a report that says so.
+    /// The report of a model without a corner impact states this.
     pub fn of(
         model: &Model,
         external: External,
@@ -280,7 +280,7 @@ impl Report {
         self.verification.as_ref().map(Verification::tally).unwrap_or_default()
     }
 
-    /// Routes that should have run and did not.
+    /// Routes that should have run and failed.
     pub(crate) fn failed(&self) -> Vec<String> {
         let skipped = self.verification.iter().flat_map(|found| &found.skipped);
         skipped.filter(|skipped| skipped.failed).map(|skipped| words::spoken(&skipped.route)).collect()
@@ -330,7 +330,7 @@ fn attractors(model: &Model, cam: &Cam, found: &SpeedSurvey) -> RenderedFigure {
     RenderedFigure { id: "attractors", place: "", title, command, drawn: Ok(Captioned { figure, caption }) }
 }
 
-/// A part of the work, which reports its progress as a share of the whole.
+/// Part of the work, which reports its progress as a share of the whole.
 struct Part<'a> {
     watch: &'a dyn Watch,
     from: f64,

@@ -1,11 +1,11 @@
-//! The numbers of a model file, each with its symbol, meaning and unit.
+//! Numbers of a model file, each with its symbol, meaning and unit.
 
 use serde::Serialize;
 
 use corner_impact::flight::Flight;
 use corner_impact::model::{CORNER_ROUNDING, LEVER_RATIO, MODEL_NUMBERS, Model, ModelNumber};
 
-/// A number of a model.
+/// Number of a model.
 #[derive(Clone, Debug, Serialize)]
 pub struct ReportQuantity {
     /// Path in the model file; empty for a derived number.
@@ -16,7 +16,7 @@ pub struct ReportQuantity {
     pub meaning: String,
     /// Value of the number.
     pub value: f64,
-    /// Standard deviation of the value; none for an exact number.
+    /// Standard deviation of the value; `None` for an exact number.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error: Option<f64>,
     /// Unit; empty for a pure number.
@@ -38,7 +38,7 @@ impl ReportQuantity {
 pub(crate) fn quantities(model: &Model) -> Vec<ReportQuantity> {
     let is_said = |number: &(&str, f64)| ![(CORNER_ROUNDING, 0.0), (LEVER_RATIO, 1.0)].contains(number);
     let mut numbers: Vec<(&str, f64)> = model.numbers().filter(is_said).collect();
-    // Numbers in the order of the table, then those of lists in the order of the file.
+    // Numbers in the order of the table, then numbers of lists in the order of the file.
     let place = |field: &str| MODEL_NUMBERS.iter().position(|number| number.path == field);
     numbers.sort_by_key(|(field, _)| place(field).unwrap_or(MODEL_NUMBERS.len()));
     numbers.extend(

@@ -1,58 +1,58 @@
-//! A page as a tree of blocks: written once, shown on a terminal, in a browser and as Markdown.
+//! Pages as trees of blocks: written once, shown on a terminal, in a browser and as Markdown.
 //!
-//! The code that lays out a page gives the meaning of a word, never its appearance. Where a terminal has room for a summary only, the page
-//! for a browser says more: [`Block::Brief`] is for the terminal, [`Block::Full`] for the browser.
+//! The code that lays out a page states the meaning of a word, never its appearance. If a terminal has room only for a summary, the page
+//! for a browser has more: [`Block::Brief`] is for the terminal, [`Block::Full`] for the browser.
 
 use maud::Markup;
 
 use crate::show::digits::Digits;
 use corner_impact::model::Units;
 
-/// Meaning of a stretch of text.
+/// Meaning of a piece of text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TextMark {
     Heading,
     /// Important words of a sentence; a terminal leaves them plain.
     Strong,
-    /// A good result: agrees, holds.
+    /// Good result: agrees, correct.
     Good,
-    /// A bad result: disagrees, refuted, did not run.
+    /// Bad result: disagrees, refuted, did not run.
     Bad,
-    /// An error on which no other statement depends.
+    /// Error on which no other statement depends.
     Doubtful,
-    /// An undecided result.
+    /// Undecided result.
     Open,
 }
 
-/// A part of a sentence.
+/// Part of a sentence.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Span {
     Text(String),
     /// Text by the author of a model; an underscore in it does not mean an index.
     Quoted(String),
-    /// A number with its displayed digits.
+    /// Number with its displayed digits.
     Number(f64, Digits),
     /// Real and imaginary part; shown as a real number if the imaginary part is 0.
     Complex([f64; 2], Digits),
-    /// A number with its expected value: a browser underlines the digits that differ.
+    /// Number with its expected value: a browser underlines the digits that differ.
     Against(f64, f64, Digits),
-    /// A formula, as a terminal shows it: `A_hat_minus`.
+    /// Formula, in the spelling of a terminal: `A_hat_minus`.
     Formula(String),
-    /// A matrix by rows, or a column.
+    /// Matrix by rows, or a column.
     Matrix(Vec<Vec<f64>>, Digits),
     /// Typed text: a command, a field of a file.
     Code(String),
-    /// A unit, written in metres: `m/s`. The page shows it in the model's unit of length.
+    /// Unit, written in metres: `m/s`. The page shows it in the model's unit of length.
     Unit(&'static str),
     /// Emphasized words.
     Marked(TextMark, String),
-    /// Words for an entry that `explain` has under this name.
+    /// Words for an entry of `explain` with this name.
     About(String, Words),
-    /// A line break.
+    /// Line break.
     Break,
 }
 
-/// A sentence, a cell or a heading.
+/// Sentence, cell or heading.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Words(pub Vec<Span>);
 
@@ -72,7 +72,7 @@ impl Words {
         self.0.extend(more.into().0);
     }
 
-    /// Builds a sentence. Each `{}` takes the next of the parts, and typed text is between two backticks.
+    /// Builds a sentence. Each `{}` is replaced by the next of the parts, and typed text is between two backticks.
     pub(crate) fn prose(sentence: &'static str, parts: impl IntoIterator<Item = Self>) -> Self {
         let (mut prose, mut parts) = (Self::default(), parts.into_iter());
         for (place, text) in sentence.split('`').enumerate() {
@@ -146,7 +146,7 @@ impl From<Span> for Words {
     }
 }
 
-/// Words for an entry that `explain` has under a name.
+/// Words for an entry of `explain` with a name.
 pub(crate) fn about(what: impl Into<String>, words: impl Into<Words>) -> Words {
     Span::About(what.into(), words.into()).into()
 }
@@ -163,47 +163,47 @@ impl Words {
     }
 }
 
-/// One element of a page.
+/// Element of a page.
 #[derive(Clone, Debug)]
 pub enum Block {
-    /// The title of a page.
+    /// Title of a page.
     Title(Words),
-    /// The heading of a section or of a subsection.
+    /// Heading of a section or of a subsection.
     Heading(Words),
-    /// A literal line with its spaces; if it is too long for a terminal, it continues under its second column.
+    /// Literal line with its spaces; if it is too long for a terminal, it continues under its second column.
     Line(Words),
-    /// A command line; where it is too long for a terminal, it goes on after a backslash.
+    /// Command line; if it is too long for a terminal, it continues after a backslash.
     Command(String),
-    /// A paragraph with an indent, in columns of a terminal.
+    /// Paragraph with an indent, in columns of a terminal.
     Paragraph(usize, Words),
-    /// A remark on the block before it.
+    /// Remark on the block before it.
     Note(Words),
     /// Names with descriptions; the number is the width of the column of names.
     Entries(usize, Vec<(Words, Words)>),
     Table(Table),
-    /// A list of items.
+    /// List of items.
     List(Vec<Words>),
-    /// A block that a browser folds under its summary and a terminal leaves out.
+    /// Block that a browser folds under its summary and a terminal omits.
     Details(Words, Vec<Block>),
     /// Blocks for a terminal only, shorter than those for a browser.
     Brief(Vec<Block>),
     /// Blocks for a browser only, longer than those for a terminal.
     Full(Vec<Block>),
-    /// Blocks for an entry that `explain` has under this name, except for parts that name another entry.
+    /// Blocks for an entry of `explain` with this name, except for parts that name another entry.
     About(String, Vec<Block>),
-    /// An empty line on a terminal.
+    /// Empty line on a terminal.
     Gap,
     /// Content for a browser only: a drawing, a form.
     Markup(Markup),
 }
 
 impl Block {
-    /// A paragraph with the usual indent.
+    /// Builds a paragraph with the usual indent.
     pub(crate) fn paragraph(words: impl Into<Words>) -> Self {
         Self::Paragraph(2, words.into())
     }
 
-    /// Marks this block as one for an entry that `explain` has under a name.
+    /// Marks this block as belonging to an entry of `explain`.
     pub(crate) fn about(self, what: &str) -> Self {
         Self::About(what.into(), vec![self])
     }
@@ -237,7 +237,7 @@ pub(crate) fn in_units(blocks: Vec<Block>, units: &Units) -> Vec<Block> {
     blocks.into_iter().map(of_block).collect()
 }
 
-/// A section of a page that can be linked to.
+/// Section of a page that can be linked to.
 #[derive(Clone, Debug)]
 pub struct PageSection {
     /// URL fragment of the section.
@@ -247,7 +247,7 @@ pub struct PageSection {
     pub blocks: Vec<Block>,
 }
 
-/// A column of a table.
+/// Column of a table.
 #[derive(Clone, Debug)]
 pub struct Column {
     pub head: Words,
@@ -257,41 +257,41 @@ pub struct Column {
     pub least: usize,
     /// Whether the cells are left-aligned; otherwise right-aligned.
     pub left: bool,
-    /// Rank among the columns that are left out of a narrow page: the highest first, 0 for never.
+    /// Rank of the columns that a narrow page omits: the highest first, 0 for never.
     pub missable: u8,
 }
 
 impl Column {
-    /// A left-aligned column.
+    /// Builds a left-aligned column.
     pub(crate) fn left(head: impl Into<Words>, gap: usize, least: usize) -> Self {
         Self { head: head.into(), gap, least, left: true, missable: 0 }
     }
 
-    /// A column of words in the usual style.
+    /// Builds a column of words in the usual style.
     pub(crate) fn words(head: impl Into<Words>) -> Self {
         Self::left(head, 2, 0)
     }
 
-    /// A column of numbers in the usual style.
+    /// Builds a column of numbers in the usual style.
     pub(crate) fn number(head: impl Into<Words>) -> Self {
         Self::right(head, 0)
     }
 
-    /// A right-aligned column.
+    /// Builds a right-aligned column.
     pub(crate) fn right(head: impl Into<Words>, least: usize) -> Self {
         Self { head: head.into(), gap: 0, least, left: false, missable: 0 }
     }
 
-    /// Marks the column as one that a narrow page leaves out. Columns of a higher rank go first.
+    /// Marks the column as one that a narrow page omits. Columns of a higher rank are omitted first.
     pub(crate) fn missable(self, rank: u8) -> Self {
         Self { missable: rank, ..self }
     }
 }
 
-/// A row of a table.
+/// Row of a table.
 #[derive(Clone, Debug)]
 pub struct PageRow {
-    /// One cell for each column; the first is the head of the row.
+    /// Cells, one for each column; the first is the head of the row.
     pub cells: Vec<Words>,
     /// Whether the row states a bad result.
     pub is_bad: bool,
@@ -303,8 +303,8 @@ pub struct Table {
     pub label: String,
     pub columns: Vec<Column>,
     pub rows: Vec<PageRow>,
-    /// Number of last columns that are repeated, besides the first one, if a table that is too wide is split into several.
-    /// `None` if it is written row by row instead.
+    /// Number of last columns that are repeated, besides the first one, if a table that is too wide is split into several. `None` if it is
+    /// written row by row instead.
     pub repeated: Option<usize>,
 }
 

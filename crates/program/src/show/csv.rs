@@ -1,5 +1,5 @@
-//! Tables as lines of CSV. Numbers have the fewest digits that read back as the same double, without a point if they are
-//! whole and never with a power of ten. The csv crate is not used, because it writes `1.0` and `1e-7`.
+//! Tables as lines of CSV. Numbers have the fewest digits that read back as the same double, without a point if they are whole and never
+//! with a power of ten. The csv crate is not used, because it writes `1.0` and `1e-7`.
 
 use std::fmt::{Display, Write};
 
@@ -115,7 +115,7 @@ impl RecordBlock for Lines {
     }
 }
 
-/// The value, or an empty cell.
+/// Writes the value, or an empty cell.
 fn cell(value: Option<impl Display>) -> String {
     value.map_or(String::new(), |value| value.to_string())
 }
@@ -162,7 +162,7 @@ pub(crate) fn basins_over(found: &BasinsOver) -> String {
     lines
 }
 
-/// Columns of a run's motion. No cell is empty, so numerical programs can read all columns but the class.
+/// Columns of a run's motion. No cell is empty, so that numerical programs can read all columns except the class.
 const POINT: &str =
     "class,revolutions,impacts,growth_rate,growth_error,impact_speed_m_s,impacts_per_revolution,followed\n";
 
@@ -213,10 +213,10 @@ pub(crate) fn loads(over: &str, sweep: &[Vec<Loads>], units: &Units) -> String {
     lines
 }
 
-/// Columns of where an attractor begins and ends, with the parts of the uncertainty, for a machine that is not exact.
+/// Columns for the beginning and end of an attractor, with the parts of the uncertainty, for a machine that is not exact.
 const ENDS: &str = ",from,from_error,from_error_cam,from_error_numbers,to,to_error,to_error_cam,to_error_numbers";
 
-/// Cells of [`ENDS`]; empty where an attractor does not end within the range, and where an uncertainty is unknown.
+/// Cells of [`ENDS`]; empty if an attractor does not end within the range, and for an unknown uncertainty.
 fn ends(attractor: &AttractorRow) -> String {
     let of_end = |end: &Option<Transition>| {
         let error = end.as_ref().and_then(|end| end.error);
@@ -253,8 +253,8 @@ pub(crate) fn speeds(found: &SpeedSurvey) -> String {
     lines
 }
 
-/// Table of every orbit of every branch, with its first impact and the state just after that. An orbit without impacts has
-/// the state at angle 0.
+/// Table of every orbit of every branch, with its first impact and the state just after it. An orbit without impacts has the state at angle
+/// 0.
 pub(crate) fn branches(parameter: &str, branches: &[Branch], units: &Units) -> String {
     let mut lines = units.columns(
         "rpm,parameter,value,revolutions,impacts,cam_angle_rad,position_m,velocity_m_s,multiplier_1_re,multiplier_1_im,\
@@ -307,12 +307,12 @@ pub(crate) fn curves(parameter: &str, curves: &[EventCurve], units: &Units) -> S
     lines
 }
 
-/// Digits across and up from which a figure is drawn again, however narrow its range.
+/// Numbers of digits across and up that suffice to draw a figure again, however narrow its range.
 const FIGURE_DIGITS: [usize; 2] = [12, 9];
 
 /// Table of a figure's data: a row for each point of its lines and marks, and for each cell of its clouds with the number of points in it.
-/// A region has a row for each rectangle, with the number of cells, and a band one for each place. Cells have one digit less, as two
-/// thousand lie side by side.
+/// A region has a row for each rectangle, with the number of cells, and a band one for each x. Cells have one digit less, because there are
+/// two thousand side by side.
 pub(crate) fn figure(figure: &Figure) -> String {
     let mut rows = String::from("panel,series,kind,x,y,count,width,height,panel_number,series_number\n");
     let word = |text: &str| format!("\"{}\"", text.replace('"', "\"\""));
@@ -355,7 +355,7 @@ pub(crate) fn figure(figure: &Figure) -> String {
     rows
 }
 
-/// A value with its digits; empty at a break of a line.
+/// Value with its digits; empty at a break of a line.
 fn shown(value: f64, digits: usize) -> String {
     if value.is_nan() { String::new() } else { Digits::Significant(digits).typed(value) }
 }

@@ -1,4 +1,4 @@
-//! Numbers as digits: the number of digits is chosen once, and every page writes it alike.
+//! Numbers as digits: the number of digits is chosen once for all pages.
 
 use maud::{Markup, html};
 
@@ -20,14 +20,14 @@ pub enum Digits {
     Power(usize),
     /// Two digits, for a difference or a bound, where only the size matters.
     Size,
-    /// Nine digits, or six and a power of ten where zeros would replace digits.
+    /// Nine digits, or six and a power of ten if zeros would replace digits.
     Short,
     /// All digits that are needed to read back the same number.
     All,
 }
 
 impl Digits {
-    /// Significant digits of a value, with a power of ten where zeros would replace them.
+    /// Significant digits of a value, with a power of ten if zeros would replace them.
     pub(crate) fn of(value: f64, digits: usize) -> Self {
         let least = elementary::powf(10.0_f64, 1.0 - digits as f64);
         let is_small = value.abs() < least && value.abs() >= tolerance::DISPLAYED_ZERO.value;
@@ -38,7 +38,7 @@ impl Digits {
     pub(crate) fn text(self, value: f64) -> String {
         match self {
             _ if !value.is_finite() => format!("{value}"),
-            // The rounding error of a zero, or its sign, has no meaning.
+            // The sign of a zero, or its rounding error, has no meaning.
             Self::Short if value.abs() < tolerance::DISPLAYED_ZERO.value => "0".into(),
             Self::Short if is_plain(value) => Self::Significant(9).text(value),
             Self::Short => Self::Power(6).text(value),
@@ -83,7 +83,7 @@ pub(crate) fn with_error(error: f64) -> (Digits, f64) {
     (Digits::Fixed(place.clamp(0.0, 12.0) as usize), rounded_up(error, place))
 }
 
-/// Text of a part of an error, rounded up to the place of the whole error as the whole is; `None` for less than half of that place.
+/// Text of a part of an error, rounded up to the place of the whole error, like the whole; `None` for less than half of that place.
 pub(crate) fn part_of_error(part: f64, whole: f64) -> Option<String> {
     let (digits, _) = with_error(whole);
     let place = 1.0 - elementary::log10(whole).floor();
@@ -91,7 +91,7 @@ pub(crate) fn part_of_error(part: f64, whole: f64) -> Option<String> {
     (is_seen || !part.is_finite()).then(|| digits.text(rounded_up(part, place)))
 }
 
-/// A number rounded up to this many decimals; fewer than none are whole tens.
+/// Rounds a number up to this many decimals; a negative number of decimals rounds to tens and so on.
 fn rounded_up(number: f64, place: f64) -> f64 {
     let unit = elementary::powf(10.0_f64, place);
     (number * unit).ceil() / unit
@@ -103,7 +103,7 @@ pub(crate) fn at_most(bound: f64) -> String {
     format!("< {}", digits.text(bound))
 }
 
-/// Decimals of a number, zero or more, rounded down, as a lower bound must be.
+/// Decimals of a number, zero or more, rounded down for a lower bound.
 pub fn at_least(number: f64, places: usize) -> String {
     // This many places print a double exactly, so cutting them rounds down.
     let exact = format!("{number:.1074}");

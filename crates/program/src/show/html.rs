@@ -6,15 +6,15 @@ use maud::{Markup, html};
 use crate::show::block::{Block, Column, Span, Table, TextMark, Words};
 use crate::show::digits::{Digits, typeset};
 
-/// Most rows of a table that is not folded.
+/// Largest number of rows of a table that is not folded.
 const LONG: usize = 24;
 
-/// Blocks in order. A long table is folded.
+/// Markup of blocks in order. A long table is folded.
 pub(crate) fn blocks(blocks: &[Block]) -> Markup {
     html! { @for block in blocks { (self::block(block, false)) } }
 }
 
-/// Blocks that are folded together, so that no table in them is folded again.
+/// Markup of blocks that are folded together, so that no table in them is folded again.
 fn folded(blocks: &[Block]) -> Markup {
     html! { @for block in blocks { (self::block(block, true)) } }
 }
@@ -53,7 +53,7 @@ pub(crate) fn wide(label: &str, body: &Markup) -> Markup {
 fn table(table: &Table) -> Markup {
     let number = |index: usize| table.columns.get(index).filter(|column| !column.left).map(|_| "n");
     let headed = table.columns.iter().any(|column| !column.head.is_empty());
-    // Heads for narrow pages, where the cells of a row are below each other: the style sheet takes them from the table.
+    // Heads for narrow pages, on which the cells of a row are below each other: the style sheet reads them from the table.
     let quoted = |text: &str| format!("'{}'", text.replace('\\', "\\\\").replace('\'', "\\'"));
     let heads: String = (table.columns.iter().zip(1..))
         .map(|(column, place)| (plain(&column.head), place))
@@ -85,7 +85,7 @@ fn table(table: &Table) -> Markup {
     )
 }
 
-/// The name for which all words of a cell are, and these words.
+/// Name to which all words of a cell belong, and these words.
 fn whole_cell(cell: &Words) -> (Option<&str>, &Words) {
     match cell.0.as_slice() {
         [Span::About(about, inside)] => (Some(about), inside),
@@ -93,7 +93,7 @@ fn whole_cell(cell: &Words) -> (Option<&str>, &Words) {
     }
 }
 
-/// The number that a cell is, if it is one, and the cell's text. The cell itself has the number's digits: half the elements.
+/// Number of a cell, if it is one, and the cell's text. The cell itself has the number's digits, which halves the number of elements.
 fn number_cell(cell: &Words) -> (Option<f64>, Markup) {
     match cell.0.as_slice() {
         [Span::Number(value, digits)] if value.is_finite() => (Some(*value), typeset(&digits.typed(*value))),
@@ -102,7 +102,7 @@ fn number_cell(cell: &Words) -> (Option<f64>, Markup) {
     }
 }
 
-/// Words as plain text, without content that only a browser shows.
+/// Words as plain text, without content for browsers only.
 fn plain(words: &Words) -> String {
     let part = |span: &Span| match span {
         Span::Text(text) => formula::typed(text).into_owned(),
@@ -115,7 +115,7 @@ fn plain(words: &Words) -> String {
     words.0.iter().map(part).collect::<String>().replace('\n', " ").trim().to_owned()
 }
 
-/// A sentence with its formulas set.
+/// Sentence with typeset formulas.
 pub(crate) fn sentence(text: &str) -> Markup {
     parts(formula::sentence(text))
 }
@@ -169,7 +169,7 @@ fn span(span: &Span) -> Markup {
     }
 }
 
-/// Writes a number and underlines the digits that differ from the other one.
+/// Writes a number and underlines the digits that differ from another number.
 fn compared(value: f64, other: f64, digits: Digits) -> Markup {
     let (text, other) = (digits.typed(value), digits.typed(other));
     let same: usize =

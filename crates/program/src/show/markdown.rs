@@ -64,7 +64,7 @@ fn table(out: &mut String, table: &Table) -> fmt::Result {
     table.rows.iter().try_for_each(|row| writeln!(out, "{}", line(row.cells.iter().map(text).collect())))
 }
 
-/// Words as Markdown; bars, stars and angle brackets of a text are escaped.
+/// Words as Markdown; bars, asterisks and angle brackets of a text are escaped.
 fn text(words: &Words) -> String {
     let of = |span: &Span| match span {
         Span::Code(text) => format!("`{}`", untrusted::visible(text)),

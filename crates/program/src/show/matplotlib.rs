@@ -7,7 +7,7 @@ use corner_impact_plot::layout::{Frame, LARGEST, Layout, SAMPLE, TEXT, TITLE, Te
 use corner_impact_plot::ticks::Tick;
 use corner_impact_plot::{Beside, Data, Figure, Look, Mark, Marker, Panel, Series, dashes, dot_size, stroke_width};
 
-/// The part of each script that reads the table and draws.
+/// Common part of the scripts, which reads the table and draws.
 const DRAWING: &str = include_str!("matplotlib.py");
 
 /// Writes a script that reads the table called `data` and draws the figure in this look.
@@ -50,7 +50,7 @@ pub(crate) fn matplotlib(figure: &Figure, look: &Look, data: &str) -> String {
     out
 }
 
-/// All words outside the frames but the legend's, each with its angle in degrees and the height of its letters.
+/// All words outside the frames, except the legend's, each with its angle in degrees and the height of its letters.
 fn texts(layout: &Layout) -> Vec<(&Text, u32, f64)> {
     let title = layout.title.iter().map(|text| (text, 0, TITLE));
     let names = layout.panels.iter().flat_map(|panel| &panel.name).map(|text| (text, 90, TEXT));
@@ -60,17 +60,17 @@ fn texts(layout: &Layout) -> Vec<(&Text, u32, f64)> {
     title.chain(names).chain(labels.map(|text| (text, 0, TEXT))).collect()
 }
 
-/// A string as Python writes it.
+/// Writes a string in Python.
 fn quoted(text: &str) -> String {
     serde_json::Value::from(text).to_string()
 }
 
-/// A yes or no as Python writes it.
+/// Writes a Boolean in Python.
 fn python(is: bool) -> &'static str {
     if is { "True" } else { "False" }
 }
 
-/// A number as Python reads it.
+/// Writes a number in Python.
 fn number(value: f64) -> String {
     if value.is_finite() { format!("{value:?}") } else { "float(\"nan\")".into() }
 }
@@ -89,7 +89,7 @@ fn lines(marks: &[Mark]) -> String {
     format!("[{}]", marks.iter().map(line).collect::<Vec<_>>().join(", "))
 }
 
-/// Words with the place and the side of each.
+/// Words with the position and the side of each.
 fn words(panel: &Panel) -> Vec<String> {
     let all = panel.series.iter().filter_map(|series| match &series.data {
         Data::Words(words) => Some(words),
@@ -113,7 +113,7 @@ fn words(panel: &Panel) -> Vec<String> {
     there.map(word).collect()
 }
 
-/// Name, colour, stroke and marker of a series, and the place of its entry in the legend.
+/// Name, colour, stroke and marker of a series, and the position of its entry in the legend.
 fn style(series: &Series, entry: Option<[f64; 2]>) -> String {
     let colour = series.colour.shades().1;
     let kind = match &series.data {
@@ -163,7 +163,7 @@ fn style(series: &Series, entry: Option<[f64; 2]>) -> String {
     out + "}"
 }
 
-/// Text with its formulas as matplotlib sets them.
+/// Writes text with its formulas for matplotlib.
 fn marked_up(text: &str) -> String {
     let mut out = String::new();
     for part in sentence(text) {

@@ -1,6 +1,6 @@
 //! Output of results: blocks on a terminal, in a browser and as Markdown; JSON; CSV. Nothing is computed here.
 //!
-//! An enum becomes words in `words` and a number digits in `digits`, and nowhere else.
+//! Enums become words only in `words`, and numbers become digits only in `digits`.
 
 pub(crate) mod block;
 pub(crate) mod csv;

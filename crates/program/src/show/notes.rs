@@ -6,8 +6,8 @@ use corner_impact::cam::Stray;
 use corner_impact::measured::{CamUncertainty, Remarks};
 use corner_impact::model::{Model, ModelError, TableProfile};
 
-/// Remarks on a model at the requested speeds, rpm, or at those of `[study]`: numbers in unlikely units, rows with apparent errors,
-/// and given values that contradict the rows.
+/// Remarks on a model at the requested speeds, rpm, or at those of `[study]`: numbers in unlikely units, rows with apparent errors, and
+/// given values that contradict the rows.
 pub fn notes(model: &Model, rpm: Option<[f64; 2]>) -> Result<Vec<String>, ModelError> {
     let mut notes: Vec<String> = model.doubt(rpm)?.into_iter().collect();
     let Some(profile) = model.table() else { return Ok(notes) };
@@ -48,7 +48,7 @@ pub fn notes(model: &Model, rpm: Option<[f64; 2]>) -> Result<Vec<String>, ModelE
 
 /// Rows that lie far from the trend of their neighbours; only the first are named.
 fn slips(profile: &TableProfile, strays: &[Stray]) -> Vec<String> {
-    /// Most rows that are named.
+    /// Largest number of rows that are named.
     const NAMED: usize = 3;
     let reading = &profile.reading;
     let told = |Stray { line, cam_angle_deg, lift_m, off_m }: &Stray| {
@@ -69,7 +69,7 @@ fn slips(profile: &TableProfile, strays: &[Stray]) -> Vec<String> {
     slips
 }
 
-/// Uncertainty of the machine, for an answer without a ± of its own; `None` if the rows have no noise and the numbers no errors.
+/// Uncertainty of the machine, for a result without its own ±; `None` if the rows have no noise and the numbers no errors.
 pub fn as_drawn(model: &Model) -> Result<Option<String>, ModelError> {
     let numbers: Vec<String> = model.errors.uncertain().map(|(name, _)| spoken(name)).collect();
     let exact = (!numbers.is_empty()).then(|| {

@@ -1,8 +1,8 @@
 //! Blocks on a terminal: wrapped text, and marks on important words.
 //!
-//! Only `Page::coloured` shows marks; `Page::plain` leaves them out, and a mark adds nothing that the words do
-//! not say. The crate textwrap breaks the lines. Tables are laid out here, not by comfy-table: it wraps
-//! cells where there is no room, but breaks numbers too, and cannot write a table row by row.
+//! Only `Page::coloured` shows marks; `Page::plain` omits them, and a mark only repeats what the words say. The crate textwrap breaks the
+//! lines. Tables are laid out here, not by comfy-table: it wraps cells that are too wide, but breaks numbers too, and cannot write a table
+//! row by row.
 
 use std::fmt::{self, Write};
 
@@ -22,7 +22,7 @@ const RESET: &str = "\x1b[0m";
 impl TextMark {
     const ALL: [Self; 6] = [Self::Heading, Self::Strong, Self::Good, Self::Bad, Self::Doubtful, Self::Open];
 
-    /// Escape codes that begin the mark: bold, and the terminal's own sixteen colours, which suit any background.
+    /// Escape codes that begin the mark: bold, and the terminal's sixteen colours, which suit any background.
     fn codes(self) -> &'static str {
         match self {
             Self::Heading => "\x1b[1m",
@@ -40,7 +40,7 @@ impl TextMark {
     }
 }
 
-/// Text with marks in lines of a limited width.
+/// Text with marks, in lines of limited width.
 #[derive(Clone, Debug)]
 pub struct Page {
     width: usize,
@@ -66,7 +66,7 @@ impl Write for Page {
     }
 }
 
-/// A type that has a page: laid out once as blocks, shown anywhere.
+/// Type with a page: laid out once as blocks, shown on any medium.
 pub trait Paged {
     /// Contents of the page.
     fn blocks(&self) -> Vec<Block>;
@@ -83,7 +83,7 @@ pub trait Paged {
 }
 
 impl Page {
-    /// Lays out `blocks` as a page; where it is too narrow for a table, columns that can be missed are left out unless it `has_all`.
+    /// Lays out `blocks` as a page. If it is too narrow for a table, dispensable columns are omitted, unless it `has_all`.
     pub(crate) fn of(width: usize, has_all: bool, blocks: &[Block]) -> Result<Self, fmt::Error> {
         let mut page = Self { width, has_all, text: String::new(), line: 0 };
         page.blocks(blocks)?;
@@ -186,7 +186,7 @@ pub(crate) fn text(words: &Words) -> String {
 /// Widest line of text: longer ones are hard to read. Tables may be wider.
 const WIDEST_TEXT: usize = 80;
 
-/// Options for wrapping: lines break only at spaces, as late as possible; a word that is too long stays whole.
+/// Options for wrapping: lines break only at spaces, as late as possible; a word that is too long is not broken.
 pub(crate) fn options<'a>(width: usize) -> Options<'a> {
     Options::new(width.min(WIDEST_TEXT))
         .break_words(false)
@@ -221,7 +221,7 @@ type Layout = Vec<(usize, usize)>;
 /// Least width in which the last column's words are wrapped.
 const NARROWEST: usize = 18;
 
-/// A table, or some of its columns, as text.
+/// Table, or some of its columns, as text.
 #[derive(Clone)]
 struct Cells<'a> {
     columns: Vec<&'a Column>,
@@ -238,7 +238,7 @@ impl<'a> Cells<'a> {
         }
     }
 
-    /// Some of the columns.
+    /// Selects some of the columns.
     fn only(&self, is_kept: impl Fn(usize) -> bool) -> Self {
         fn some<T: Clone>(all: &[T], is_kept: impl Fn(usize) -> bool) -> Vec<T> {
             all.iter().enumerate().filter(|(column, _)| is_kept(*column)).map(|(_, it)| it.clone()).collect()
@@ -259,21 +259,21 @@ impl<'a> Cells<'a> {
         (0..self.columns.len()).map(widest).collect()
     }
 
-    /// The layout with the gaps and widths that the columns ask for.
+    /// Layout with the gaps and widths that the columns request.
     fn wide(&self) -> Layout {
         let columns = self.columns.iter().zip(self.natural(&self.heads));
         columns.map(|(column, widest)| (column.gap, widest.max(column.least))).collect()
     }
 
-    /// The layout with the least gaps, with these heads.
+    /// Layout with the smallest gaps, with these heads.
     fn close(&self, heads: &[String]) -> Layout {
         self.natural(heads).into_iter().map(|widest| (2, widest)).collect()
     }
 
-    /// Heads and layout for a page of `width` columns; none if it is too narrow.
+    /// Heads and layout for a page of `width` columns; `None` if it is too narrow.
     fn layout(&self, width: usize) -> Option<(Vec<String>, Layout)> {
         let last = self.columns.len() - 1;
-        // Heads in as many lines as their cells are narrow.
+        // Heads are broken into lines as narrow as their cells.
         let longest = |head: &str| head.split_whitespace().map(display_width).max().unwrap_or(0);
         let of_cells = self.natural(&vec![String::new(); last + 1]);
         let heads = self.heads.iter().zip(of_cells);
@@ -281,7 +281,7 @@ impl<'a> Cells<'a> {
         let choices =
             [(&self.heads, self.wide()), (&self.heads, self.close(&self.heads)), (&broken, self.close(&broken))];
         let fits = |(_, layout): &&(&Vec<String>, Layout), folded: bool| {
-            // Words may be wrapped, numbers not.
+            // Words may be wrapped, numbers may not.
             let (gap, widest) = layout[last];
             let room = if folded && self.columns[last].left { widest.min(NARROWEST) } else { widest };
             layout[..last].iter().map(|(gap, width)| gap + width).sum::<usize>() + gap + room <= width
@@ -291,7 +291,7 @@ impl<'a> Cells<'a> {
         found.map(|(heads, layout)| ((*heads).clone(), layout.clone()))
     }
 
-    /// The column that can best be missed, if any can.
+    /// Most dispensable column, if any.
     fn least_needed(&self) -> Option<usize> {
         let ranked = self.columns.iter().enumerate().filter(|(_, column)| column.missable > 0);
         ranked.max_by_key(|(_, column)| column.missable).map(|(index, _)| index)
@@ -299,8 +299,8 @@ impl<'a> Cells<'a> {
 }
 
 impl Page {
-    /// Writes a table with its gaps, or without them, or with heads of several lines. Where even that is too wide, columns that can be missed are
-    /// left out, and named below; without any, it is several tables, or row by row.
+    /// Writes a table with its gaps, or without them, or with heads of several lines. If it is still too wide, dispensable columns are
+    /// omitted and named below; without any, it is split into several tables or written row by row.
     fn table(&mut self, table: &Table) -> fmt::Result {
         if table.columns.is_empty() {
             return Ok(());
@@ -327,7 +327,7 @@ impl Page {
         self.paragraph(2, &format!("Left out at this width: {}; --all has every column.", left_out.join(", ")))
     }
 
-    /// Writes several tables with the first and the `kept` last columns in each, as few as possible, with the others evenly divided.
+    /// Writes several tables with the first and the `kept` last columns in each, as few as possible, with the others evenly distributed.
     fn tables(&mut self, cells: &Cells<'_>, kept: usize) -> fmt::Result {
         let count = cells.columns.len();
         let between = 1..count.saturating_sub(kept).max(1);
@@ -346,7 +346,7 @@ impl Page {
                 writeln!(self)?;
             }
             let part = cells.only(|column| column == 0 || column >= between.end || some.contains(&column));
-            // All parts are as wide as the whole has them.
+            // All parts have the widths of the whole table.
             let layout = wide.iter().enumerate();
             let layout = layout.filter(|(column, _)| *column == 0 || *column >= between.end || some.contains(column));
             self.side_by_side(&part, &part.heads, &layout.map(|(_, layout)| *layout).collect())?;
@@ -382,14 +382,14 @@ impl Page {
                     line.push_str(&" ".repeat(behind));
                 }
             }
-            // Spaces at the end of a line are left out.
+            // Spaces at the end of a line are omitted.
             writeln!(self, "{}", line.trim_end_matches(' '))?;
         }
         Ok(())
     }
 
     fn stacked(&mut self, cells: &Cells<'_>) -> fmt::Result {
-        // A head of several lines is one here.
+        // A head of several lines is written in one line here.
         let heads: Vec<String> = cells.heads.iter().map(|head| head.trim().replace('\n', " ")).collect();
         let longest = heads.iter().map(|head| display_width(head)).max().unwrap_or(0);
         for (number, row) in cells.rows.iter().enumerate() {

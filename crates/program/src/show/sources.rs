@@ -1,4 +1,4 @@
-//! Where the ± of a page comes from: the measured cam, and the errors of the follower's numbers.
+//! Sources of the ± on a page: the measured cam, and the errors of the follower's numbers.
 
 use corner_impact::measured::Measured;
 use corner_impact::model::FollowerErrors;
@@ -22,7 +22,7 @@ impl<'a> Sources<'a> {
         Self { cam: Measured::noisy(measured), errors }
     }
 
-    /// The sources, if there are any.
+    /// Returns the sources, if any.
     pub(crate) fn if_any(self) -> Option<Self> {
         (self.cam.is_some() || !self.errors.are_none()).then_some(self)
     }
@@ -41,8 +41,8 @@ impl<'a> Sources<'a> {
         if self.errors.are_none() { "cams" } else { "machines" }
     }
 
-    /// Parts of an uncertainty: `13 from the cam (lift rounded to 0.001 mm), 45 from the numbers (stiffness 40, mass 20)`. For a cam alone only its
-    /// accuracy.
+    /// Parts of an uncertainty: `13 from the cam (lift rounded to 0.001 mm), 45 from the numbers (stiffness 40, mass 20)`. For a cam alone
+    /// it gives only the cam's accuracy.
     pub(crate) fn parts(self, error: &SourcedUncertainty) -> String {
         let seen = |part: f64| part_of_error(part, error.total());
         let shown = |part: f64| seen(part).unwrap_or_else(|| "0".to_owned());
@@ -66,7 +66,7 @@ impl<'a> Sources<'a> {
         }
     }
 
-    /// Why something is uncertain, where the uncertainty itself is unknown.
+    /// Reason for an uncertainty whose size is unknown.
     pub(crate) fn why(self) -> String {
         let numbers = self.numbers();
         match (self.cam, self.errors.are_none()) {
@@ -78,7 +78,7 @@ impl<'a> Sources<'a> {
 
     /// Returns a note on the sources that ± includes, and on those that are taken as exact.
     pub(crate) fn note(self) -> String {
-        /// Numbers of a follower: the spring has a preload or a rest position.
+        /// Number of the follower's quantities: the spring has either a preload or a rest position.
         const NUMBERS: usize = FollowerErrors::COUNT - 1;
         let others = match (self.cam, self.errors.uncertain().count()) {
             (Some(_), NUMBERS) => "",
@@ -96,15 +96,15 @@ impl<'a> Sources<'a> {
         }
     }
 
-    /// The uncertain numbers of the follower.
+    /// Uncertain numbers of the follower.
     fn numbers(self) -> String {
         listed(&self.errors.uncertain().map(|(name, _)| spoken(name)).collect::<Vec<_>>())
     }
 
-    /// A speed with its uncertainty and where that comes from.
+    /// Speed with its uncertainty and the sources of it.
     pub(crate) fn speed(self, rpm: f64, digits: Digits, error: Option<SourcedUncertainty>) -> Words {
         match error.filter(|error| error.total().is_finite() && error.total() >= rpm) {
-            // A ± that reaches 0 is no longer the same on both sides.
+            // A ± that reaches 0 is no longer symmetric.
             Some(error) => {
                 let (from, bound) = (format!(" rpm{}", self.from(&error)), at_most(rpm + error.total()));
                 words![(rpm, with_error(error.total()).0), ", ", bound, from]
@@ -113,12 +113,12 @@ impl<'a> Sources<'a> {
         }
     }
 
-    /// The parts of an uncertainty, to stand behind it.
+    /// Parts of an uncertainty, written after it.
     fn from(self, error: &SourcedUncertainty) -> String {
         format!("{}{}", if self.cam.is_some() { ": " } else { ", " }, self.parts(error))
     }
 
-    /// A value in a unit, with a space before it, with its uncertainty and where that comes from.
+    /// Value in a unit, with a space before it, with its uncertainty and the sources of it.
     pub(crate) fn value(self, (value, digits): (f64, Digits), unit: &str, error: Option<SourcedUncertainty>) -> Words {
         match (error.filter(|error| error.total().is_finite()), self.if_any()) {
             (Some(error), Some(sources)) => {

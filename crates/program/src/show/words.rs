@@ -1,6 +1,6 @@
-//! Enums as words: the one name of each value on a page.
+//! Words for enums: one name of each value on all pages.
 //!
-//! In JSON and in tables, a value has the name that it serializes as.
+//! A value has the name of its serialization in JSON and in tables.
 
 use std::borrow::Borrow;
 
@@ -116,7 +116,7 @@ pub(crate) fn shared(decimals: Option<u32>) -> String {
     }
 }
 
-/// A name with spaces for its hyphens and underscores. A formula, which has spaces already, stays as it is.
+/// Returns a name with spaces for its hyphens and underscores. A formula, which already has spaces, is unchanged.
 pub(crate) fn spoken(name: &str) -> String {
     if name.contains(' ') { name.to_owned() } else { name.replace(['_', '-'], " ") }
 }
@@ -133,7 +133,7 @@ pub(crate) fn verdict_word(verdict: Verdict) -> &'static str {
     }
 }
 
-/// Counts of the statements with an error of their own, and of those that are wrong because of an earlier error.
+/// Counts of the statements with an independent error, and of those that are wrong because of an earlier error.
 pub(crate) fn slips((slips, consequences): (usize, usize)) -> String {
     let counted = |count: usize, word: &str| format!("{count} {word}{}", if count == 1 { "" } else { "s" });
     format!("{} and {}", counted(slips, "slip"), counted(consequences, "consequence"))
@@ -177,7 +177,7 @@ pub(crate) fn meaning(scenario: Scenario, has_stable: bool, danger: Option<&Dang
     }
 }
 
-/// A scenario with the kind of danger, if there is any.
+/// Scenario with the kind of danger, if any.
 pub(crate) fn verdict_with(scenario: &str, danger: Option<&Danger>) -> String {
     match danger.map(|danger| danger.kind) {
         Some(DangerKind::Dangerous) => format!("{scenario}, dangerous"),
@@ -223,7 +223,7 @@ fn local_attractor(attractor: &LocalAttractor) -> String {
     attractor.word().map_or_else(|| attractor.end.name().into(), ToString::to_string)
 }
 
-/// Disturbances of the attractors of a local map that return, a line for each attractor.
+/// Disturbances of the attractors of a local map that return, one line for each attractor.
 pub(crate) fn returns(danger: &Danger) -> Vec<Words> {
     let line = |attractor: &LocalAttractor| {
         let Returns { position, velocity, any } = attractor.returns?;
@@ -278,7 +278,7 @@ pub(crate) fn stability(stability: Stability) -> &'static str {
     }
 }
 
-/// Speeds below or above that of the corner impact, or that speed itself.
+/// Speeds below or above the corner-impact speed, or that speed itself.
 pub(crate) fn speeds(speeds: Option<Speeds>) -> &'static str {
     match speeds {
         Some(Speeds::Faster) => "faster than omega*",
@@ -385,7 +385,7 @@ pub(crate) fn ending(ending: &LongRun) -> String {
 pub(crate) fn followed(ending: &LongRun, revolutions: u64) -> String {
     let words = self::ending(ending);
     match ending {
-        // A chaotic run may rest on its way, even at its start.
+        // A chaotic run may rest in between, even at its start.
         LongRun::Chaotic(recorded) if recorded.rested => {
             format!("{words} (no orbit and no rest that repeats in {revolutions} revolutions)")
         }
@@ -474,7 +474,7 @@ pub(crate) fn known_to(reading: &Reading, noise: f64) -> String {
     )
 }
 
-/// How the rows of a table were read, in three lines to be checked: its text, its angles and its lifts.
+/// Interpretation of the rows of a table, in three lines for checking: its text, its angles and its lifts.
 pub(crate) fn reading(reading: &Reading) -> [String; 3] {
     let layout = reading.layout.as_ref();
     let column = |index: usize| layout.map_or_else(String::new, |layout| format!("column {}, ", layout.columns[index]));

@@ -1,4 +1,4 @@
-//! The page section on the map: the results of every route side by side, errors of estimates, and agreement of the routes.
+//! Page section on the map: the results of every route side by side, errors of estimates, and agreement of the routes.
 
 use super::uncertain;
 use crate::show::block::{Block, Column, Span, Table, TextMark, Words, about, words};
@@ -11,7 +11,7 @@ use corner_impact::corner::map::{CornerMap, Route, Uncertainty};
 use corner_impact::elementary;
 use corner_impact::study::verify::{LeftOpen, Verification};
 
-/// The map by every route, side by side, and the errors of estimates.
+/// Map by every route, side by side, and the errors of estimates.
 pub(crate) fn map(found: &Verification) -> Vec<Block> {
     let mut blocks = vec![
         Block::Heading("Its local map:  dx' = A dx + B dT".into()),
@@ -90,7 +90,7 @@ fn digits(entries: impl Iterator<Item = f64>) -> Digits {
     }
 }
 
-/// The entries' uncertainty, with the parts of the cam and of each number.
+/// Uncertainty of the entries, with the parts of the cam and of each number.
 fn left_open((open, sources): (&LeftOpen, Sources<'_>)) -> Vec<Block> {
     let Some(error) = &open.error else { return vec![Block::paragraph(sources.note())] };
     let table = |text: String, map: &CornerMap| {
@@ -122,7 +122,7 @@ fn source(name: &str) -> String {
     format!("the {}", words::spoken(name))
 }
 
-/// A route's own estimate of its error.
+/// Estimate of a route's error by the route itself.
 fn known_to(route: &Route) -> Option<[Block; 2]> {
     let size = |value| words![(value, Digits::Size)];
     let name = words::route(route.name);
@@ -152,7 +152,7 @@ fn known_to(route: &Route) -> Option<[Block; 2]> {
     Some([entries, Block::Details(title.into(), vec![Block::Table(table)])].map(|block| block.about("uncertainty")))
 }
 
-/// The error of each entry.
+/// Error of each entry.
 fn errors(error: &CornerMap) -> Table {
     const NAMES: [&str; 6] = ["A11", "A12", "A21", "A22", "B1", "B2"];
     let mut columns = vec![Column::left("side", 2, 0)];
@@ -165,14 +165,14 @@ fn errors(error: &CornerMap) -> Table {
     table
 }
 
-/// The largest entries of A and of B.
+/// Largest entries of A and of B.
 fn largest(error: &CornerMap) -> (f64, f64) {
     let both = [error.minus, error.plus];
     let a = both.iter().flat_map(|side| side.a.iter()).copied().fold(0.0, worse);
     (a, both.iter().flat_map(|side| side.b.iter()).copied().fold(0.0, worse))
 }
 
-/// For each quantity, the pair of routes nearest to its bound, and every pair that disagrees.
+/// Pair of routes nearest to its bound for each quantity, and every pair that disagrees.
 pub(crate) fn agreement(found: &Verification) -> Vec<Block> {
     let columns = [
         Column::left("quantity", 2, 19),

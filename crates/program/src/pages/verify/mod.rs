@@ -1,4 +1,4 @@
-//! The page of `verify`, section by section: the corner impact, its map by every route, and its scenario.
+//! Page of `verify`, section by section: the corner impact, its map by every route, and its scenario.
 
 mod map;
 
@@ -135,13 +135,13 @@ pub(crate) fn bifurcation(found: &Verification) -> Vec<Block> {
     vec![Block::Heading("What happens there".into()), Block::Entries(20, entries), Block::Full(full)]
 }
 
-/// The uncertainty of the corner impact and what it comes from, if anything is uncertain.
+/// Uncertainty of the corner impact and its sources, if anything is uncertain.
 fn uncertain(found: &Verification) -> Option<(&LeftOpen, Sources<'_>)> {
     let open = found.uncertainty.as_ref()?;
     Some((open, Sources::of(&open.cam, open.errors).if_any()?))
 }
 
-/// Verdict on equally likely machines; shows whether the verdict is certain.
+/// Verdict on equally likely machines, which shows whether the verdict is certain.
 fn left_open(found: &Verification, open: &LeftOpen, sources: Sources<'_>) -> Option<(Words, Words)> {
     let own = found.classification.as_ref().ok().map(|kind| kind.scenario);
     let all: usize = open.verdicts.iter().map(|told| told.cams).sum();
@@ -215,7 +215,7 @@ fn classification(kind: &Classification, danger: Option<&Danger>) -> Vec<(Words,
     entries
 }
 
-/// The fixed point of each side, and the rule that counts the fixed points.
+/// Fixed point of each side, and the rule that counts the fixed points.
 fn fixed_points(kind: &Classification) -> [Block; 2] {
     let head = words!["fixed point for dT = 1 s, in ", Span::Unit("m"), " and ", Span::Unit("m/s")];
     let columns = ["".into(), "det(I - A)".into(), head].map(Column::words);
@@ -233,8 +233,7 @@ fn none(refusal: &Refusal) -> Words {
     words!["none", Span::Break, refusal.to_string()]
 }
 
-/// The paper's printed numbers, each in a line, or digit by digit if there is room, and the errors in those that are
-/// wrong.
+/// Printed numbers of the paper, each in a line, or digit by digit if there is room; and the errors in the wrong ones.
 pub(crate) fn published(found: &Verification) -> Vec<Block> {
     if found.published.is_empty() {
         return Vec::new();

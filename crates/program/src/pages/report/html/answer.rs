@@ -1,5 +1,4 @@
-//! The answer: one picture, and a sentence each on separation, impact speed, coexisting motions, and
-//! proofs.
+//! Answer of the report: one picture, and a sentence each on separation, impact speed, coexisting motions, and proofs.
 
 use crate::figures::chaotic_set;
 use crate::pages::design::leaves;
@@ -99,7 +98,7 @@ fn coexistence(report: &Report) -> Option<Words> {
     Some(headed("Coexistence.", "attractors", sentence))
 }
 
-/// The first few of some ranges, and the number of all.
+/// First few of some ranges, and the number of all.
 fn several(ranges: Vec<Words>) -> Words {
     const SHOWN: usize = 3;
     let more = ranges.len().saturating_sub(SHOWN);

@@ -11,8 +11,8 @@ use crate::report::Report;
 use crate::show::block::{Block, PageSection};
 use crate::show::html::blocks;
 
-/// Section of the live page; `None` if nothing can be shown. Without a script the empty element is hidden. A script that makes the page live
-/// shows itself there and hides the element after it.
+/// Section of the live page; `None` if nothing can be shown. Without a script the empty element is hidden. A script that makes the page
+/// live appears there and hides the element after it.
 pub(crate) fn section(report: &Report, figures: &DrawnFigures) -> Option<PageSection> {
     let picture = still(report)?;
     let title = if picture.id == around_corner() { "Through the corner impact" } else { "Over the speed" };
@@ -23,7 +23,7 @@ pub(crate) fn section(report: &Report, figures: &DrawnFigures) -> Option<PageSec
     Some(PageSection { id: "explore", title: title.into(), blocks: vec![Block::Markup(markup)] })
 }
 
-/// Style, scripts and module of the live page, packed, which `live.js` unpacks; nothing if the program has no module.
+/// Style, scripts and module of the live page, compressed, which `live.js` decompresses; empty if the program has no module.
 pub(crate) fn parts(report: &Report) -> Result<Markup, HtmlError> {
     let Ok(module) = live::module() else { return Ok(html! {}) };
     let mount = mounting("explore-live", Transport::Element("explore-module"), &live::page_model(&report.parsed));

@@ -1,4 +1,4 @@
-//! The paper's statements with their verdicts, with a filter and a search.
+//! Statements of the paper with their verdicts, with a filter and a search.
 
 use std::collections::BTreeMap;
 
@@ -37,7 +37,7 @@ pub(crate) fn section(report: &Report) -> Result<Option<PageSection>, HtmlError>
         let found = ledger.claims.iter().position(|claim| claim.id == id);
         found.map_or("claims", |index| anchors[index].as_str())
     };
-    // What all claims have in common is said once.
+    // Parts that all claims share are shown once.
     let parts_of = |id: &str| behind_claims.get(id).map(behind).unwrap_or_default();
     let mut tests = ledger.claims.iter().map(|claim| parts_of(&claim.id)[2].clone());
     let shared = tests.next().filter(|first| !first.is_empty() && tests.all(|other| other == *first));

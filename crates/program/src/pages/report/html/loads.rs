@@ -13,7 +13,7 @@ const SHARED: f64 = 1.1;
 
 pub(crate) fn section(report: &Report, figures: &DrawnFigures) -> Option<PageSection> {
     let (found, picture) = report.design.as_ref().zip(report.loads.as_ref())?;
-    // Skip the heading: the page has its own.
+    // The heading is skipped: the page has its own.
     let table = Block::About("contact_force".into(), speeds(found).into_iter().skip(1).collect());
     let folded = Block::Details("The same in numbers".into(), vec![table]);
     let mut blocks = vec![plate(picture, report, figures), folded];

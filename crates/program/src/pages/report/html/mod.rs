@@ -1,8 +1,9 @@
 //! The report as one self-contained HTML page: no network, no font, no other file.
 //!
-//! The page begins with the answer. Then its sections follow in a referee's order of reading, where the machine has their subject. All
-//! contents come from the [`Report`]; only words, order and digits are chosen here. A computed number is in a `data` element whose value
-//! has all the digits of the document, or in a cell with these digits as `data-value`. Numbers in captions and sentences are part of the document's words.
+//! The page begins with the answer. Its sections follow in a referee's order of reading, if the machine has their subject. All contents
+//! come from the [`Report`]; only words, order and digits are chosen here. A computed number is in a `data` element whose value has all the
+//! digits of the document, or in a cell with these digits as `data-value`. Numbers in captions and sentences are part of the document's
+//! words.
 
 mod answer;
 mod explore;
@@ -47,19 +48,19 @@ const SCRIPTS: [&str; 5] = [
 /// Reason why there is no page.
 #[derive(Debug, thiserror::Error)]
 pub enum HtmlError {
-    /// A figure could not be written.
+    /// Figure that could not be written.
     #[error("figure: {0}")]
     Figure(#[from] SvgError),
-    /// A figure has no room in the look that is asked for.
+    /// Figure without room in the requested look.
     #[error(transparent)]
     Look(#[from] LookError),
-    /// A figure's data could not be compressed.
+    /// Data of a figure that could not be compressed.
     #[error("data of a figure: {0}")]
     Packed(#[from] std::io::Error),
-    /// A number's name is not in the table of links, or the table is not valid.
+    /// Name of a number that is not in the table of links, or an invalid table.
     #[error(transparent)]
     Explanation(#[from] ExplainError),
-    /// Values of a figure could not be written.
+    /// Values of a figure that could not be written.
     #[error("values of a figure: {0}")]
     Data(#[from] serde_json::Error),
 }
@@ -135,7 +136,7 @@ pub fn render(report: &Report) -> Result<String, HtmlError> {
     Ok(untrusted::visible(&page.into_string()).into_owned())
 }
 
-/// Compresses text in the form that a browser unpacks.
+/// Compresses text in a form that a browser decompresses.
 fn packed(text: &str) -> Result<String, std::io::Error> {
     let mut packer = ZlibEncoder::new(Vec::new(), Compression::best());
     packer.write_all(text.as_bytes())?;

@@ -1,4 +1,4 @@
-//! The model.
+//! Section on the model.
 
 use crate::pages::cam;
 use crate::pages::report::html::plates::{self, DrawnFigures};

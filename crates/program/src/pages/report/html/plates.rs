@@ -1,4 +1,4 @@
-//! The figures, in the paper's order, and what a page has of each.
+//! Figures, in the paper's order, and their parts on a page.
 
 use std::collections::BTreeMap;
 
@@ -55,7 +55,7 @@ impl DrawnFigures {
     }
 }
 
-/// The drawing with the number of the image in another drawing in place of the same image, which a script puts back.
+/// Replaces an image in a drawing that equals one in another drawing by its number, which a script resolves.
 fn with_images_of(drawing: &str, other: &str) -> String {
     const BEGIN: &str = " href=\"";
     let images: Vec<&str> = other.split(BEGIN).skip(1).filter_map(|rest| rest.split('"').next()).collect();
@@ -71,8 +71,7 @@ fn with_images_of(drawing: &str, other: &str) -> String {
     text
 }
 
-/// The picture in the place of the live page while nothing moves: impacts and orbits around the corner impact, else the attractors at each
-/// speed.
+/// Picture shown in place of the live page at first: impacts and orbits around the corner impact, else the attractors at each speed.
 pub(crate) fn still(report: &Report) -> Option<&RenderedFigure> {
     let corner = report.plates.iter().find(|plate| plate.id == around_corner() && plate.drawn.is_ok());
     corner.or(report.attractors.as_ref())
@@ -93,14 +92,14 @@ pub(crate) fn section(report: &Report, figures: &DrawnFigures) -> Option<PageSec
     Some(PageSection { id: "figures", title: "Figures".into(), blocks: drawn.collect() })
 }
 
-/// A note that a figure stands elsewhere.
+/// Note that a figure is shown elsewhere.
 pub(crate) fn elsewhere(plate: &RenderedFigure, report: &Report, at: &str) -> Markup {
     html! { p.note { (place(plate, report)) a href={ "#plate-" (plate.id) } { (plate.title) } (at) } }
 }
 
-/// Look of a figure on a telephone: narrow, with letters as large as the surrounding text, and without room beside it.
+/// Look of a figure on a telephone: narrow, with letters as large as the surrounding text, and without a margin.
 fn narrow(look: &Look) -> Look {
-    /// Width of a telephone's screen, points, on the scale on which a page has its width.
+    /// Width of a telephone's screen, points, on the scale of the page's width.
     const PHONE: f64 = 250.0;
     let legend = if look.legend == LegendPlace::Right { LegendPlace::Below } else { look.legend };
     Look { width: Some(PHONE), size: None, title: TitleChoice::Hidden, legend, ..look.clone() }
@@ -111,7 +110,7 @@ fn place(plate: &RenderedFigure, report: &Report) -> Markup {
     html! { @if report.is_paper && !plate.place.is_empty() { span.place { (plate.place) ". " } } }
 }
 
-/// A figure with its caption, the number of the paper's figure, and the command that draws it.
+/// Figure with its caption, the number of the paper's figure, and the command that draws it.
 pub(crate) fn plate(plate: &RenderedFigure, report: &Report, figures: &DrawnFigures) -> Block {
     let caption = match &plate.drawn {
         Ok(Captioned { caption, .. }) => html! { (caption) code.command { (plate.command) } },

@@ -1,7 +1,7 @@
 //! Values of a figure for the scripts of its page: the value under the pointer, and the figure's table.
 //!
-//! Lines have the points through which they are drawn. Numbers are whole multiples of a power of ten, each as its difference from the one
-//! before: they pack into few bytes.
+//! Lines have the points through which they are drawn. Numbers are whole multiples of a power of ten, each stored as its difference from
+//! the one before, which compresses well.
 
 use serde::Serialize;
 
@@ -31,7 +31,7 @@ struct AxisName<'a> {
 
 #[derive(Debug, Serialize)]
 struct SeriesValues<'a> {
-    /// Place among the series of its panel.
+    /// Index among the series of its panel.
     number: usize,
     name: &'a str,
     /// Kind of the row in the figure's table.
@@ -43,7 +43,7 @@ struct SeriesValues<'a> {
 #[derive(Debug, Serialize)]
 #[serde(untagged)]
 enum Values {
-    /// A column for each part of a row.
+    /// Columns for the parts of a row.
     Rows {
         x: Column,
         y: Column,
@@ -66,17 +66,17 @@ struct CellAxis {
     places: i32,
 }
 
-/// Values as whole multiples of 10 to the power `-places`; a step is the difference from the value before. A break has none.
+/// Values as whole multiples of 10 to the power `-places`; a step is the difference from the value before. A break has no number.
 #[derive(Debug, Serialize)]
 struct Column {
     places: i32,
     steps: Vec<Option<i64>>,
 }
 
-/// Digits of a number as large as its axis is long: a picture shows four.
+/// Number of digits relative to the length of the axis: a picture shows four.
 const DIGITS: i32 = 6;
 
-/// Decimal places that give a length so many digits.
+/// Decimal places that give a length this number of digits.
 fn places(length: f64, digits: i32) -> i32 {
     let is_length = length > 0.0 && length.is_finite();
     if is_length { digits - 1 - elementary::log10(length).floor() as i32 } else { digits }
@@ -97,7 +97,7 @@ impl Column {
 }
 
 impl<'a> FigureValues<'a> {
-    /// The values of a figure as it is drawn in this look.
+    /// Builds the values of a figure as drawn in this look.
     pub(crate) fn new(figure: &'a Figure, look: &Look) -> Self {
         let drawn = look.drawn(figure);
         let panels = figure.panels.iter().zip(&drawn).map(|(panel, drawn)| PanelValues {
@@ -118,7 +118,7 @@ impl<'a> AxisName<'a> {
 }
 
 impl<'a> SeriesValues<'a> {
-    /// Values of a series of a panel; none for words.
+    /// Builds the values of a series of a panel; `None` for words.
     fn new(number: usize, series: &'a Series, drawn: &DrawnPanel) -> Option<Self> {
         let lengths = drawn.ranges.map(|[low, high]| high - low);
         let points = |points: &[[f64; 2]]| {

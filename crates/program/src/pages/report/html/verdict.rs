@@ -1,4 +1,4 @@
-//! The headline: agreement, its number of digits, and disagreements.
+//! Headline of the report: agreement, its number of digits, and disagreements.
 
 use maud::html;
 
@@ -10,7 +10,7 @@ use crate::show::words::{self, quantity, route, slips, spoken};
 use corner_impact::published::Verdict;
 use corner_impact::study::verify::Verification;
 
-/// The headline; `None` if there was nothing to verify.
+/// Headline; `None` if there was nothing to verify.
 pub(crate) fn section(report: &Report) -> Option<PageSection> {
     let found = report.verification.as_ref().ok()?;
     let (class, verdict) = match report.agrees {
