@@ -1,8 +1,8 @@
 //! Are the sentences of `--help` short enough to be read at first sight?
 
 #[path = "../documents/prose.rs"]
-#[allow(dead_code, reason = "the documents need more of it than a help text does")]
-mod prose;
+#[allow(dead_code, reason = "the documents need more of it than help texts and comments do")]
+pub mod prose;
 
 use crate::command_line::COMMANDS;
 use crate::common::{program, text};

@@ -47,6 +47,7 @@ mod design_loads;
 mod design_numbers;
 mod digits;
 mod directions;
+mod doc_comments;
 mod drawing;
 mod dynamics;
 mod elementary;
