@@ -281,8 +281,8 @@ pub(crate) fn stability(stability: Stability) -> &'static str {
 /// Speeds below or above that of the corner impact, or that speed itself.
 pub(crate) fn speeds(speeds: Option<Speeds>) -> &'static str {
     match speeds {
-        Some(Speeds::Faster) => "faster than omega*",
-        Some(Speeds::Slower) => "slower than omega*",
+        Some(Speeds::Faster) => "above omega*",
+        Some(Speeds::Slower) => "below omega*",
         None => "at omega*",
     }
 }
