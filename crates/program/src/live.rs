@@ -31,7 +31,7 @@ pub(crate) fn page_model(model: &Model) -> PageModel {
 }
 
 /// Sentence of a page that stands there without JavaScript.
-const STILL: &str = "<p>This page computes as you look at it, which needs JavaScript. <code>corner-impact report</code> writes a page with \
+const STILL: &str = "<p>This page computes its pictures in the browser, which needs JavaScript. <code>corner-impact report</code> writes a page with \
                      still pictures.</p>";
 
 /// The live page of a model in one HTML file, which needs no server.
