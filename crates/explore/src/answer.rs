@@ -201,7 +201,7 @@ const MOST_CELLS: usize = 100_000;
 fn basins(model: &Model, asked: &BasinsRequest) -> Result<GridBasins, PageRefusal> {
     if asked.grid[0].saturating_mul(asked.grid[1]) > MOST_CELLS || asked.grid.contains(&0) {
         let [columns, rows] = asked.grid;
-        let words = format!("basins: grid = {columns}x{rows}: must have 1 to {MOST_CELLS} cells");
+        let words = format!("basins: grid = {columns}x{rows}: must have at least 1 cell and at most {MOST_CELLS}");
         return Err(PageRefusal::of_words(words));
     }
     let section = BasinSection::new(model, asked.rpm, asked.cam_angle_rad)?;

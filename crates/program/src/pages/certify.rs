@@ -171,7 +171,7 @@ impl Paged for ProvedResting {
         };
         let round = |round: &Round| {
             let (impacts, turns) = (words::many(round.impacts, "impact"), words::many(round.revolutions, "revolution"));
-            format!("{turns}, with {impacts} and the endless sequence by which it comes to rest").as_str().into()
+            format!("{turns}, with {impacts} and the infinite sequence of impacts before its rest").as_str().into()
         };
         page.push(Block::paragraph(match self.periodic[..] {
             [] => words![all, "."],
