@@ -207,8 +207,8 @@ impl PlausibleCams {
         }
     }
 
-    /// Returns the uncertainties of numbers that depend on the cam, with three terms: their distance from the numbers of the best estimate,
-    /// twice the largest deviation among the equally likely cams, and the effect of corners. `of` returns the numbers of a model, or
+    /// Returns the uncertainties of numbers that depend on the cam. Each has three terms: the distance from the number of the best
+    /// estimate, twice the largest deviation among the equally likely cams, and the effect of corners. `of` returns the numbers of a model, or
     /// `None`. The result is `None` if this happens for more than a few models.
     pub fn errors(&self, numbers: &[f64], of: impl Fn(&Model, &Cam) -> Option<Vec<f64>> + Sync) -> Option<Vec<f64>> {
         self.spread(numbers, (self.others.len(), 0, 2.0), of)

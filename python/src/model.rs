@@ -327,10 +327,14 @@ impl Model {
     /// starts where its neighbour ended. With `strobe_rad` or `strobe_deg` (`strobe` is an older name, in rad), states at that cam angle
     /// are recorded instead of events. `lyapunov` adds the growth rate of small deviations, as a natural logarithm per revolution.
     ///
-    /// Returns a `Diagram` with the columns of `corner-impact diagram --out`, one row an event or state, shape (N,): `rpm` or the name
-    /// of the other number, `revolution`, `cam_angle_rad`, `event` (an index of `corner_impact.EVENTS`), `position_m`,
-    /// `velocity_before_m_s`, `velocity_after_m_s`; or `rpm`, `revolution`, `position_m`, `velocity_m_s` at a section; and
-    /// `lyapunov_per_revolution`, `lyapunov_error`. A run that fails has one row, of event `failed` and revolution -1, with NaN.
+    /// Returns a `Diagram` with the columns of `corner-impact diagram --out`, one row an event or state, shape (N,):
+    ///
+    /// - events: `rpm` or the name of the other number, `revolution`, `cam_angle_rad`, `event` (an index of `corner_impact.EVENTS`),
+    ///   `position_m`, `velocity_before_m_s`, `velocity_after_m_s`;
+    /// - states at a section: `rpm` or the name of the other number, `revolution`, `position_m`, `velocity_m_s`;
+    /// - with `lyapunov`: `lyapunov_per_revolution`, `lyapunov_error`.
+    ///
+    /// A run that fails has one row, of event `failed` and revolution -1, with NaN.
     ///
     /// Raises ValueError if an argument is wrong.
     ///
@@ -779,8 +783,8 @@ impl Model {
     /// `states`, pairs of position and velocity, replace the grid. At several speeds `rpm`, or over another number as for `diagram`, only
     /// the shares of the basins are found. `transient`, `record`, `longest` and `patience` are those of `speeds`.
     ///
-    /// Returns a `Basins`, the document of `corner-impact basins --json`; with a grid at one speed, `ending`, int32 of shape (velocities,
-    /// positions), has for each start the index in `endings`, or -1 if the start is below the cam or its run failed. `positions` and
+    /// Returns a `Basins`, the document of `corner-impact basins --json`. With a grid at one speed, `ending` is an array, int32 of shape
+    /// (velocities, positions): for each start the index in `endings`, or -1 if the start is below the cam or its run failed. `positions` and
     /// `velocities` are the starts along each axis. At several values it returns a `BasinShares`.
     ///
     /// Raises ValueError if an argument is wrong, or if a run fails that starts on no grid.

@@ -91,7 +91,12 @@ pub(crate) fn fit(model: &Model, profile: &TableProfile, smoothing: &Smoothing) 
     let half_step = profile.reading.half_step();
     let (mut features, doubtful) = features::of(smoothing, &angles, &lifts, half_step);
     let layout = |features: &Features| {
-        let too_few = || model.reject("cam.dwells_deg", "leaves fewer than three rows outside of the dwells");
+        let too_few = || {
+            model.reject(
+                "cam.dwells_deg",
+                "leaves fewer than three rows outside the dwells: give fewer or shorter dwells",
+            )
+        };
         Layout::new(&angles, features).ok_or_else(too_few)
     };
     let weighed = |layout: &Layout| {
@@ -109,8 +114,9 @@ pub(crate) fn fit(model: &Model, profile: &TableProfile, smoothing: &Smoothing) 
     // A dwell that the model gives was checked when the model was read.
     let in_dwell = |corner: &&f64| features.dwells.iter().any(|dwell| features::is_inside(corner.to_radians(), dwell));
     if let Some(corner) = smoothing.corners_deg.iter().flatten().find(in_dwell) {
-        let words =
-            format!("has {corner}, which is inside of a dwell that the rows show: dwells_deg sets other dwells");
+        let words = format!(
+            "has {corner}, which is inside a dwell found in the rows: leave it out, or set other dwells by dwells_deg"
+        );
         return Err(model.reject("cam.corners_deg", words));
     }
     let are_found = smoothing.corners_deg.is_none();
@@ -177,7 +183,7 @@ fn weight(
     match tolerance {
         SmoothingTolerance::Auto => {
             let too_few = || {
-                let words = "has too few rows outside of dwells for a smoothing spline: give rows closer together, or spline = \"quintic\"";
+                let words = "has too few rows outside the dwells for a smoothing spline: give more rows, or spline = \"quintic\"";
                 model.reject(profile.place(), words)
             };
             let [low, _] = WEIGHTS;
@@ -194,7 +200,7 @@ fn weight(
         SmoothingTolerance::Within(limit) => match within(at, limit).ok_or_else(overflow)? {
             Kept::At(weight) => Ok(weight),
             Kept::Always => {
-                let words = "is so large that no lift would be left: every row is as near to a circle";
+                let words = "is too large: a cam of constant lift is within it of every row; give a smaller one";
                 Err(model.reject("cam.tolerance", words))
             }
             Kept::Never(least) => {

@@ -74,8 +74,8 @@ fn contour(model: &Model, profile: &ContourProfile) -> Result<Cam, ModelError> {
                     "straight".to_owned()
                 };
                 let words = format!(
-                    "must not be a flat face here: the contour is {shape} {at}, and a face touches no hollow; where that is the roughness of \
-                     the rows, spline = \"smoothing\" takes it out"
+                    "must not be a flat face here: the contour is {shape} {at}, where a flat face cannot touch it; if the rows are only rough there, set \
+                     spline = \"smoothing\""
                 );
                 model.reject("cam.contact", words)
             }

@@ -160,14 +160,14 @@ pub(super) fn build(model: &Model, profile: &ProgramProfile) -> Result<Cam, Mode
     let last = format!("cam.segment[{}]", segments.len() - 1);
     let degrees: f64 = segments.iter().map(|segment| segment.span_deg).sum();
     if !((degrees - 360.0).abs() <= tolerance::CAM_CLOSURE.value * 360.0) {
-        let words = format!("spans add up to {degrees}, and must to 360");
+        let words = format!("spans add up to {degrees}: must be 360 degrees");
         return Err(model.reject(&format!("{last}.span_deg"), words));
     }
     let (total, size) = segments
         .iter()
         .fold((0.0, 0.0), |(total, size): (f64, f64), MotionSegment { rise, .. }| (total + rise, size + rise.abs()));
     if !(total.abs() <= tolerance::CAM_CLOSURE.value * size) {
-        let words = format!("rises add up to {total}, and must to 0: the lift jumps at 360 degrees");
+        let words = format!("rises add up to {total}: must be 0, or the lift jumps at 360 degrees");
         return Err(model.reject(&format!("{last}.rise"), words));
     }
     let last_motion = segments.iter().rposition(|segment| segment.motion != StandardMotion::Dwell);

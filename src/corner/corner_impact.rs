@@ -96,8 +96,8 @@ impl CornerImpact {
         (self.cycle.impacts[index].cam_angle + 0.5 * turn) % TAU
     }
 
-    /// Course of one period from the section: the angle of each flight, rad, with the index of the impact at its end, in order; and the
-    /// angle of the last flight, rad, which ends on the section.
+    /// Course of one period from the section: the angle of each flight, rad, with the index of the impact at its end, in order.
+    /// The angle of the last flight, rad, which ends on the section, follows.
     pub fn course(&self) -> (Vec<(f64, usize)>, f64) {
         let (last, turn) = longest_flight(&self.cycle);
         let count = self.cycle.impacts.len();

@@ -179,7 +179,7 @@ pub fn distinct<'a>(results: impl IntoIterator<Item = (&'a str, &'a Path)>) -> R
     let mut places = BTreeMap::new();
     results.into_iter().try_for_each(|(what, path)| match places.insert(place(path), what) {
         Some(before) => {
-            let words = format!("{before} and {what} both go there");
+            let words = format!("{before} and {what} have the same path; give each its own");
             Err(FileError::new(path, "cannot be written")(io::Error::new(io::ErrorKind::InvalidInput, words)))
         }
         None => Ok(()),
@@ -212,7 +212,7 @@ fn begin<'a>(path: &Path) -> Result<Sink<'a>, FileError> {
         }
         // Replacing a file ignores its permissions, so check them.
         Ok(found) if !may_be_written(path, &found) => {
-            return Err(because(io::ErrorKind::PermissionDenied, "it is there already, and read-only"));
+            return Err(because(io::ErrorKind::PermissionDenied, "it exists and is read-only"));
         }
         // Replace the target of a link, not the link.
         Ok(found) => (fs::canonicalize(path).map_err(&refuse)?, Some(found.permissions())),
@@ -220,14 +220,14 @@ fn begin<'a>(path: &Path) -> Result<Sink<'a>, FileError> {
         Err(error) => return Err(refuse(error)),
     };
     if permissions.is_none() && fs::symlink_metadata(path).is_ok() {
-        return Err(because(io::ErrorKind::NotFound, "it is a link to what is not there"));
+        return Err(because(io::ErrorKind::NotFound, "it is a link to a file that does not exist"));
     }
     let folder = folder(&target);
     if !folder.is_dir() {
         return Err(because(io::ErrorKind::NotFound, &format!("there is no folder {}", folder.display())));
     }
     if target.file_name().is_none() {
-        return Err(because(io::ErrorKind::InvalidInput, "it names no file"));
+        return Err(because(io::ErrorKind::InvalidInput, "the path has no file name"));
     }
     let unfinished = Unfinished::begin(folder).map_err(&refuse)?;
     if let Some(permissions) = permissions {

@@ -38,11 +38,11 @@ fn wide(bytes: &[u8], number: fn([u8; 2]) -> u16) -> io::Result<String> {
 }
 
 fn no_text(code: &str) -> io::Error {
-    io::Error::new(io::ErrorKind::InvalidData, format!("it is no text in {code}"))
+    io::Error::new(io::ErrorKind::InvalidData, format!("it is not text in {code}"))
 }
 
 fn too_long(what: &str, most: usize) -> io::Error {
-    let words = format!("{what} is longer than {} MiB, the most that is read", most >> 20);
+    let words = format!("{what} is longer than {} MiB, the largest allowed", most >> 20);
     io::Error::new(io::ErrorKind::FileTooLarge, words)
 }
 
@@ -66,7 +66,7 @@ fn is_regular(found: &fs::Metadata) -> io::Result<()> {
     match (found.is_file(), found.is_dir()) {
         (true, _) => Ok(()),
         (_, true) => Err(io::ErrorKind::IsADirectory.into()),
-        _ => Err(io::Error::new(io::ErrorKind::InvalidInput, "it is a device, a pipe or a socket, and no file")),
+        _ => Err(io::Error::new(io::ErrorKind::InvalidInput, "it is a device, a pipe or a socket, not a file")),
     }
 }
 

@@ -92,7 +92,7 @@ impl<'a> Table<'a> {
                 }
             };
             match (one(0, Kind::Abscissa), one(1, Kind::Ordinate)) {
-                (Some(x), Some(y)) if x == y => return Err("gives x and y the same column".into()),
+                (Some(x), Some(y)) if x == y => return Err("names one column for both x and y".into()),
                 (Some(x), Some(y)) => return Ok(Some([x, y])),
                 _ if self.holds == Holds::Points => return Ok(None),
                 _ => {}
@@ -106,7 +106,7 @@ impl<'a> Table<'a> {
                 match (&all[..], &of_cam[..]) {
                     ([], _) => None,
                     ([one], _) | (_, [one]) => Some(*one),
-                    _ => return Err("names several angles: choose one in [cam], by angle_column".into()),
+                    _ => return Err("names several angles: choose one by angle_column in [cam]".into()),
                 }
             }
         };
@@ -126,7 +126,7 @@ impl<'a> Table<'a> {
                     ([one], _) | ([], [one]) => Some(*one),
                     ([], []) => None,
                     _ => {
-                        return Err(format!("does not tell which column is the {value}: name it in [cam], by {field}"));
+                        return Err(format!("does not say which column is the {value}: set {field} in [cam]"));
                     }
                 }
             }
@@ -146,7 +146,7 @@ impl<'a> Table<'a> {
             return Err(words.into());
         }
         if lift == angle {
-            return Err(format!("gives the angle and the {value} the same column"));
+            return Err(format!("names one column for both the angle and the {value}"));
         }
         Ok(Some([angle, lift]))
     }
@@ -242,11 +242,11 @@ impl<'a> Table<'a> {
             true => format!("; its columns are {}", last.cells.join(", ")),
             false => {
                 let [one, two] = self.holds.choices();
-                format!("; or say which they are in [cam], as {one} = 1 and {two} = 2 do")
+                format!("; or set the columns in [cam], such as {one} = 1 and {two} = 2")
             }
         };
         let ([one, two], header) = (self.holds.named(), self.holds.header());
-        let allowed = format!("must name {one}, then {two}, as {header} does, with their units or without{more}");
+        let allowed = format!("must name {one}, then {two}, with or without units, such as {header}{more}");
         self.reject(last.line, "header", last.text.trim(), allowed)
     }
 
@@ -278,17 +278,17 @@ impl<'a> Table<'a> {
         };
         let words = match meant {
             [] => format!(
-                "the unit of the {name} must be one of: {}; or set it in [cam], by {field} = \"{example}\"{}",
+                "the unit of the {name} must be one of: {}; or set it in [cam], such as {field} = \"{example}\"{}",
                 units.join(", "),
-                if column == 0 { "" } else { ", or by a decimal part such as unit = \"0.01 mm\"" }
+                if column == 0 { "" } else { ", or a decimal part such as unit = \"0.01 mm\"" }
             ),
-            [fields] if fields.contains('=') => format!("names a part of a unit: set in [cam] {fields}"),
+            [fields] if fields.contains('=') => format!("names a part of a unit: set {fields} in [cam]"),
             [one] => {
-                format!("names a multiple of a unit: set the unit of the numbers in [cam], as {field} = \"{one}\" does")
+                format!("names a multiple of a unit: set the unit of the numbers in [cam], such as {field} = \"{one}\"")
             }
             [one, other, ..] => {
                 format!(
-                    "the lines above the rows name {one} and {other}: choose one in [cam], by {field} = \"{one}\" or {field} = \"{other}\""
+                    "the lines above the rows name both {one} and {other}: set {field} = \"{one}\" or {field} = \"{other}\" in [cam]"
                 )
             }
         };

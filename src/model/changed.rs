@@ -24,7 +24,7 @@ impl Model {
                 let names: Vec<&str> = if name.contains('.') { paths.clone() } else { ends.collect() };
                 let meant = nearest(name, names.into_iter().chain(beside.iter().copied()));
                 let there: Vec<&str> = beside.iter().chain(&paths).copied().collect();
-                let words = format!("is not a number of this model; there are: {}", there.join(", "));
+                let words = format!("is not a number of this model; allowed are: {}", there.join(", "));
                 Err(self.reject(name, words).meaning(meant.map(|meant| format!("did you mean {meant}?"))))
             }
             several => Err(self.reject(name, format!("may be any of {}: write the whole path", several.join(", ")))),
@@ -87,7 +87,7 @@ impl Model {
         dwells: &[[f64; 2]],
         weight: f64,
     ) -> Result<Self, ModelError> {
-        let table = self.table().ok_or_else(|| self.reject("cam.law", "is no table"))?;
+        let table = self.table().ok_or_else(|| self.reject("cam.law", "is not a table"))?;
         let (corners, are_near) = corners;
         let mut fields = self.fields.without_text();
         fields.put_lifts(table, lifts.iter().copied());

@@ -19,7 +19,10 @@ impl Fields {
     fn add_object(&mut self, prefix: &str, table: &Map<String, Item>) -> Result<(), ModelError> {
         for (key, value) in table {
             if key.contains(Self::PARTS) {
-                return Err(ModelError::file(self.file(), format!("{prefix}{key}: a name has no dot or bracket")));
+                return Err(ModelError::file(
+                    self.file(),
+                    format!("{prefix}{key}: a name must not have a dot or a bracket"),
+                ));
             }
             self.add_item(&format!("{prefix}{key}"), value)?;
         }

@@ -12,7 +12,7 @@ impl TableProfile {
         let (reading, mut doubts) = (&self.reading, Vec::new());
         if reading.layout.as_ref().is_some_and(|layout| layout.is_of_crank) && reading.turn_deg.is_none() {
             let words = "cam.turn_deg: the header of the table names a crank's angle, and 360 deg are read as one turn of the cam; if the cam \
-                         turns once in two turns of the crank, say turn_deg = 720 in [cam]";
+                         turns once in two turns of the crank, set turn_deg = 720 in [cam]";
             doubts.push(words.to_owned());
         }
         let lowest = self.rows.iter().map(|row| row.lift).fold(f64::INFINITY, f64::min);
@@ -103,8 +103,8 @@ impl TableProfile {
         let reading = &self.reading;
         let size = reading.in_model.told(step(index));
         Some(format!(
-            "{}: the lift steps by {} {} at {} deg between two level stretches: has the gauge slipped? The lift does not return, so the step \
-             counts as a motion",
+            "{}: the lift steps by {} {} at {} deg between two level stretches: has the gauge slipped? The lift does not step back, so the step \
+             counts as part of the motion",
             self.row_place(&row),
             (size * 1e6).round() / 1e6,
             reading.unit,
@@ -150,7 +150,7 @@ impl TableProfile {
                 let size = reading.in_model.told(change(index));
                 format!("the {value} changes by {} {}", (size * 1e6).round() / 1e6, reading.unit)
             }
-            false => format!("the {value} turns"),
+            false => format!("the {value} has a turning point"),
         };
         Some(format!(
             "{}: no row between {} and {} deg, where {what}: are rows missing? The spline fills the gap",

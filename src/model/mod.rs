@@ -137,7 +137,7 @@ impl Follower {
         let words = if preload.is_none() {
             None
         } else if fields.has("follower.rest_position") {
-            Some("is there beside follower.rest_position: one of them says where the spring is slack")
+            Some("must not be given together with follower.rest_position: give one of them")
         } else if follower.stiffness == 0.0 {
             Some("needs a spring: follower.stiffness is 0")
         } else {
@@ -169,10 +169,9 @@ impl Model {
     pub(crate) fn written_alone(file: &str, text: &str) -> Result<Self, ModelError> {
         let fields = Fields::parse(file, text)?;
         if fields.has("cam.file") {
-            return Err(fields.reject(
-                "cam.file",
-                "names another file, and the text is all there is here: write its rows as cam.rows",
-            ));
+            return Err(
+                fields.reject("cam.file", "names another file, which is not read here: write its rows as cam.rows")
+            );
         }
         Self::from_fields(fields)
     }
@@ -219,7 +218,7 @@ impl Model {
     /// Range `[study]`, or an error if it is missing.
     pub fn study(&self) -> Result<Study, ModelError> {
         self.study.ok_or_else(|| {
-            self.reject("study.rpm_min", "is needed here: [study] says where to look for the corner impact; `locate --rpm LO:HI` and `certify --rpm LO:HI` look at any speeds")
+            self.reject("study.rpm_min", "is missing: [study] gives the speeds at which to search for the corner impact; `locate --rpm LO:HI` and `certify --rpm LO:HI` search at any speeds")
         })
     }
 

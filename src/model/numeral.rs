@@ -63,7 +63,9 @@ pub fn finite(text: &str, unit: &str) -> Result<f64, String> {
             comma("."),
             comma("")
         )),
-        _ if unit.is_empty() => Err(format!("\"{shown}\" is not a number alone: it is taken in the unit of the model")),
+        _ if unit.is_empty() => {
+            Err(format!("\"{shown}\" is more than a number: write the number alone, in the unit of the model"))
+        }
         _ => Err(format!("\"{shown}\" is not in {unit}: write {number}, or {number} {unit}, if that is meant")),
     }
 }

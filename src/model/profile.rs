@@ -332,7 +332,7 @@ pub(super) fn read(fields: &mut Fields) -> Result<CamProfile, ModelError> {
     let (path, least) = (CORNER_ROUNDING, tolerance::LEAST_ROUNDING.value);
     let corner_rounding_deg = fields.number(path)?;
     if 0.0 < corner_rounding_deg && corner_rounding_deg < least {
-        return Err(fields.reject(path, format!("must be 0, or from {least} on")));
+        return Err(fields.reject(path, format!("must be 0, or {least} or more")));
     }
     let change = ProfileChange { corner_rounding_deg, lever_ratio: fields.number(LEVER_RATIO)? };
     let plain = read(fields)?;
@@ -414,10 +414,10 @@ fn polynomial(fields: &mut Fields) -> Result<CamProfile, ModelError> {
         let path = |name: &str| format!("cam.segment[{index}].{name}");
         let start_deg = fields.number(&path("start_deg"))?;
         if start_deg >= 360.0 {
-            return Err(fields.reject(&path("start_deg"), "must be below 360, which is 0 again"));
+            return Err(fields.reject(&path("start_deg"), "must be below 360, which is the same angle as 0"));
         }
         if let Some(before) = segments.last().filter(|before| start_deg <= before.start_deg) {
-            let words = format!("must be above {}, where the segment before starts", before.start_deg);
+            let words = format!("must be above {}, the start of the previous segment", before.start_deg);
             return Err(fields.reject(&path("start_deg"), words));
         }
         let coefficients = fields.numbers(&path("coefficients"), MOST_COEFFICIENTS)?;

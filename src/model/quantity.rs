@@ -149,7 +149,7 @@ pub static MODEL_NUMBERS: [ModelNumber; 29] = {
         number("cam.amplitude", "", "amplitude of the lift", Length, FINITE, &["rectified-sine"]),
         number("cam.base", "", "lift at angle 0", Length, FINITE, &["program"]),
         number("cam.tolerance", "", "largest distance of a smoothing spline from a row", Pure, POSITIVE, &["table", "contour"]),
-        number("cam.corner_rounding_deg", "", "angle that corners are rounded over", Degrees, A_TURN, &[]).or(0.0),
+        number("cam.corner_rounding_deg", "", "angle over which corners are rounded", Degrees, A_TURN, &[]).or(0.0),
         number("cam.lever_ratio", "", "lift of the follower over lift at the cam", Pure, POSITIVE, &[]).or(1.0),
         number("cam.amplitudes", "", "amplitudes", Length, FINITE, &["harmonic"]),
         number("cam.phases_deg", "", "phases", Degrees, FINITE, &["harmonic"]),
@@ -157,8 +157,8 @@ pub static MODEL_NUMBERS: [ModelNumber; 29] = {
         number("cam.segment.rise", "", "rise", Length, FINITE, &["program"]),
         number("cam.segment.start_deg", "", "start", Degrees, A_TURN, &["polynomial"]),
         number("cam.segment.coefficients", "", "coefficients", LengthPerPower, FINITE, &["polynomial"]),
-        number("study.rpm_min", "", "lowest speed at which a corner impact is looked for", Speed, POSITIVE, &[]),
-        number("study.rpm_max", "", "highest speed at which a corner impact is looked for", Speed, POSITIVE, &[]),
+        number("study.rpm_min", "", "lowest speed of the search for a corner impact", Speed, POSITIVE, &[]),
+        number("study.rpm_max", "", "highest speed of the search for a corner impact", Speed, POSITIVE, &[]),
         number("rpm", "", "speed of the cam", Speed, POSITIVE, &[]),
     ]
 };
@@ -191,7 +191,10 @@ impl ModelNumber {
     /// Error message about a number that cannot have an error.
     pub(super) fn without_error() -> String {
         let names: Vec<&str> = Self::of_follower().collect();
-        format!("takes a number without an error; numbers of [follower] take one: {}", names.join(", "))
+        format!(
+            "must be a number without an error; only these numbers of [follower] may have one: {}",
+            names.join(", ")
+        )
     }
 
     /// Number of the closed allowed range that is nearest to another number.

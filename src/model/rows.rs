@@ -84,7 +84,7 @@ impl<'a> Table<'a> {
         }
         let (values, value, header) = (self.holds.values(), self.holds.value(), self.holds.header());
         let words = format!(
-            "is no table of {values}: none of its first {FIRST_LINES} lines has two numbers, or an angle and a {value} as {header}"
+            "is not a table of {values}: none of its first {FIRST_LINES} lines has two numbers, or names an angle and a {value} as {header} does"
         );
         ModelError { line: complaint.line, ..ModelError::file(&self.file, words) }
     }
@@ -123,7 +123,7 @@ impl<'a> Table<'a> {
             if let Some(Chosen::Number(number)) = chosen
                 && *number > most
             {
-                let words = format!("has {width} columns{named}; {field} = {number} in [cam] asks for another");
+                let words = format!("has {width} columns{named}; {field} = {number} in [cam] names none of them");
                 return Err(self.complain(None, words));
             }
         }
@@ -195,12 +195,15 @@ impl<'a> Table<'a> {
         let Some(found) = found else {
             return Err(self.complain(
                 None,
-                format!("is no table of {}: no line has two numbers, as below {header}", self.holds.values()),
+                format!(
+                    "is not a table of {}: no line has two numbers, as rows below {header} do",
+                    self.holds.values()
+                ),
             ));
         };
         let above: Vec<(usize, &str)> = filled().take(found).collect();
         let Some((_, first)) = filled().nth(found) else {
-            return Err(self.complain(None, format!("has no rows below its header, as {header}")));
+            return Err(self.complain(None, format!("has a header such as {header}, but no rows below it")));
         };
         // If the row is one number without a separator, the line above it decides.
         let is_one = !first.trim().contains(|letter: char| letter.is_whitespace() || ",;|".contains(letter));
@@ -234,7 +237,7 @@ impl<'a> Table<'a> {
             (None, [Some(Chosen::Number(angle)), Some(Chosen::Number(lift))]) => [angle - 1, lift - 1],
             (None, [None, None]) if width == 2 => [0, 1],
             (None, [Some(Chosen::Name(name)), _] | [_, Some(Chosen::Name(name))]) => {
-                return Err(self.complain(None, format!("has no column that is named {name}")));
+                return Err(self.complain(None, format!("has no column named {name}")));
             }
             (None, _) if width < 2 => {
                 return Err(self.reject(first_line, "row", first.trim(), format!("must be two numbers: {header}")));
@@ -242,7 +245,7 @@ impl<'a> Table<'a> {
             (None, _) => {
                 let ([one, two], [first, second]) = (self.holds.named(), self.holds.choices());
                 let words = format!(
-                    "has {width} columns without names: say which are {one} and {two} in [cam], as {first} = 1 and {second} = 2 do"
+                    "has {width} columns without names: set the columns of {one} and {two} in [cam], such as {first} = 1 and {second} = 2"
                 );
                 let rows = || filled().skip(begins).map(|(_, text)| text);
                 return Err(self.complain(None, words + twofold(separator, rows())));
@@ -331,9 +334,8 @@ impl<'a> Table<'a> {
             point = point.or([angle, lift].iter().any(|cell| cell.contains('.')).then_some(line));
             layout.decimal_comma |= [angle, lift].iter().any(|cell| cell.contains(','));
             if let Some(other) = point.filter(|_| layout.decimal_comma) {
-                let words = format!(
-                    "must have one kind of decimals: there is a comma here or before, and a point on line {other}"
-                );
+                let words =
+                    format!("must use one decimal sign: there is a comma here or before, and a point on line {other}");
                 return Err(self.reject(line, "row", text.trim(), words));
             }
             thousands.see(angle, lift);
@@ -350,7 +352,7 @@ impl<'a> Table<'a> {
             };
             let (angle_deg, lift) = (number(names[0], angle)?, number(names[1], lift)?);
             if rows.len() == MOST_ROWS {
-                return Err(self.complain(Some(line), format!("more than {MOST_ROWS} rows")));
+                return Err(self.complain(Some(line), format!("has more than {MOST_ROWS} rows, the most allowed")));
             }
             rows.push(TableRow { angle_deg, lift, line });
         }
@@ -386,10 +388,10 @@ fn twofold<'a>(separator: Separator, mut rows: impl Iterator<Item = &'a str>) ->
     let has_thousands = |row: &str| separator.cells(row).skip(1).any(|cell| is_three(cell.split(['.', ',']).next()));
     match separator {
         Separator::Comma if rows.all(|row| !row.contains('.')) => {
-            "; if commas are decimal as well, separate the columns by semicolons, or write decimal points"
+            "; if commas are also decimal signs, separate the columns by semicolons, or write decimal points"
         }
         Separator::Blanks if rows.any(has_thousands) => {
-            "; if blanks separate thousands as well, separate the columns by semicolons, or write nothing between thousands"
+            "; if blanks also separate thousands, separate the columns by semicolons, or write nothing between thousands"
         }
         _ => "",
     }

@@ -34,7 +34,7 @@ pub(super) fn unit<T: Copy + PartialEq>(
     match (given, named) {
         (None, named) => Ok(named?.or(usual)),
         (Some(given), Ok(Some(other))) if other != given => {
-            Err(fields.reject(path, format!("is not what the header of the table says: {}", name(other))))
+            Err(fields.reject(path, format!("must be the unit in the header of the table: {}", name(other))))
         }
         (given, _) => Ok(given),
     }
@@ -107,7 +107,7 @@ pub(super) fn smoothing(
             if !(from.is_finite() && to.is_finite() && span > 0.0) {
                 return Err(fields.reject(
                     path,
-                    format!("has a dwell from {from} to {to}: it must have an end and be less than a turn"),
+                    format!("has a dwell from {from} to {to}: a dwell must be longer than 0 and shorter than a turn"),
                 ));
             }
             dwells.push([start, start + span]);
@@ -118,7 +118,10 @@ pub(super) fn smoothing(
             let [from, to] = dwells[index];
             return Err(fields.reject(
                 path,
-                format!("has dwells that meet: one from {from} to {to}, and one from {}", after(index) % 360.0),
+                format!(
+                    "has dwells that meet or overlap: one from {from} to {to}, and one from {}",
+                    after(index) % 360.0
+                ),
             ));
         }
         dwells_deg = Some(dwells);
@@ -133,7 +136,7 @@ pub(super) fn smoothing(
         let mut corners: Vec<f64> = corners.into_iter().map(|corner| corner.rem_euclid(360.0)).collect();
         corners.sort_by(f64::total_cmp);
         if let Some([corner, _]) = corners.windows(2).find(|pair| pair[0] == pair[1]) {
-            return Err(fields.reject(path, format!("has {corner} twice: a corner is at an angle once")));
+            return Err(fields.reject(path, format!("has {corner} twice: give each corner once")));
         }
         let inside = |corner: &&f64| {
             // A corner may be an end of a dwell, up to rounding.

@@ -38,7 +38,7 @@ pub(super) fn read_contour(fields: &mut Fields) -> Result<TableProfile, ModelErr
     let other = if holds == Holds::Points { polar } else { xy };
     if let Some(other) = other {
         let words =
-            "belongs to the other coordinates: a contour has angle_column and radius_column, or x_column and y_column";
+            "belongs to other coordinates: give either angle_column and radius_column, or x_column and y_column";
         return Err(fields.reject(&other, words));
     }
     read_rows(fields, holds, is_open)
@@ -51,7 +51,7 @@ fn read_rows(fields: &mut Fields, holds: Holds, may_be_points: bool) -> Result<T
         let pairs = fields.rows("cam.rows", [FEWEST_ROWS, MOST_ROWS])?;
         fields.may_hold("cam.file");
         if fields.has("cam.file") {
-            return Err(fields.reject("cam.file", "is there beside cam.rows: the rows are here or in a file"));
+            return Err(fields.reject("cam.file", "must not be given together with cam.rows: give one of them"));
         }
         let has_lines = pairs.iter().all(|(_, line)| line.is_some());
         let text = fields.source().to_owned();
@@ -109,10 +109,10 @@ fn read_rows(fields: &mut Fields, holds: Holds, may_be_points: bool) -> Result<T
     let is_unsaid = may_be_points && layout.header.is_none();
     let swapped = table.seems_swapped(&rows).then(|| {
         let ([one, two], [angle, value]) = (holds.choices(), layout.columns);
-        format!("the columns seem to be swapped: say {one} = {value} and {two} = {angle} in [cam]")
+        format!("the columns seem to be swapped: set {one} = {value} and {two} = {angle} in [cam]")
     });
     table.profile(fields, (Some(file), spline), rows, Some(layout)).map_err(|error| {
-        let meant = "are the columns x and y? then say coordinates = \"xy\" in [cam]";
+        let meant = "are the columns x and y? then set coordinates = \"xy\" in [cam]";
         match swapped {
             Some(swapped) => error.meaning(Some(swapped)),
             None if is_unsaid && error.pointer.meant.is_none() => error.meaning(Some(meant.into())),

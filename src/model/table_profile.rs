@@ -116,7 +116,7 @@ impl Table<'_> {
                 ProseUnit::Length(unit) => ("length", self.holds.values(), "unit", unit.name()),
             };
             let words = format!(
-                "is a unit of {what} that no column has: set the unit of the {of} by {field} in [cam], such as {field} = \"{meant}\""
+                "is a unit of {what} that no column has: set the unit of the {of} in [cam], such as {field} = \"{meant}\""
             );
             return Err(self.reject(*line, "unit", word, words));
         }
@@ -145,7 +145,7 @@ impl Table<'_> {
             (Holds::Lifts, _) => {}
             (Holds::Radii, _) => self.radii(&rows)?,
             (Holds::Points, None) => self.polar(&mut rows)?,
-            (Holds::Points, Some(path)) => return Err(fields.reject(path, "is of angles, and the table has x and y")),
+            (Holds::Points, Some(path)) => return Err(fields.reject(path, "is for angles, but the table has x and y")),
         }
         let first_deg = rows.first().map_or(0.0, |row| row.angle_deg);
         let falls = rows.windows(2).filter(|pair| pair[1].angle_deg < pair[0].angle_deg).count();
@@ -184,7 +184,7 @@ impl Table<'_> {
         })?;
         let fewest = if spline == Kind::Smoothing { FEWEST_SMOOTHED } else { FEWEST_ROWS };
         if rows.len() < fewest {
-            let words = format!("{} different angles; {fewest} to {MOST_ROWS} are needed", rows.len());
+            let words = format!("has {} different angles; {fewest} to {MOST_ROWS} are needed", rows.len());
             return Err(self.complain(None, words));
         }
         let spline = match spline {

@@ -81,7 +81,7 @@ impl Fields {
             let path = format!("{prefix}{}", key.get_ref());
             if key.get_ref().contains(Self::PARTS) {
                 let (line, written) = place(key.span());
-                let words = "is one name: no name has a dot or a bracket in quotes; write a field of a table without quotes, or under its [table]";
+                let words = "must not be in quotes: a name has no dot or bracket; write the field without quotes, or under its [table]";
                 return Err(ModelError {
                     line: Some(line),
                     field: Some(written),

@@ -22,7 +22,7 @@ impl Table<'_> {
         let slack = tolerance::TURN_CLOSED.value * 360.0 / rows.len() as f64;
         if last.angle_deg - first.angle_deg > 180.0 + slack {
             let words = format!(
-                "is set for rows over {} degrees: half a lobe has 180 at most",
+                "is set, but the rows cover {} degrees: half a lobe has 180 at most",
                 last.angle_deg - first.angle_deg
             );
             return Err(fields.reject("cam.mirrored", words));
@@ -95,7 +95,7 @@ impl Table<'_> {
                 )
             };
             let words = format!(
-                "is set for rows that do not begin and end on the base circle: the {} on {} {found}",
+                "is set, but the rows do not begin and end on the base circle: the {} on {} {found}",
                 self.holds.value(),
                 self.place(&row)
             );
@@ -145,8 +145,8 @@ impl Table<'_> {
                 let words = format!("must be within a turn of the first row, from {from} to {to}");
                 let twice = rows.last().is_some_and(|last| last.angle_deg - first <= 2.0 * (360.0 + slack));
                 let over = rows.last().map_or(0.0, |last| last.angle_deg - first);
-                let crank = "are these degrees of a crank? then say turn_deg = 720 in [cam]";
-                let gon = "are these gon, 400 to a turn? then say angle_unit = \"gon\" in [cam]";
+                let crank = "are these degrees of a crank? then set turn_deg = 720 in [cam]";
+                let gon = "are these gon, 400 to a turn? then set angle_unit = \"gon\" in [cam]";
                 let meant = twice.then(|| match self.repeats(rows, index, slack) {
                     _ if turns > 0.0 => {
                         let start = begun.map_or(row.line, |begun: TableRow| begun.line);
@@ -228,7 +228,7 @@ impl Table<'_> {
         if (last.lift - first.lift).abs() > tolerance::CAM_CLOSURE.value * largest {
             let value = self.holds.value();
             let words = format!(
-                "must be {}, the {value} at {} on {}: it repeats after a turn, and the row may be left out",
+                "must be {}, the {value} at {} on {}, one turn before; or leave the row out",
                 first.lift,
                 self.shown(first.angle_deg),
                 self.place(first)
@@ -261,7 +261,7 @@ impl Table<'_> {
         let covered = ((360.0 - gaps[index]) * 1e9).round() / 1e9;
         let words = if gaps[index] > PART {
             format!(
-                "no row from {} to {}: the rows cover {covered} degrees, and a whole turn is needed, also of a cam that is its own \
+                "no row from {} to {}: the rows cover {covered} degrees, and a whole turn is needed, even for a cam that is its own \
                  mirror image",
                 self.shown(rows[index].angle_deg),
                 self.shown(next(index))
@@ -286,9 +286,9 @@ impl Table<'_> {
             (covered, ..) if covered <= turn => Some(other("rad")),
             (_, true, _) => None,
             (_, false, is_mirrored) => {
-                let of_half = if is_mirrored { "" } else { "; of a half about the nose, mirrored = true" };
+                let of_half = if is_mirrored { "" } else { "; if they cover half a lobe, set mirrored = true" };
                 Some(format!(
-                    "of the open part alone say outside = \"base\" in [cam], which fills the base circle{of_half}"
+                    "if the rows cover only the lobe, set outside = \"base\" in [cam], which fills the base circle{of_half}"
                 ))
             }
         };

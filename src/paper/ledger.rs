@@ -84,7 +84,7 @@ pub struct Claims {
     pub model: String,
     /// Every statement.
     pub claims: Vec<Held>,
-    /// How many statements have each verdict.
+    /// Number of statements with each verdict.
     pub counts: BTreeMap<Verdict, usize>,
     /// Whether every check confirms the ledger's verdict.
     pub agrees: bool,

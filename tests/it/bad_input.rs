@@ -116,7 +116,7 @@ fn fields_that_are_missing_or_unknown() {
         &["cams is an unknown field; allowed at the top of the file", "cam, follower, study"],
     );
     let study = text.split("[study]").next().unwrap();
-    refuses("no-study", study.as_bytes(), &["study.rpm_min", "says where to look"]);
+    refuses("no-study", study.as_bytes(), &["study.rpm_min", "gives the speeds at which to search"]);
     refuses("scalar-table", b"follower = 3\n", &["follower.mass is missing"]);
 }
 
@@ -301,11 +301,11 @@ fn laws_of_the_cam() {
         (program(&[("dwell", "-10", "0")]), &["cam.segment[0].span_deg = -10"]),
         (
             program(&[("dwell", "100", "0"), ("dwell", "259", "0")]),
-            &[":23: cam.segment[1].span_deg = 259: spans add up to 359, and must to 360"],
+            &[":23: cam.segment[1].span_deg = 259: spans add up to 359: must be 360 degrees"],
         ),
         (
             program(&[("poly345", "100", "0.1"), ("harmonic", "260", "-0.2")]),
-            &[":24: cam.segment[1].rise = -0.2: rises add up to -0.1, and must to 0: the lift jumps at 360 degrees"],
+            &[":24: cam.segment[1].rise = -0.2: rises add up to -0.1: must be 0, or the lift jumps at 360 degrees"],
         ),
         (program(&[("poly345", "360", "nan")]), &["cam.segment[0].rise = nan"]),
         (
@@ -320,7 +320,7 @@ fn laws_of_the_cam() {
         (polynomials(&[("0", "[0.1, inf]")]), &["cam.segment[0].coefficients[1] = inf"]),
         (
             polynomials(&[("0", "[0.1]"), ("0", "[0.1]")]),
-            &["cam.segment[1].start_deg = 0: must be above 0, where the segment before starts"],
+            &["cam.segment[1].start_deg = 0: must be above 0, the start of the previous segment"],
         ),
         (polynomials(&[("360", "[0.1]")]), &["cam.segment[0].start_deg = 360: must be below 360"]),
         (

@@ -224,7 +224,7 @@ fn units_are_named_by_a_word_or_a_sign() {
         }
         let other = if unit == "rad" { "deg" } else { "rad" };
         let refused = cam_with(name, &text, "cubic", &format!("angle_unit = \"{other}\"\n")).unwrap_err();
-        assert!(refused.contains(&format!("is not what the header of the table says: {unit}")), "{name}: {refused}");
+        assert!(refused.contains(&format!("must be the unit in the header of the table: {unit}")), "{name}: {refused}");
     }
 }
 
@@ -240,7 +240,7 @@ fn a_turn_later_the_lift_is_the_same_to_as_many_digits() {
         let rows = [(0.0, lift), (120.0, 0.9 * lift), (240.0, 0.8 * lift), (360.0, lift + off)];
         let cam = cam_of(name, &csv(&rows), "cubic");
         assert_eq!(cam.is_ok(), closes, "{name}: {cam:?}");
-        assert!(cam.is_ok() || cam.unwrap_err().contains("it repeats after a turn"), "{name}");
+        assert!(cam.is_ok() || cam.unwrap_err().contains("one turn before; or leave the row out"), "{name}");
     }
 }
 
@@ -322,7 +322,7 @@ fn tables_that_are_refused() {
             "angle_deg,lift\n0,1\n120,1\n60,2\n".into(),
             &[".csv:4: angle_deg = 60: angles must rise", "above 120"],
         ),
-        ("one-row", "angle_deg,lift\n0,1\n".into(), &[".csv: 1 different angles; 3 to 1000000 are needed"]),
+        ("one-row", "angle_deg,lift\n0,1\n".into(), &[".csv: has 1 different angles; 3 to 1000000 are needed"]),
         ("two-rows", "angle_deg,lift\n0,1\n180,1\n360,1\n".into(), &[".csv: 2 different angles"]),
         ("gap", degrees(100..120), &[".csv:101: angle_deg = 99: no row from 99 to 120: rows are missing", "10"]),
         ("open", format!("{}360,0.2\n", degrees(0..0)), &[".csv:362: lift = 0.2: must be 0.119", "on line 2"]),
@@ -395,5 +395,5 @@ fn hundreds_of_thousands_of_rows() {
     }
     let more: String = (0..1_000_001).map(|k| format!("{:.5},.1\n", 0.000_359 * f64::from(k))).collect();
     let more = format!("angle_deg,lift\n{more}");
-    assert!(cam_of("more", &more, "cubic").unwrap_err().contains("more.csv:1000002: more than 1000000 rows"));
+    assert!(cam_of("more", &more, "cubic").unwrap_err().contains("more.csv:1000002: has more than 1000000 rows"));
 }

@@ -52,8 +52,8 @@ fn a_document_is_a_file() {
             .contains("angle_deg = 370: must be within a turn of the first row, from 0 to 360")
     );
     assert!(rows(json!([[0, 0], [1, 0, 2]])).contains("must be a list of rows"));
-    assert!(refused(&|cam| cam["file"] = json!("lift.csv")).contains("the rows are here or in a file"));
-    assert!(refused(&|cam| cam["a.b"] = json!(1)).contains("cam.a.b: a name has no dot"));
+    assert!(refused(&|cam| cam["file"] = json!("lift.csv")).contains("must not be given together with cam.rows"));
+    assert!(refused(&|cam| cam["a.b"] = json!(1)).contains("cam.a.b: a name must not have a dot"));
     assert!(refused(&|cam| cam["law"] = json!(null)).contains("cam.law = null: must be text in quotes"));
     assert!(Model::of_document("a document", &json!([])).unwrap_err().to_string().contains("must be a table"));
     let slip = json!({ "folower": follower, "cam": cam });

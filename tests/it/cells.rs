@@ -109,7 +109,8 @@ fn blanks_between_thousands_are_read_where_they_part_no_columns() {
         // Alone they part the columns.
         is_the_lobe(&rows(0..360, |angle, lift| format!("{angle}{by}{lift:.4}")), "", 1.0);
     }
-    let says = "; if blanks separate thousands as well, separate the columns by semicolons, or write nothing between thousands";
+    let says =
+        "; if blanks also separate thousands, separate the columns by semicolons, or write nothing between thousands";
     assert!(refused(&of(" ", " ", "angle lift\n"), "").contains(says));
     assert!(refused(&of(" ", " ", ""), "").contains(says));
     let three = "angle lift\n0 1.5 2.5\n1 2.5 3.5\n";
@@ -123,7 +124,7 @@ fn blanks_between_thousands_are_read_where_they_part_no_columns() {
 /// Columns that seem to be swapped are named with the fields that read them, and no others.
 #[test]
 fn swapped_columns_are_named() {
-    let says = "the columns seem to be swapped: say angle_column = 2 and lift_column = 1 in [cam]";
+    let says = "the columns seem to be swapped: set angle_column = 2 and lift_column = 1 in [cam]";
     let swapped =
         |angles: std::ops::Range<i32>, by: f64| rows(angles, |angle, lift| format!("{lift:.4},{}", by * angle));
     for (csv, fields) in [
@@ -198,7 +199,7 @@ fn rows_that_are_missing_over_the_nose_are_noted() {
         (without(5, 175, 186), 170, 190),
     ] {
         let told = doubts(&csv);
-        let says = format!("no row between {from} and {to} deg, where the lift turns: are rows missing?");
+        let says = format!("no row between {from} and {to} deg, where the lift has a turning point: are rows missing?");
         assert!(told.len() == 1 && told[0].contains(&says), "{from}: {told:?}");
     }
     assert!(doubts(&without(1, 150, 154))[0].contains("no row between 149 and 154 deg, where the lift changes by"));

@@ -333,10 +333,10 @@ fn what_the_geometry_forbids_is_refused_with_its_place() {
         (&head(&round, "26.0\n", "-26.0\n"), cubic(""), "contour.csv:2: radius"),
         (&head(&round, "radius", "lift"), cubic(""), "use law = \"table\""),
         (&head(&round, "radius", "velocity"), cubic(""), "must name the angle, then the radius"),
-        (&round, cubic("radius_column = 2\nx_column = 1"), "belongs to the other coordinates"),
-        (&aside.replace("x [mm];y [mm]\n", ""), cubic(""), "then say coordinates = \"xy\" in [cam]"),
+        (&round, cubic("radius_column = 2\nx_column = 1"), "belongs to other coordinates"),
+        (&aside.replace("x [mm];y [mm]\n", ""), cubic(""), "then set coordinates = \"xy\" in [cam]"),
         (&round, cubic("lift_column = 2"), "unknown field"),
-        (&aside, cubic("angle_unit = \"rad\""), "is of angles, and the table has x and y"),
+        (&aside, cubic("angle_unit = \"rad\""), "is for angles, but the table has x and y"),
         (&round, cubic("coordinates = \"cubic\""), "must be one of: \"polar\", \"xy\""),
     ] {
         match read(csv, &fields) {

@@ -213,6 +213,6 @@ fn a_pure_number_stands_alone() {
     assert_eq!(finite(" 0.5 ", ""), Ok(0.5));
     assert_eq!(finite("0.5 kg", "kg"), Ok(0.5));
     let [pure, of_mass] = [("0.5 x", ""), ("0.5 x", "kg")].map(|(text, unit)| finite(text, unit).unwrap_err());
-    assert_eq!(pure, "\"0.5 x\" is not a number alone: it is taken in the unit of the model");
+    assert_eq!(pure, "\"0.5 x\" is more than a number: write the number alone, in the unit of the model");
     assert_eq!(of_mass, "\"0.5 x\" is not in kg: write 0.5, or 0.5 kg, if that is meant");
 }

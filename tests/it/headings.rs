@@ -249,16 +249,16 @@ fn a_unit_that_is_not_understood_is_refused_with_the_line_that_says_it() {
     is_the_lobe(&table("angle,lift", COMMA).replace("4,0.0000\n", "4,0.0000 # 0.1 in\n"), "", 1.0);
     let cases = [
         ("# angle [deg], radius [mm]", "A,L", "", "names a radius"),
-        ("# angle [deg], lift [mm], lift [in]", "A,L,L", "", "name it in [cam], by lift_column"),
-        ("angle [deg],lift [mm]", "A,L", "unit = \"in\"", "is not what the header of the table says: mm"),
-        ("angle [deg],lift [mm]", "A,L", "unit = \"0.01 mm\"", "is not what the header of the table says: mm"),
+        ("# angle [deg], lift [mm], lift [in]", "A,L,L", "", "set lift_column in [cam]"),
+        ("angle [deg],lift [mm]", "A,L", "unit = \"in\"", "must be the unit in the header of the table: mm"),
+        ("angle [deg],lift [mm]", "A,L", "unit = \"0.01 mm\"", "must be the unit in the header of the table: mm"),
         ("angle,lift", "A,L", "unit = \"0.5 mm\"", "must be one of: \"m\", \"cm\", \"mm\""),
         ("angle,lift", "A,L", "unit = \"1 mm\"", "must be one of"),
         ("angle,lift", "A,L", "unit = \"in 0.01 mm\"", "must be one of"),
         ("angle,lift", "A,L", "unit = \"0.01 deg\"", "must be one of"),
         ("angle,lift", "A,L", "unit = 5", "must be text in quotes"),
         ("# theta h", "A L 0", "", "has 3 columns without names"),
-        ("x,y", "A,L", "", "say which they are in [cam], as angle_column = 1 and lift_column = 2 do"),
+        ("x,y", "A,L", "", "or set the columns in [cam], such as angle_column = 1 and lift_column = 2"),
         ("angle,no lift in", "A,L", "", "must name the angle"),
         ("angle [0.1 rad] lift", "A L", "", "names a part of a unit"),
     ];

@@ -166,7 +166,7 @@ fn nothing_waits_for_a_pipe() {
     assert!(std::process::Command::new("mkfifo").arg(at("pipe")).status().unwrap().success());
     fs::write(at("model.toml"), include_str!("../../models/laws/table-cubic.toml").replace("osorio-2008.csv", "pipe"))
         .unwrap();
-    let no_file = "it is a device, a pipe or a socket, and no file";
+    let no_file = "it is a device, a pipe or a socket, not a file";
     for words in [
         vec!["cam".to_owned(), at("pipe")],
         vec!["cam".to_owned(), at("model.toml")],
@@ -280,7 +280,7 @@ fn files_and_lines_have_a_limit() {
     fs::write(at("long.toml"), format!("{model}\n{}", "# more\n".repeat(3_000_000))).unwrap();
     fs::write(at("line.toml"), format!("# {}\n{model}", "x".repeat(2 << 20))).unwrap();
     fs::write(at("fits.toml"), format!("{model}\n{}", "# more\n".repeat(100_000))).unwrap();
-    let whole = "it is longer than 16 MiB, the most that is read";
+    let whole = "it is longer than 16 MiB, the largest allowed";
     assert!(refused(run(&["cam", &at("long.toml")])).contains(whole));
     assert!(refused(run(&["cam", &at("line.toml")])).contains("line 1 is longer than 1 MiB"));
     assert_eq!(run(&["cam", &at("fits.toml")]).status.code(), Some(0));
@@ -291,7 +291,7 @@ fn files_and_lines_have_a_limit() {
     assert!(refused(drawn(&at("huge.ttf"))).contains("cannot be read as a font: it is longer than 64 MiB"));
     huge.set_len(64 << 20).unwrap();
     assert!(refused(drawn(&at("huge.ttf"))).ends_with("huge.ttf: cannot be read as a font\n"));
-    let whole = "it is a device, a pipe or a socket, and no file";
+    let whole = "it is a device, a pipe or a socket, not a file";
     if fs::metadata("/dev/zero").is_ok() {
         assert!(refused(run(&["cam", "/dev/zero"])).contains(whole));
         assert!(refused(drawn("/dev/zero")).contains(whole));
@@ -341,7 +341,7 @@ fn a_name_in_quotes_is_one_name() {
     for (line, says) in [
         ("\"follower.mass\" = 2.0", "\"follower.mass\" is one name"),
         ("\"segment[0]\" = 2.0", "\"segment[0]\" is one name"),
-        ("'a.b' = { c = 1 }", "'a.b' is one name"),
+        ("'a.b' = { c = 1 }", "'a.b' must not be in quotes"),
     ] {
         fs::write(&path, format!("{line}\n{}", osorio_text(&[]))).unwrap();
         let said = refused(run(&["cam", path.to_str().unwrap()]));
@@ -389,10 +389,10 @@ fn two_results_do_not_go_to_one_file() {
         let words = ["simulate", "--rpm", "183", "--events", one, "--strobe", "1", "--strobe-out", two];
         let output = program(words).current_dir(&folder).output().unwrap();
         let said = text(output.stderr);
-        assert!(output.status.code() == Some(2) && said.contains("both go there"), "{one} {two}: {said}");
+        assert!(output.status.code() == Some(2) && said.contains("have the same path"), "{one} {two}: {said}");
     }
     let table = program(["new", "x.csv", "--law", "table"]).current_dir(&folder).output().unwrap();
-    assert!(refused(table).contains("both go there"));
+    assert!(refused(table).contains("have the same path"));
     assert!(!absolute.exists() && fs::read_to_string(folder.path().join("b.csv")).unwrap() == "mine");
     // Apart they are two.
     let words = ["simulate", MODEL, "--rpm", "183", "--events", "a.csv", "--strobe", "1", "--strobe-out", "sub/a.csv"];

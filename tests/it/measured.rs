@@ -568,13 +568,13 @@ fn tolerances() {
         (json!({ "tolerance": 0.0004 }), "cam.tolerance = 0.0004: must be at least 0.0005, half of the step 0.001"),
         (json!({ "tolerance": 0 }), "must be a finite number above 0"),
         (json!({ "tolerance": "none" }), "must be one of: \"auto\""),
-        (json!({ "tolerance": 20 }), "is so large that no lift would be left"),
+        (json!({ "tolerance": 20 }), "is too large: a cam of constant lift is within it"),
         (
             json!({ "tolerance": 0.001, "dwells_deg": [[60, 110]] }),
             "cannot be kept: with corners and dwells as they are a row is",
         ),
         (json!({ "dwells_deg": [[60, 110], [100, 120]] }), "has dwells that meet"),
-        (json!({ "dwells_deg": [[60, 60]] }), "it must have an end"),
+        (json!({ "dwells_deg": [[60, 60]] }), "a dwell must be longer than 0"),
         (json!({ "dwells_deg": [[1, 359]] }), "leaves fewer than three rows"),
         (
             json!({ "dwells_deg": [[10, 50]], "corners_deg": [20] }),
@@ -585,7 +585,7 @@ fn tolerances() {
         assert!(refused.contains(says), "{more}: {refused}");
     }
     let few = machine(smoothing(&rows[..360].iter().step_by(40).copied().collect::<Vec<_>>(), &json!({}))).unwrap_err();
-    assert!(few.contains("9 different angles; 12 to 1000000 are needed"), "{few}");
+    assert!(few.contains("has 9 different angles; 12 to 1000000 are needed"), "{few}");
 }
 
 /// The same rows as gauges, spreadsheets and programs write them are the same cam, and how they were understood is told.
@@ -681,16 +681,20 @@ fn real_files() {
         (
             radians.clone(),
             "angle_unit = \"deg\"\n",
-            "cam.angle_unit = \"deg\": is not what the header of the table says: rad",
+            "cam.angle_unit = \"deg\": must be the unit in the header of the table: rad",
         ),
-        (table(0, "angle,lift in mm\n", ",", &plain), "unit = \"m\"\n", "is not what the header of the table says: mm"),
+        (
+            table(0, "angle,lift in mm\n", ",", &plain),
+            "unit = \"m\"\n",
+            "must be the unit in the header of the table: mm",
+        ),
         (table(0, "", ",", &rad), "", "did you mean angle_unit = \"rad\" in [cam]?"),
         (
             table(0, "", ",", &plain).lines().take(37).collect::<Vec<_>>().join("\n"),
             "",
             "the rows cover 180 degrees, and a whole turn",
         ),
-        (table(0, "", ";", &comma) + "\n355.5;1.5", "", "must have one kind of decimals"),
+        (table(0, "", ";", &comma) + "\n355.5;1.5", "", "must use one decimal sign"),
         (table(0, "", ",", &plain).replace("\n10,", "\n5,"), "", "repeats the angle of the row before"),
         (table(0, "", ",", &plain).replace("\n10,", "\n1,"), "", "angles must rise"),
         (table(0, "", ",", &plain).replace("\n10,", "\n10,nan,"), "", "row = 10,nan,1.234: has 3 columns"),
@@ -1002,7 +1006,7 @@ fn a_new_measured_machine() {
         "angles: column 1, in deg",
         "lifts: column 2, in mm",
         "accuracy: lift rounded to 0.001 mm; the rows scatter about a smooth motion by 0.000",
-        "corners found: none; dwells found: 19",
+        "no corners found; dwells found: 19",
         "Corners (2)",
     ] {
         assert!(page.contains(says), "no \"{says}\" in: {page}");

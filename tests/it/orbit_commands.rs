@@ -318,7 +318,7 @@ fn what_begins_and_ends_between_two_speeds_is_found() {
 #[test]
 fn what_cannot_be_followed_is_refused_with_a_reason() {
     let followed = |parameter: &str| refused(&["continue", MODEL, "--from-rpm", "700", "--parameter", parameter]);
-    assert!(followed("spring=1:2").contains("spring is not a number of this model; there are: rpm, cam.base_radius"));
+    assert!(followed("spring=1:2").contains("spring is not a number of this model; allowed are: rpm, cam.base_radius"));
     assert!(followed("restitution=0.9:0.95").contains("outside of 0.9:0.95"));
     assert!(followed("restitution=0.9").contains("must be NAME=LO:HI"));
     assert!(followed("restitution=0.9:0.95:3").contains("takes only a range"));

@@ -222,7 +222,7 @@ fn numbers_are_read_however_they_are_typed() {
             rows(all(), |angle, lift| format!("{:.1},{lift:.2}", angle + 0.5).replace('.', ",")),
             "semicolons, or write decimal points",
         ),
-        ("angle,lift\n0,5,0,25\n".to_owned(), "and the header has 2; if commas are decimal as well"),
+        ("angle,lift\n0,5,0,25\n".to_owned(), "and the header has 2; if commas are also decimal signs"),
     ] {
         let words = model(&TempDir::new().unwrap(), &csv, "").map(|_| "it is read").unwrap_err();
         assert!(words.contains(says), "no \"{says}\" in: {words}");
@@ -253,7 +253,7 @@ fn texts_in_utf_16_are_read() {
     odd.pop();
     broken.extend(0xd800_u16.to_le_bytes());
     for bytes in [odd, broken, wide(u16::to_le_bytes)[2..].to_vec(), [0xff, 0xfe, 0, 0].to_vec()] {
-        assert!(of_bytes(&bytes).unwrap_err().contains("it is no text in UTF-8, UTF-16 with its mark or Latin-1"));
+        assert!(of_bytes(&bytes).unwrap_err().contains("it is not text in UTF-8, UTF-16 with its mark or Latin-1"));
     }
 }
 
@@ -334,27 +334,27 @@ fn what_is_not_read_is_refused_with_what_makes_it_read() {
     for (csv, fields, says) in [
         (all("angle [deg],radius [mm]"), "", "names a radius of the cam, which is not the follower's lift"),
         (all("angle [deg],lift [furlong]"), "", "the unit of the lift must be one of: m, cm, mm, um, in, ft, thou;"),
-        (all("angle [deg],lift in furlongs"), "", "set it in [cam], by unit"),
+        (all("angle [deg],lift in furlongs"), "", "set it in [cam], such as unit"),
         (all("angle [deg],lift yards"), "", "the unit of the lift must be one of"),
         (all("angle [hours],lift [mm]"), "", "the unit of the angle must be one of: deg, rad, turn, gon;"),
-        (all("lifts in inches of cam 3\nangle,lift"), "", "set the unit of the lifts by unit in [cam]"),
-        (wide("angle,lift intake,lift exhaust"), "", "name it in [cam], by lift_column"),
-        (wide("angle,left,right"), "", "name it in [cam], by lift_column"),
+        (all("lifts in inches of cam 3\nangle,lift"), "", "set the unit of the lifts in [cam], such as unit"),
+        (wide("angle,lift intake,lift exhaust"), "", "set lift_column in [cam]"),
+        (wide("angle,left,right"), "", "set lift_column in [cam]"),
         (
             wide(""),
             "",
-            "has 3 columns without names: say which are the angle and the lift in [cam], as angle_column = 1 and lift_column = 2 do",
+            "has 3 columns without names: set the columns of the angle and the lift in [cam], such as angle_column = 1 and lift_column = 2",
         ),
         (wide("angle,lift,s"), "lift_column = \"height\"", "its columns are angle, lift, s"),
         (
             wide("angle,lift,s"),
             "lift_column = 4",
-            "lift.csv: has 3 columns: angle, lift, s; lift_column = 4 in [cam] asks for another",
+            "lift.csv: has 3 columns: angle, lift, s; lift_column = 4 in [cam] names none of them",
         ),
         (
             wide(""),
             "angle_column = 1\nlift_column = 4",
-            "lift.csv: has 3 columns; lift_column = 4 in [cam] asks for another",
+            "lift.csv: has 3 columns; lift_column = 4 in [cam] names none of them",
         ),
         (slip("7,0.0000", "7,"), "", "row = 7,: has an empty cell: lift is missing"),
         (slip("7,0.0000", "7,NaN"), "", "lift = NaN: must be a finite number: this marks a missing number"),
@@ -369,7 +369,7 @@ fn what_is_not_read_is_refused_with_what_makes_it_read() {
             "is the header of a second table in this file: keep one of them",
         ),
         (all("angle,lift") + &rows(0..360, plain), "", "does a second table begin on line 362? then keep one of them"),
-        (of(0..=399).replace(" [deg]", ""), "", "are these gon, 400 to a turn? then say angle_unit = \"gon\" in [cam]"),
+        (of(0..=399).replace(" [deg]", ""), "", "are these gon, 400 to a turn? then set angle_unit = \"gon\" in [cam]"),
         (wide("angle,lift,s"), "lift_column = 1.5", "must be the name of a column in quotes, or its number from 1"),
         (all("one,two"), "", "must name the angle, then the lift"),
         (slip("7,0.0000", "7,x"), "", "lift = x: must be a finite number"),
@@ -392,7 +392,7 @@ fn what_is_not_read_is_refused_with_what_makes_it_read() {
         (format!("angle,lift\n{}", rows((0..720).step_by(2), plain)), "", "turn_deg = 720"),
         (all("angle [deg],lift [mm]"), "turn_deg = -720", "must be a finite number above 0"),
         (all("angle [deg],lift [mm]"), "turn_deg = nan", "must be a finite number"),
-        ("root:x:0\nnobody:x:1\n".into(), "", "is no table of lifts"),
+        ("root:x:0\nnobody:x:1\n".into(), "", "is not a table of lifts"),
         // The line is named that makes it read.
         (
             format!(
@@ -413,7 +413,7 @@ fn what_is_not_read_is_refused_with_what_makes_it_read() {
                 rows(0..720, |angle, lift_| plain(angle, if angle > 700.0 { 1.0 } else { lift_ }))
             ),
             "",
-            "from 0 to 360; are these degrees of a crank? then say turn_deg = 720",
+            "from 0 to 360; are these degrees of a crank? then set turn_deg = 720",
         ),
         (
             format!(
@@ -487,7 +487,7 @@ fn doubts_about_a_table_are_noted() {
     let of = |head: &str, sign: f64| format!("{head}\n{}", rows(0..360, |angle, lift| plain(angle, sign * lift)));
     for head in ["crank angle,lift", "Kurbelwinkel,lift", "Winkel [°KW],lift", "angle (CAD),lift"] {
         let told = doubts(&of(head, 1.0), "");
-        assert!(told.len() == 1 && told[0].contains("say turn_deg = 720 in [cam]"), "{head}: {told:?}");
+        assert!(told.len() == 1 && told[0].contains("set turn_deg = 720 in [cam]"), "{head}: {told:?}");
     }
     let twice = format!("crank angle,lift\n{}", rows(0..360, |angle, lift| plain(2.0 * angle, lift)));
     assert!(doubts(&twice, "turn_deg = 720").is_empty() && doubts(&of("cam angle,lift", 1.0), "").is_empty());
@@ -516,7 +516,7 @@ fn angles_in_any_unit_are_read() {
     ] {
         let csv = of(head, turn);
         let said = model(&TempDir::new().unwrap(), &csv, "").unwrap_err();
-        assert!(said.contains(&format!("set in [cam] {}", fields.join(" and "))), "{said}");
+        assert!(said.contains(&format!("set {} in [cam]", fields.join(" and "))), "{said}");
         is_the_lobe(&csv, &fields.join("\n"), 1.0);
     }
 }

@@ -113,7 +113,7 @@ fn a_rounding_that_cannot_be_is_refused() {
         error.allowed
     };
     assert_eq!(refused("osorio-2008", -1.0), "must be a finite number from 0 to 360");
-    assert_eq!(refused("osorio-2008", 1e-5), "must be 0, or from 0.0001 on");
+    assert_eq!(refused("osorio-2008", 1e-5), "must be 0, or 0.0001 or more");
     // From P, at 150.18 degrees, to Q, at 160.
     assert!(refused("osorio-2008", 9.9).starts_with("must be below 9.82"), "{}", refused("osorio-2008", 9.9));
     // A dwell of 2 degrees that only begins at a corner has room for half of 3.9, and not for half of 4.1.

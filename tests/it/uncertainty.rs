@@ -367,9 +367,14 @@ fn errors_that_make_no_sense_are_refused() {
         ("stiffness", "{ value = 0, error = 1 }", "follower.stiffness.error = 1", "must be 0 or less"),
         ("restitution", "{ value = 0.5, error = 0.6 }", "follower.restitution.error = 0.6", "0.5 or less"),
         ("restitution", "{ value = 1.5, error = 0.1 }", "follower.restitution = 1.5", "from 0 to 1"),
-        ("base_radius", "{ value = 0.4, error = 0.1 }", "cam.base_radius", "takes a number without an error"),
+        ("base_radius", "{ value = 0.4, error = 0.1 }", "cam.base_radius", "must be a number without an error"),
         ("base_radius", "{ value = 0.4 }", "cam.base_radius", "finite number above 0"),
-        ("rpm_min", "{ value = 600, error = 0.1 }", "study.rpm_min", "numbers of [follower] take one: mass, damping"),
+        (
+            "rpm_min",
+            "{ value = 600, error = 0.1 }",
+            "study.rpm_min",
+            "numbers of [follower] may have one: mass, damping",
+        ),
     ];
     for (field, text, says, allowed) in cases {
         let text = common::osorio_text(&[(field, text)]);

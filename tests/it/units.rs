@@ -302,7 +302,7 @@ fn units_that_make_no_sense_are_told() {
         ("[units]\ngravity = \"mm/s\"\n", preload, "must be a length over s^2"),
         ("[units]\nmas = \"g\"\n", preload, "unknown field"),
         ("[units]\nmass = \"t\"\n", "preload = -1", "follower.preload = -1: must be a finite number, 0 or more"),
-        ("", "preload = 1\nrest_position = 0", "is there beside follower.rest_position"),
+        ("", "preload = 1\nrest_position = 0", "must not be given together with follower.rest_position"),
         ("", "", "follower.rest_position is missing"),
         ("", "", "; or give follower.preload, the force of the spring where the lift is lowest"),
     ] {

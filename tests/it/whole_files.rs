@@ -273,7 +273,7 @@ mod unix {
         symlink("nowhere", &link).unwrap();
         let refused = |path: &Path| Output::create(path, &mut std::io::sink()).unwrap_err().to_string();
         assert!(refused(&locked).contains("read-only"), "{}", refused(&locked));
-        assert!(refused(&link).contains("a link to what is not there"), "{}", refused(&link));
+        assert!(refused(&link).contains("a link to a file that does not exist"), "{}", refused(&link));
         assert_eq!((names(&folder).len(), fs::read_to_string(&locked).unwrap().as_str()), (2, "mine"));
     }
 }

@@ -200,7 +200,9 @@ const MOST_CELLS: usize = 100_000;
 /// Basins of a grid, as in the command `basins`.
 fn basins(model: &Model, asked: &BasinsRequest) -> Result<GridBasins, PageRefusal> {
     if asked.grid[0].saturating_mul(asked.grid[1]) > MOST_CELLS || asked.grid.contains(&0) {
-        return Err(PageRefusal::of_words(format!("basins: grid: at least one cell, and at most {MOST_CELLS}")));
+        let [columns, rows] = asked.grid;
+        let words = format!("basins: grid = {columns}x{rows}: must have at least 1 cell and at most {MOST_CELLS}");
+        return Err(PageRefusal::of_words(words));
     }
     let section = BasinSection::new(model, asked.rpm, asked.cam_angle_rad)?;
     let grid = section.grid(asked.grid, asked.position, asked.velocity)?;

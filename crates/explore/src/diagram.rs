@@ -47,7 +47,10 @@ impl Diagram {
         let (over, values) = (axis.parameter.name().to_owned(), axis.values.to_vec());
         let each = asked.transient.saturating_add(asked.record);
         if each.saturating_mul(values.len() as u64) > MOST_REVOLUTIONS {
-            let words = format!("diagram: at most {MOST_REVOLUTIONS} revolutions of all values together");
+            let words = format!(
+                "diagram: {each} revolutions at each of {} values: must be at most {MOST_REVOLUTIONS} together; give fewer of either",
+                values.len()
+            );
             return Err(PageRefusal::of_words(words));
         }
         let sweep = Sweep {

@@ -183,8 +183,8 @@ impl Scales {
         }
     }
 
-    /// Range and scale of the slider of a number with this value in the file: from a quarter to four times the value if it cannot be
-    /// negative, else around the value within the range of the number's kind.
+    /// Range and scale of the slider of a number with this value in the file. A number that cannot be negative has a range from a quarter
+    /// to four times the value; another has one around the value, within the range of its kind.
     fn slider(&self, number: &ModelNumber, value: f64) -> ([f64; 2], &'static str) {
         const TIMES: f64 = 4.0;
         const DEGREES: f64 = 30.0;

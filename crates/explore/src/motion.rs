@@ -50,7 +50,9 @@ impl MotionFound {
         let moments = asked.revolutions.saturating_mul(u64::from(asked.samples));
         if asked.revolutions.max(asked.transient) > MOST_REVOLUTIONS || moments > MOST_MOMENTS {
             let words = format!(
-                "motion: at most {MOST_REVOLUTIONS} revolutions, and at most {MOST_MOMENTS} moments of those that are shown"
+                "motion: transient = {}, revolutions = {}, samples = {}: transient and revolutions must each be at most \
+                 {MOST_REVOLUTIONS}, and revolutions times samples at most {MOST_MOMENTS}",
+                asked.transient, asked.revolutions, asked.samples
             );
             return Err(PageRefusal::of_words(words));
         }

@@ -209,13 +209,13 @@ impl StartRequest {
         let cam_angle = self.cam_angle_rad;
         match (self.position, self.velocity, self.relative_velocity) {
             _ if !(0.0..std::f64::consts::TAU).contains(&cam_angle) => {
-                Err(PageRefusal::of_words(format!("start: cam angle = {cam_angle}: must be from 0 to below 2 pi")))
+                Err(PageRefusal::of_words(format!("start: cam_angle_rad = {cam_angle}: must be from 0 to below 2 pi")))
             }
             (None, None, leaving) => Ok(Start { cam_angle, follower: Placed::OnCam(leaving.unwrap_or(0.0)) }),
             (Some(position), Some(velocity), None) => {
                 Ok(Start { cam_angle, follower: Placed::At(State { position, velocity }) })
             }
-            _ => Err(PageRefusal::of_words("start: takes a position and a velocity, or a relative velocity")),
+            _ => Err(PageRefusal::of_words("start: give both position and velocity, or relative_velocity alone")),
         }
     }
 

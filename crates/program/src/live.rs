@@ -31,7 +31,7 @@ pub(crate) fn page_model(model: &Model) -> PageModel {
 }
 
 /// Sentence of the page that is shown without JavaScript.
-const STILL: &str = "<p>This page computes as you look at it, which needs JavaScript. <code>corner-impact report</code> writes a page with \
+const STILL: &str = "<p>This page computes its pictures in the browser, which needs JavaScript. <code>corner-impact report</code> writes a page with \
                      still pictures.</p>";
 
 /// Builds the live page of a model as one HTML file, which needs no server.

@@ -183,7 +183,7 @@
         const made = started();
         made.onmessage = ({ data }) => { proved = true; if (data.failed !== undefined) failed(data.failed); else { const given = give(); if (given) given.resolve(data.answer); } };
         made.onerror = (event) => {
-          if (proved) { failed(event.message || "its worker ended"); return; }
+          if (proved) { failed(event.message || "its Web Worker ended"); return; }
           // No worker has ever answered: they are forbidden here.
           allowed = false;
           thread = null;

@@ -80,7 +80,7 @@
     const hover = (index) => {
       const ending = found.endings[found.ends[index]];
       const from = start(index);
-      return { title: ending ? Explore.parts.capital(nameOf(ending)) : "Below the cam, or not decided",
+      return { title: ending ? Explore.parts.capital(nameOf(ending)) : "Below the cam, or undecided",
         rows: [["position", quantity(from.position, unit.length)], ["velocity", quantity(from.velocity, unit.velocity)]], known: "sampled; click to start there" };
     };
     const motion = (index) => (found.ends[index] < 0 ? null : { rpm: state.rpm, cam_angle_rad: angle, ...start(index) });
@@ -99,11 +99,11 @@
       ...marks, ...border,
       stable.length > 0 && found.endings.length > 0 && { kind: "points", x: stable.map(([q]) => q), y: stable.map(([, v]) => v), shape: "disc", size: 9, colour: "paper" },
       stable.length > 0 && found.endings.length > 0 && { kind: "points", x: stable.map(([q]) => q), y: stable.map(([, v]) => v), shape: "disc", size: 6, colour: "ink",
-        hover: () => ({ title: "A stable periodic motion", rows: [["it passes", "this section here"]], known: "computed" }),
+        hover: () => ({ title: "A stable periodic motion", rows: [["crosses the section", "at this point"]], known: "computed" }),
         motion: (index) => ({ rpm: state.rpm, cam_angle_rad: angle, position: stable[index][0], velocity: stable[index][1] }) },
       saddles.length > 0 && { kind: "points", x: saddles.map(([q]) => q), y: saddles.map(([, v]) => v), shape: "cross", size: 12, colour: "ink",
         motion: (index) => ({ rpm: state.rpm, cam_angle_rad: angle, position: saddles[index][0], velocity: saddles[index][1] }),
-        hover: () => ({ title: "Saddle: an unstable motion", rows: [["its stable manifold", "is the border"]], known: "computed" }) },
+        hover: () => ({ title: "Saddle: an unstable periodic motion", rows: [["its stable manifold", "is the border"]], known: "computed" }) },
       own && { kind: "points", x: [own.position], y: [own.velocity], shape: "ring", size: 15, colour: "paper" },
       own && { kind: "points", x: [own.position], y: [own.velocity], shape: "plus", size: 12, colour: "ink" },
       own && { kind: "text", x: own.position, y: own.velocity, text: "start", dx: 10, dy: -10, colour: "ink", bold: true },
@@ -165,7 +165,7 @@
         legend.replaceChildren(Explore.key(told.map(({ colour, shape }, index) => ({ colour, shape, label: text[index] }))));
         plot.draw({
           x: { label: `position at cam angle ${number(degrees(shown.angle), 6)}°`, unit: unit.length, range: x },
-          y: { label: "velocity there", unit: unit.velocity, range: y },
+          y: { label: "velocity at this angle", unit: unit.velocity, range: y },
           layers: layersOf(shown, looks, state, shown.angle, unit, plot.element.clientWidth || 700),
           description: `${shown.size[0]} by ${shown.size[1]} starts at ${number(state.rpm, 8)} rpm: ${text.join("; ")}`,
         });
@@ -174,7 +174,7 @@
         // A list of one entry a cell: the ending of its start.
         shown = { ...found, ...(found.grid || {}), ends: found.cell_endings || found.cells, size: grid, angle: at, boundary: found.boundary || border };
         draw(context.state());
-        panel.note(`${number(grid[0] * grid[1])} starts${grid[0] < 160 ? "; a finer grid follows" : ""}. Click one to start there; drag a rectangle to look closer. Large dots: stable periodic motions. Crosses: unstable ones; the lines through them are their stable manifolds, which are the border.`);
+        panel.note(`${number(grid[0] * grid[1])} starts${grid[0] < 160 ? "; a finer grid follows" : ""}. Click one to start there; drag a rectangle to zoom in. Large dots: stable periodic motions. Crosses: unstable ones. The lines through the crosses are their stable manifolds, which are the border.`);
       };
       const compute = async (state, grids) => {
         run += 1;

@@ -122,7 +122,7 @@
     };
     const laws = Explore.menu("Cam law", [], "", take);
     const contacts = Explore.menu("Follower", Object.entries(CONTACTS), "", (contact) => app.take(app.fileName(), withContact(app.model, contact), "text"));
-    const note = make("p", { class: "allowed" }, "A new law starts from an example machine. Undo brings yours back.");
+    const note = make("p", { class: "allowed" }, "A new law starts from an example machine. Undo restores yours.");
     return {
       element: make("div", { class: "laws" }, laws, contacts, note),
       update: (model) => {

@@ -90,7 +90,7 @@
       const shown = Explore.menu("Shows", Object.entries(SHOWN), "angle", (value) => context.setOption("shows", value, {}, context.state().zoom ? { zoom: { ...context.state().zoom, y: null } } : {}));
       const all = Explore.check("all attractors", false, (on) => context.setOption("all", on));
       const events = Explore.check("events", true, (on) => context.setOption("events", on));
-      const back = Explore.button("\u2190 Back", () => step(-1), { title: "The rectangle before (Escape)" });
+      const back = Explore.button("\u2190 Back", () => step(-1), { title: "Back to the previous rectangle (Escape)" });
       const on = Explore.button("Forward \u2192", () => step(1));
       const whole = Explore.button("Whole range", () => zoomTo(null));
       const fields = ["From", "To"].map((label, index) => {
@@ -186,7 +186,7 @@
         const unit = axis.unit ? `\u00a0${axis.unit}` : "";
         panel.heading(named ? `${named[0].toUpperCase()}${named.slice(1)}${main.length > 3 ? "" : unit}` : `Impacts over the ${axis.label}, ${Explore.number(seen.x[0], 5)} to ${Explore.number(seen.x[1], 5)}${unit}`);
         const failed = (found.failed || []).length;
-        panel.note(failed ? `${failed} of ${found.values.length} values could not be run. ${found.failed[0].sentence}` : "Drag a rectangle to compute it anew. Drag the line to change the number in every view.");
+        panel.note(failed ? `${failed} of ${found.values.length} values could not be run. ${found.failed[0].sentence}` : "Drag a rectangle to compute this range at full resolution. Drag the line to change the number in every view.");
       };
 
       // All attractors cost a hundred times as much as one run each: the plain diagram stands there until they are found.

@@ -76,7 +76,7 @@
       (value, how) => app.assign("rpm", value, how), () => app.unassign("rpm"));
     const undo = Explore.button("Undo", () => app.store.undo(), { title: "Undo (Ctrl+Z)" });
     const redo = Explore.button("Redo", () => app.store.redo(), { title: "Redo (Ctrl+Shift+Z)" });
-    const reset = Explore.button("Reset", () => app.reset(), { title: "Back to the model and the speed that the page began with" });
+    const reset = Explore.button("Reset", () => app.reset(), { title: "Back to the model and the speed with which the page began" });
     const link = Explore.button("Copy link", (event) => Explore.copy(app.store.link(), event.currentTarget));
     const start = Explore.button("Start at rest", () => app.store.change({ start: null }), { hidden: true, class: "chosen" });
     const element = make("div", { class: "bar" }, speed.element, make("div", { class: "bar-buttons" }, undo, redo, reset, link, start));
@@ -87,7 +87,7 @@
       undo.disabled = !app.store.canUndo();
       redo.disabled = !app.store.canRedo();
       start.hidden = !state.start;
-      start.title = state.start ? `The motion starts at cam angle ${Explore.fixed(Explore.turned(state.start.cam_angle_rad), 1)}\u00b0. This puts it back to rest on the cam at 0\u00b0.` : "";
+      start.title = state.start ? `The motion starts at cam angle ${Explore.fixed(Explore.turned(state.start.cam_angle_rad), 1)}\u00b0. Click to start it at rest on the cam at 0\u00b0 again.` : "";
     };
     return { element, update };
   };
@@ -145,7 +145,7 @@
     const side = make("div", { class: "side", role: "group", "aria-label": "Numbers of the model" });
     const [tours, stage] = [make("div", { class: "tours" }), make("div", { class: "stage" })];
     element.replaceChildren(headline.element, bar.element, tours, make("div", { class: "columns" }, side, stage), 
-      make("p", { class: "keys" }, "Keys: the arrows walk through the data of a picture, + and \u2212 zoom, Escape goes back, Shift with an arrow moves its line, Enter follows a motion. Ctrl+Z undoes, Ctrl+Shift+Z redoes."),
+      make("p", { class: "keys" }, "Keys: the arrows step through the points of a picture; + and \u2212 zoom; Escape goes back; Shift with an arrow moves the line; Enter follows the motion of a point. Ctrl+Z undoes, Ctrl+Shift+Z redoes."),
       make("p", { class: "live", "aria-live": "polite" }));
     app.controls = Explore.mountControls(side, app);
     app.views = Explore.mountViews(stage, app);

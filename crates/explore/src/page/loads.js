@@ -7,7 +7,7 @@
   const { number, fixed, quantity, extent, element: make } = Explore;
 
   const LOADS = {
-    impact_speed: { name: "impact speed", need: "impact speed" }, gap: { name: "largest gap", need: "gap" }, energy_lost: { name: "energy lost a revolution", need: "energy" },
+    impact_speed: { name: "impact speed", need: "impact speed" }, gap: { name: "largest gap", need: "gap" }, energy_lost: { name: "energy lost per revolution", need: "energy" },
     largest_force: { name: "largest force", need: null }, off_cam: { name: "share of the time off the cam", need: null },
   };
 
@@ -66,7 +66,7 @@
     const path = (row) => (context.model().numbers.find((each) => each.path.endsWith(`.${row.parameter}`)) || {}).path;
     return make("ul", { class: "needs" }, ...rows.map((row) => {
       const [unit, own] = [row.unit ? ` ${row.unit}` : "", path(row)];
-      if (row.value === null) return make("li", {}, `No ${row.parameter} alone meets the need: ${row.note || "none was found"} (${known(row)}).`);
+      if (row.value === null) return make("li", {}, `No change of ${row.parameter} alone meets the need: ${row.note || "none was found"} (${known(row)}).`);
       const value = safe(row);
       const set = own && !meets(row) && value > 0 ? Explore.button(`Set ${number(value, 4)}${unit}`, () => context.assign(own, value), { "aria-label": `Set the ${row.parameter} to ${number(value, 4)}${unit}` }) : null;
       return make("li", {}, make("strong", {}, row.parameter), ` ${limit(row)}${unit} (now ${number(row.now, 5)}; ${known(row)})${row.note ? `; ${row.note}` : ""} `, set);
@@ -120,7 +120,7 @@
       const forceScene = () => {
         const rows = columnsOf(shown.contact_force, "least");
         const unit = unitOf(rows.unit);
-        const hover = (index) => ({ title: `${number(rows.x[index], 6)} rpm`, rows: [["least force", `${withError(rows.y[index], rows.error[index])} ${unit}`], ["at cam angle", Number.isFinite(shown.contact_force[index].cam_angle_rad) ? `${number(Explore.turned(shown.contact_force[index].cam_angle_rad), 5)}°` : "–"]], known: rows.y[index] < 0 ? "computed; below 0 they separate" : "computed" });
+        const hover = (index) => ({ title: `${number(rows.x[index], 6)} rpm`, rows: [["least force", `${withError(rows.y[index], rows.error[index])} ${unit}`], ["at cam angle", Number.isFinite(shown.contact_force[index].cam_angle_rad) ? `${number(Explore.turned(shown.contact_force[index].cam_angle_rad), 5)}°` : "–"]], known: rows.y[index] < 0 ? "computed; below 0 the follower separates" : "computed" });
         return {
           x: { label: "speed", unit: "rpm", range: range() }, y: { label: "least contact force", unit, range: extent([rows.y, [0]]) },
           layers: [{ kind: "rule", y: 0, colour: "ink", width: 1 }, ...separationLayers(shown), ...curve(rows, "blue", hover, atSpeed(rows)), { kind: "rule", x: context.state().rpm, colour: "grey", width: 1.5, dash: [2, 3], label: "" }, needRule()],
@@ -132,7 +132,7 @@
         if (!shown.loads.length) return { x: { label: "speed", unit: "rpm", range: range() }, y: { label: LOADS[key].name, range: [0, 1] }, layers: [...separationLayers(shown), needRule()], message: "no impacts at these speeds", description: "No impacts at these speeds" };
         const rows = columnsOf(shown.loads, key);
         const unit = unitOf(rows.unit);
-        const hover = (index) => ({ title: `${number(rows.x[index], 6)} rpm`, rows: [[LOADS[key].name, `${withError(rows.y[index], rows.error[index])} ${unit}`]], known: "sampled: the largest of runs from four starts" });
+        const hover = (index) => ({ title: `${number(rows.x[index], 6)} rpm`, rows: [[LOADS[key].name, `${withError(rows.y[index], rows.error[index])} ${unit}`]], known: "sampled: the largest value in runs from four starts" });
         const bound = need() && need().kind === key && { kind: "rule", y: need().below, colour: "green", width: 2.5, label: `need: below ${number(need().below, 4)} ${unit}`, move: (value, done) => assign({ below: Number(value.toPrecision(2)) }, done) };
         const last = rows.y.length - 1;
         return {
@@ -167,8 +167,8 @@
         list.classList.remove("waiting");
         const found = required.rows.filter((row) => row.value !== null);
         const met = found.length > 0 && found.some(meets) && !found.some(misses);
-        words.textContent = met ? `Need: ${text}. The machine as it is meets it.` : found.length === 0 ? `Need: ${text}. No number alone meets it.`
-          : `Need: ${text}. The machine as it is ${found.some(misses) ? "does not meet it" : "may miss it, as it lies within ±"}. Each of these changes alone meets it, with the other numbers unchanged:`;
+        words.textContent = met ? `Need: ${text}. The machine meets it without a change.` : found.length === 0 ? `Need: ${text}. No change of a single number meets it.`
+          : `Need: ${text}. The machine ${found.some(misses) ? "does not meet it" : "may miss it: it lies within ± of the limit"}. Each of these changes alone meets it, with the other numbers unchanged:`;
         list.replaceChildren(needList(required.rows, context));
       };
       const show = (state) => {

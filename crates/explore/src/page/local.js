@@ -41,7 +41,7 @@
   }));
   /** Words on the side where no orbit of the map is. */
   const emptySides = (found, reach, scale, y) => [-1, 1].filter((sign) => !found.rays.some((ray) => ray.sign === sign && ray.positions.length <= 2)).map((sign) => ({
-    kind: "text", x: sign * 0.5 * reach * scale, y: (y[0] + y[1]) / 2, anchor: "middle", text: (found.left || []).includes(sign) ? "no orbit: motions leave" : "no orbit of period one or two",
+    kind: "text", x: sign * 0.5 * reach * scale, y: (y[0] + y[1]) / 2, anchor: "middle", text: (found.left || []).includes(sign) ? "no orbit: motions diverge" : "no orbit of period one or two",
   }));
   const raysScene = (found, unit, small) => {
     const reach = reachOf(found);
@@ -52,7 +52,7 @@
     const y = extent([[0], ...shown.map((ray) => ray.y)], 0.25);
     return {
       x: { label: "change of the period δT; faster to the left", unit: scale === 1e6 ? "µs" : "ms", range: [-reach * scale, reach * scale] },
-      y: { label: "position minus that of x*", unit: unit.length, range: y },
+      y: { label: "position relative to x*", unit: unit.length, range: y },
       layers: [{ kind: "rule", x: 0, colour: "grey", width: 1, dash: [2, 3], label: `${number(rpmAt(found, 0), 9)} rpm` }, ...machineLayers(found, scale), ...rays, ...emptySides(found, reach, scale, y)],
       description: found.rays.filter((ray) => ray.positions.length <= 2).map((ray) => `Orbit ${ray.word}, ${stableOf(ray) ? "stable" : "unstable"}, at ${ray.sign < 0 ? "faster" : "slower"} speeds`).join(". ") || "The local map has no orbit of period one or two",
     };
@@ -194,12 +194,12 @@
       const [pair, signs] = [make("div", { class: "pair" }), make("div", { class: "pair" })];
       const titled = (host, title) => { const box = make("div", {}, make("h4", {}, title)); host.append(box); return box; };
       panel.body.append(words, pair);
-      const [all, near] = [context.plot(titled(pair, "Orbits of the local map"), { label: "Orbits near the corner impact", aspect: 0.6, least: 220 }), context.plot(titled(pair, "The same, enlarged about the flattest"), { label: "The same, enlarged", aspect: 0.6, least: 220 })];
+      const [all, near] = [context.plot(titled(pair, "Orbits of the local map"), { label: "Orbits near the corner impact", aspect: 0.6, least: 220 }), context.plot(titled(pair, "The flattest orbits, enlarged"), { label: "The flattest orbits, enlarged", aspect: 0.6, least: 220 })];
       const over = Explore.menu("Verdict over", [], "", (path) => context.setOption("over", path));
       const strip = context.plot(panel.body, { label: "Verdict over a number", height: () => 124 });
       strip.element.before(over);
       panel.body.append(said, signs, numbers);
-      const [folds, flips] = [context.plot(titled(signs, "These signs decide on persistence or fold"), { label: "Signs that decide on a fold", aspect: 0.7, least: 210 }), context.plot(titled(signs, "These signs decide on period two"), { label: "Signs that decide on period two", aspect: 0.7, least: 210 })];
+      const [folds, flips] = [context.plot(titled(signs, "These signs decide between persistence and fold"), { label: "Signs that decide on a fold", aspect: 0.7, least: 210 }), context.plot(titled(signs, "These signs decide whether period two is born"), { label: "Signs that decide on period two", aspect: 0.7, least: 210 })];
       let [verdict, row, answered, rays] = [null, null, null, null];
 
       const choices = () => context.model().numbers.filter((each) => each.path.startsWith("follower.") || Object.keys(context.state().set).includes(each.path));

@@ -111,7 +111,7 @@
           hover: (index) => {
             const each = impacts[index];
             return { title: "Impact", rows: [["cam angle", `${Explore.fixed(((angles[each] % 360) + 360) % 360, 2)}\u00b0`], ["velocity before", Explore.quantity(before[each], units.velocity, 4)],
-              ["against the cam", Explore.quantity(before[each] - camVelocity[each], units.velocity, 4)]], known: "computed" };
+              ["relative to the cam", Explore.quantity(before[each] - camVelocity[each], units.velocity, 4)]], known: "computed" };
           },
           motion: (index) => ({ rpm: found.rpm, cam_angle_rad: Explore.radians(angles[impacts[index]]), velocity_before: before[impacts[index]], label: "impact" }) },
       ],

@@ -132,7 +132,7 @@
         context.change({ views: { ...context.state().views, plane: { ...(context.state().views.plane || {}), axes: value, range: null } } });
       });
       const turns = Explore.menu("Revolutions", ["1", "2", "4", "8", "16", "32"].map((each) => [each, each]), "4", (value) => context.setOption("revolutions", Number(value)));
-      const approach = Explore.check("from its start on", false, (on) => context.setOption("approach", on));
+      const approach = Explore.check("with the transient", false, (on) => context.setOption("approach", on));
       panel.options.append(axes, turns, approach);
       let shown = null;
       let pointed = null;
@@ -269,7 +269,7 @@
         zoom: ({ x, y }) => context.setOption("range", { x: Explore.parts.neat(x), y: Explore.parts.neat(y) }),
         back: () => { if (!boxOf(context)) return false; context.setOption("range", null); return true; },
       });
-      const show = Explore.menu("Show", [["map", "velocity over angle"], ["return", "each angle over the last"]], "map", (value) => {
+      const show = Explore.menu("Show", [["map", "velocity over angle"], ["return", "each angle over the previous one"]], "map", (value) => {
         context.change({ views: { ...context.state().views, impacts: { ...(context.state().views.impacts || {}), show: value, range: null } } });
       });
       const orbits = Explore.check("periodic orbits of one revolution", false, (on) => context.setOption("orbits", on));
@@ -305,7 +305,7 @@
         const corners = ((context.model() || {}).corners || []).map((each) => each.angle_deg).filter((at) => at >= range.x[0] && at <= range.x[1]);
         plot.draw({
           x: { label: returns ? "cam angle at an impact" : "cam angle at the impact", unit: "°", range: range.x, turn: true },
-          y: returns ? { label: "cam angle at the next", unit: "°", range: range.y, turn: true } : { label: "relative velocity after it", unit: unit.velocity, range: range.y },
+          y: returns ? { label: "cam angle at the next impact", unit: "°", range: range.y, turn: true } : { label: "relative velocity after the impact", unit: unit.velocity, range: range.y },
           layers: [
             ...corners.map((x, index) => ({ kind: "rule", x, colour: "grey", width: 1, dash: [2, 3], label: index === 0 ? "corner" : "" })),
             returns && { kind: "line", x: [0, 360], y: [0, 360], colour: "grey", width: 1 },
@@ -314,7 +314,7 @@
             other && { kind: "points", ...other, shape: "ring", size: 9, colour: "purple" },
             ...own,
           ],
-          message: drawn.x.length ? "" : impacts.angle.length ? "one impact alone" : "no impacts: the follower stays on the cam",
+          message: drawn.x.length ? "" : impacts.angle.length ? "only one impact" : "no impacts: the follower stays on the cam",
           description: `${panel.element.querySelector("h3").textContent}. ${many(impacts.angle.length, "impact")} at ${number(rpm, 8)} rpm`,
         });
       };

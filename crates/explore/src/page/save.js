@@ -51,7 +51,7 @@
       const text = instance.command ? instance.command() : answer && answer.command;
       if (text) Explore.copy(text, event.currentTarget); else nothing();
     };
-    panel.buttons.append(Explore.button("Save SVG", svg), Explore.button("Save CSV", csv), Explore.button("Copy as command", command, { title: "The command line that computes what is seen here, digit for digit" }));
+    panel.buttons.append(Explore.button("Save SVG", svg), Explore.button("Save CSV", csv), Explore.button("Copy as command", command, { title: "Command line that computes these results, digit for digit" }));
   };
   /** Saves the model file with the changes in it. */
   Explore.saveModel = (app) => {

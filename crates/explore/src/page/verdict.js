@@ -71,7 +71,7 @@
   const cell = (value) => make("td", { class: "n" }, number(value, DIGITS));
   const matrix = (rows) => make("table", { class: "matrix" }, make("tbody", {}, ...rows.map((row) => make("tr", {}, ...row.map(cell)))));
   const complex = ({ re, im }) => (im === 0 ? number(re, DIGITS) : `${number(re, DIGITS)} ${im < 0 ? "−" : "+"} ${number(Math.abs(im), DIGITS)} i`);
-  const ROUTES = { closed_form: "closed form", variational: "variation round the orbit", finite_difference: "finite differences", least_squares: "a fit to simulations" };
+  const ROUTES = { closed_form: "closed form", variational: "variation along the orbit", finite_difference: "finite differences", least_squares: "a fit to simulations" };
   /** How a number is known: the routes that agree, and the largest difference between two of them. */
   const agreement = (found, quantity) => {
     const all = (found.agreement || []).filter((each) => each.quantity === quantity && Number.isFinite(each.max_rel_diff));

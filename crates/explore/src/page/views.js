@@ -78,7 +78,7 @@
   const KNOWN = { proved: "proved", computed: "computed", sampled: "sampled", read: "read from the model" };
   const LONG = {
     proved: "Proved by interval arithmetic.", computed: "Computed in double precision, with a checked error.",
-    sampled: "Sampled: events between the samples are not seen.", read: "The number is given in the model.",
+    sampled: "Sampled: events between the samples may be missed.", read: "The number is given in the model.",
   };
 
   // A panel ------------------------------------------------------------------------------------------------------------

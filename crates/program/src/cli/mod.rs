@@ -74,7 +74,7 @@ pub enum Exit {
 struct Arguments {
     #[command(subcommand)]
     command: Command,
-    /// When to colour pages, errors and help.
+    /// Condition for colours in pages, errors and help.
     #[arg(long, global = true, value_enum, value_name = "WHEN", default_value = "auto")]
     color: ColorChoice,
     /// Print only results and errors: no notes, progress or `next:`.

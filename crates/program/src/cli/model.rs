@@ -12,7 +12,7 @@ use corner_impact::model::{CONTACTS, Model, ModelError, ModelNumber, Numeral, Un
 use corner_impact::orbit::Parameter;
 use corner_impact::untrusted;
 
-/// Which model a command is about.
+/// Model that a command is about.
 #[derive(clap::Args)]
 pub(super) struct ModelArgument {
     /// Model file (TOML), or a table of lifts (.csv) [default: the paper's model, osorio-2008, which is built in].
@@ -22,7 +22,7 @@ pub(super) struct ModelArgument {
     changes: Changes,
 }
 
-/// Which numbers of the model are others than in its file.
+/// Numbers of the model that replace those of its file.
 #[derive(clap::Args, Clone, Default)]
 pub(super) struct Changes {
     /// Set a number of the model to VALUE (repeatable). NAME is a number such as restitution, its full path such as follower.mass, or its error such as mass.error.

@@ -1,7 +1,7 @@
 //! Suggestion of the command that usually follows another.
 
-/// Fills in the template of the next command. `{model}` is replaced by the words that name the model, `{rpm}` by the speed of the command line,
-/// `{range}` by its range of speeds or by 5 % around its speed, `{axis}` by the range of another number.
+/// Fills in the template of the next command. `{model}` becomes the words that name the model, and `{rpm}` the speed of the command line.
+/// `{range}` becomes its range of speeds, or 5 % around its speed, and `{axis}` the range of another number.
 pub(super) fn filled(template: &str, model: &str, rpm: Option<[f64; 2]>, axis: Option<&str>) -> String {
     let (one, range) = match rpm {
         Some([low, high]) if low < high => (low.to_string(), format!("{low}:{high}")),

@@ -20,7 +20,7 @@ use corner_impact_plot::{Figure, LegendPlace, Look, Theme, TitleChoice, pdf, png
 /// Heading of these options in `--help`.
 const LOOKS: &str = "How a picture looks";
 
-/// How pictures stand on paper.
+/// Options for the size and the letters of a picture.
 #[derive(clap::Args)]
 pub(super) struct LookArguments {
     /// Width on paper, such as 85mm, 8.5cm, 3.35in or 240pt [default: 169mm on paper; an SVG fills its place on a page].
@@ -52,7 +52,7 @@ enum ThemeName {
     Print,
 }
 
-/// How a picture stands on paper, which part of it is shown, and what is written beside it.
+/// Options for the size of a picture, the part of it that is shown, and the files beside it.
 #[derive(clap::Args)]
 pub(super) struct PictureArguments {
     #[command(flatten)]

@@ -10,7 +10,7 @@ use corner_impact::flight::State;
 use corner_impact::orbit::long_run::Budget;
 use corner_impact::study::survey::{Placed, Sample, Start};
 
-/// Where the run starts, or the runs of a survey.
+/// Start of a run, or of the runs of a survey.
 #[derive(clap::Args)]
 pub(super) struct StartArguments {
     /// Cam angle at the start, in rad or as 90deg.
@@ -61,7 +61,7 @@ impl StartArguments {
     }
 }
 
-/// For how long runs are followed before it is said what they come to.
+/// Lengths of runs, after which their motions are classified.
 #[derive(clap::Args)]
 pub(super) struct BudgetArguments {
     /// Revolutions within which a run should settle [default: 200; 300 in chart and diagram].

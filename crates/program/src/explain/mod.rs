@@ -241,8 +241,12 @@ impl Links {
         links.chain(tolerances).chain(claims).collect()
     }
 
-    /// Finds the object of a name. The name may be: a number, with or without its side or its entry's indices; a label; a tolerance;
-    /// a claim's id, or the id without its kind; a field of the model; a name of `compare`, recognized by its beginning.
+    /// Finds the object of a name. The name may be:
+    ///
+    /// - a number, with or without its side or its entry's indices,
+    /// - a label, a tolerance, or a field of the model,
+    /// - a claim's id, with or without its kind,
+    /// - a name of `compare`, recognized by its beginning.
     fn find(&self, what: &str, model: &Model) -> Result<Target<'_>, ExplainError> {
         let side = [("_minus", Side::Minus), ("_plus", Side::Plus), ("-", Side::Minus), ("+", Side::Plus)]
             .into_iter()

@@ -71,7 +71,10 @@ fn answer(page: &str, head: &Head, connection: &TcpStream, state: &ServerState) 
             Some(Why::Newer) => return Err(Some(Reply::empty(reply::CONFLICT))),
             Some(Why::Late) => unanswered(
                 question,
-                &format!("this takes longer than {} s here: ask for less, or run the command", timeouts.as_secs_f64()),
+                &format!(
+                    "this computation takes longer than {} s: reduce it, or run its command in a terminal",
+                    timeouts.as_secs_f64()
+                ),
             ),
             _ => return Err(None),
         },

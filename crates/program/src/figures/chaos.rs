@@ -28,10 +28,10 @@ pub(crate) const CHAOTIC_SET: Entry = Entry {
         prove(&subject.machine(rpm), &set).map_err(|why| refused(why.impacts))?;
         let portrait = portrait(&subject.model, &set).map_err(|error| error.to_string())?;
         let caption = format!(
-            "Impacts of a long run, and a parallelogram N of impacts: each strip is carried along N and beyond both its ends, as the \
-             line of its colour, by the number of impacts that stands at it. So every sequence of these numbers is followed by a motion, \
-             which is proved: a set of chaotic motions exists, with a topological entropy of at least {:.5} a revolution. {}",
-            // Rounded down, because it is a lower bound.
+            "Impacts of a long run, and a parallelogram N of impacts. The map of as many impacts as the number at a strip takes the strip \
+             to the line of its colour, along N and beyond both its ends. So a motion follows every sequence of these numbers (proved): \
+             a set of chaotic motions exists, with a topological entropy of at least {:.5} per revolution. {}",
+            // Rounded down, as a lower bound must be.
             (1e5 * set.entropy()).floor() / 1e5,
             hypotheses(&corner_impact::study::hypotheses(subject.machine(rpm).cam())).unwrap_or_default()
         );

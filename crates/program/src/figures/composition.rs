@@ -35,9 +35,9 @@ pub(crate) const COMPOSITION: Entry = Entry {
     draw: |subject, title| {
         drawn(
             figure(title, &subject.composition()?),
-            "The orbit x* comes to the corner once in a period T*. A neighbour starts at x₁ on Π₁: P₁ flies it to x_d⁻ on Π_D as \
-             if there were no impact, below the cam's surface; P_D puts it to x_d⁺, where the flight after the impact has it at \
-             that time; P₂ flies it on to x₂ on Π₂. All curves are the model's own flights.",
+            "The orbit x* reaches the corner once in a period T*. A neighbour starts at x₁ on Π₁. P₁ flies it to x_d⁻ on Π_D as \
+             if there were no impact, below the cam's surface. P_D maps it to x_d⁺, the state of the flight after the impact at \
+             that time. P₂ flies it on to x₂ on Π₂. All curves are the model's own flights.",
         )
     },
 };

@@ -182,6 +182,5 @@ fn trades(found: &Design) -> Figure {
 /// Label of the band of the machine's uncertainty, shown once per panel.
 fn open(found: &Design) -> String {
     let sources = Sources::of(&found.measured, found.errors);
-    let leave = if sources.errors.are_none() { "leaves" } else { "leave" };
-    format!("± what {} {leave} open", sources.name())
+    format!("uncertainty from {}", sources.name())
 }

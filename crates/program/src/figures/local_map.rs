@@ -51,7 +51,7 @@ fn figure(title: &str, shown: &NextToCorner) -> Figure {
     let flattest = sizes().filter(|size| *size > 0.0).fold(f64::INFINITY, f64::min);
     let (low, high) = (slopes().fold(0.0, f64::min) * shown.reach, slopes().fold(0.0, f64::max) * shown.reach);
     let room = 0.15 * (high - low);
-    let mut panels = vec![panel(shown, [low - room, high + room], "position minus that of x*", true)];
+    let mut panels = vec![panel(shown, [low - room, high + room], "position relative to x*", true)];
     if flattest < SEEN * steepest {
         let side = slopes().find(|slope| slope.abs() * shown.reach == flattest).map_or(1.0, f64::signum);
         let ends = [-0.4 * side * flattest, 1.6 * side * flattest];
@@ -89,7 +89,7 @@ fn panel(shown: &NextToCorner, range: [f64; 2], name: &str, with_names: bool) ->
     let gone = gone.map(|sign| {
         let at = [0.5 * sign * shown.reach * per_second, 0.5 * (range[0] + range[1])];
         let left = shown.left.contains(&sign);
-        let text = if left { "no orbit: motions leave" } else { "no orbit of period one or two" };
+        let text = if left { "no orbit: motions diverge" } else { "no orbit of period one or two" };
         Label::new(at, text, Beside::Above)
     });
     let fixed = shown.rays.iter().filter(|ray| ray.positions.len() == 1).filter_map(|ray| {

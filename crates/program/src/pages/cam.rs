@@ -129,22 +129,24 @@ pub(crate) fn measured(measured: &Measured) -> Vec<Block> {
         " or better"
     ]));
     if measured.is_smoothed {
-        let list = |words: Vec<Words>| if words.is_empty() { "none".into() } else { Words::joined(words, ", ") };
+        let list = |words: Vec<Words>| Words::joined(words, ", ");
+        let features = |name: &str, is_found: bool, places: Vec<Words>| {
+            let known = if is_found { "found" } else { "given" };
+            if places.is_empty() {
+                return words![format!("; no {name} {known}")];
+            }
+            words![format!("; {name} {known}: "), list(places), " deg"]
+        };
         let degrees = |angle: f64| words![(angle, Digits::UpTo(3))];
         let corners = measured.corners_deg.iter().map(|corner| degrees(*corner)).collect();
         let dwells =
             measured.dwells_deg.iter().map(|[from, to]| words![degrees(*from), " to ", degrees(to % 360.0)]).collect();
-        let found = |is_found: bool| if is_found { " found: " } else { " given: " };
         blocks.push(Block::paragraph(words![
             "smoothing: at most ",
             told(measured.largest_distance_m),
-            " from a row; corners",
-            found(measured.corners_are_found),
-            list(corners),
-            "; dwells",
-            found(measured.dwells_are_found),
-            list(dwells),
-            " (deg)"
+            " from a row",
+            features("corners", measured.corners_are_found, corners),
+            features("dwells", measured.dwells_are_found, dwells)
         ]));
         blocks.extend(measured.doubtful_corners.iter().map(|doubtful| {
             let at = doubtful.at_deg.iter().map(|corner| degrees(*corner)).collect();
@@ -209,8 +211,8 @@ fn corners(sheet: &CamSheet) -> Vec<Block> {
         return blocks;
     }
     blocks.push(Block::paragraph(words![
-        "order: order of the lowest derivative of the lift that jumps (1 velocity, 2 acceleration, 3 jerk); jump: its jump, \
-         after minus before, in ",
+        "order: order of the lowest derivative of the lift that jumps (1 velocity, 2 acceleration, 3 jerk); jump: its value \
+         after the corner minus its value before, in ",
         Span::Unit("m/rad^order"),
         "; slopes in ",
         Span::Unit("m/rad"),

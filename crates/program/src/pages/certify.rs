@@ -171,7 +171,7 @@ impl Paged for ProvedResting {
         };
         let round = |round: &Round| {
             let (impacts, turns) = (words::many(round.impacts, "impact"), words::many(round.revolutions, "revolution"));
-            format!("{turns}, with {impacts} and the endless sequence by which it comes to rest").as_str().into()
+            format!("{turns}, with {impacts} and the infinite sequence of impacts before its rest").as_str().into()
         };
         page.push(Block::paragraph(match self.periodic[..] {
             [] => words![all, "."],
@@ -225,7 +225,7 @@ fn certificate(of: &Certificate) -> Vec<Block> {
     let near = |side: &ProvedSide| {
         // Proofs exclude eigenvalues on the unit circle.
         let stability = if side.stable { Stability::Stable } else { Stability::Unstable };
-        format!("{}, {}", words::speeds(Some(side.fixed_point_exists_for)), words::stability(stability))
+        format!("{} and is {}", words::speeds(Some(side.fixed_point_exists_for)), words::stability(stability))
     };
     let within = |side: &ProvedSide| side.followed.as_ref().map(|followed| Digits::Size.text(followed.period_within_s));
     let how_far = match (within(&of.sides.minus), within(&of.sides.plus)) {
@@ -261,8 +261,8 @@ fn certificate(of: &Certificate) -> Vec<Block> {
             words![
                 (TextMark::Strong, of.verdict.to_string().as_str()),
                 format!(
-                    ": {}. Next to omega*, the machine has the fixed point with its impact before the corner at speeds {}. It has the one with \
-                     its impact after the corner at speeds {}. {how_far}{others}",
+                    ": {}. Next to omega*, the machine's fixed point with its impact before the corner exists {}. The one with its impact \
+                     after the corner exists {}. {how_far}{others}",
                     words::meaning(of.verdict, of.sides.minus.stable || of.sides.plus.stable, None),
                     near(&of.sides.minus),
                     near(&of.sides.plus),

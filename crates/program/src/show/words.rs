@@ -168,8 +168,8 @@ pub(crate) fn meaning(scenario: Scenario, has_stable: bool, danger: Option<&Dang
             "the two fixed points meet at omega* = 60/T* rpm and vanish: beyond it, a motion has no fixed point to follow"
         }
         Scenario::NonsmoothFold => {
-            "the two fixed points meet at omega* = 60/T* rpm and vanish. Both are unstable: a follower loses there not a fixed point \
-             but any other attractor that the local map has beside them"
+            "the two fixed points meet at omega* = 60/T* rpm and vanish. Both are unstable, so a follower loses no fixed point there, \
+             but any other attractor that the local map has"
         }
         Scenario::NonsmoothFlip => {
             "the fixed point crosses from one side to the other, and an orbit of period two is born"
@@ -281,8 +281,8 @@ pub(crate) fn stability(stability: Stability) -> &'static str {
 /// Speeds below or above the corner-impact speed, or that speed itself.
 pub(crate) fn speeds(speeds: Option<Speeds>) -> &'static str {
     match speeds {
-        Some(Speeds::Faster) => "faster than omega*",
-        Some(Speeds::Slower) => "slower than omega*",
+        Some(Speeds::Faster) => "above omega*",
+        Some(Speeds::Slower) => "below omega*",
         None => "at omega*",
     }
 }

@@ -13,7 +13,6 @@ use corner_impact::agreement::{Agreement, Quantity, shared_decimals};
 use corner_impact::border_collision::feigin::{Scenario, SideCounts};
 use corner_impact::border_collision::{Classification, Danger, NormalForm, Refusal};
 use corner_impact::cam::Side;
-use corner_impact::orbit::Stability;
 use corner_impact::study::routes::Skipped;
 use corner_impact::study::verify::{ComparisonTally, LeftOpen, Verification};
 pub(crate) use map::{agreement, map};
@@ -198,8 +197,7 @@ fn classification(kind: &Classification, danger: Option<&Danger>) -> Vec<(Words,
         words::meaning(kind.scenario, kind.minus.stable || kind.plus.stable, danger)
     ];
     let fate = |side: &SideCounts| {
-        let article = if side.stability == Stability::Unstable { "an" } else { "a" };
-        format!("{article} {} one at speeds {}", words::stability(side.stability), words::speeds(Some(side.exists_for)))
+        format!("exists {}, {}", words::speeds(Some(side.exists_for)), words::stability(side.stability))
     };
     let fixed = words!["minus: ", fate(minus), Span::Break, "plus:  ", fate(plus)];
     let mut entries: Vec<(Words, Words)> =

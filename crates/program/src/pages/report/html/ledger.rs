@@ -51,10 +51,11 @@ pub(crate) fn section(report: &Report) -> Result<Option<PageSection>, HtmlError>
     let body = html! {
         p {
             "Every displayed equation, number, statement and figure of the paper, in words of this project, with a verdict and the "
-            "evidence for it. All of it is about " (ledger.source) ". A " em { "misprint" } " is a slip in what is written, on which no result rests; what "
-            "is " em { "refuted" } " is wrong; what holds " em { "in part" } " says what does not; a " em { "definition" } " is nothing to "
-            "check; " em { "open" } " is not decided here. What is refuted is " (slips(ledger.slips_and_consequences(Verdict::Refuted)))
-            " of them, what is misprinted " (slips(ledger.slips_and_consequences(Verdict::Misprint))) "."
+            "evidence for it. All of it is about " (ledger.source) ". A " em { "misprint" } " is an error in what is printed, on which no result rests. "
+            "A " em { "refuted" } " statement is wrong. A statement that holds " em { "in part" } " has a row that says what is wrong. In a "
+            em { "definition" } " there is nothing to check. An " em { "open" } " statement is not decided here. The refuted statements are "
+            (slips(ledger.slips_and_consequences(Verdict::Refuted))) " of them, and the misprints are "
+            (slips(ledger.slips_and_consequences(Verdict::Misprint))) "."
             @if let Some(test) = &shared { " Every check is run by the test " (words(test)) "." }
         }
         div.ledger-page {

@@ -22,7 +22,7 @@ pub(crate) fn section(report: &Report, figures: &DrawnFigures) -> Option<PageSec
     // More starts find more motions, and a rare one may hit hardest.
     if let Some([speed, rpm]) = hardest.filter(|[speed, _]| *speed > SHARED * most) {
         let harder = words![
-            "Another motion, which the four starts do not reach or which is at a speed between theirs, hits harder: with ",
+            "Another motion, from another start or at a speed between these, hits harder: with ",
             (speed, Digits::Significant(3)),
             " ",
             Span::Unit("m/s"),
