@@ -18,7 +18,10 @@ from latex2mathml.converter import convert
 ROOT = Path(__file__).parent.parent
 REPOSITORY = tomllib.loads((ROOT / "Cargo.toml").read_text())["workspace"]["package"]["repository"]
 PROGRAM = ROOT / "target/release/corner-impact"
-LIVE = '<iframe class="live" src="live.html" title="The live page of the paper\'s model"></iframe>'
+LIVE = (
+    '<p><a href="live.html" target="_blank">Open the live page in a tab of its own.</a></p>\n\n'
+    '<iframe class="live" src="live.html" title="The live page of the paper\'s model"></iframe>'
+)
 
 CODE = re.compile(r"(^```.*?^```$|``.+?``|`[^`\n]+`)", re.MULTILINE | re.DOTALL)
 FORMULA = re.compile(r"\$([^$`]+?)\$")

@@ -30,7 +30,10 @@ rm -rf "$new"
 mkdir -p "$new/$name/completions" "$new/$name/man"
 case $target in *-windows-*) program=corner-impact.exe ;; *) program=corner-impact ;; esac
 cp "target/$target/release/$program" README.md CHANGELOG.md CITATION.cff LICENSE-* "$new/$name/"
-for shell in bash elvish fish powershell zsh; do "$prints" completions $shell > "$new/$name/completions/corner-impact.$shell"; done
+# The names under which the shells look for them.
+for file in bash:corner-impact.bash elvish:corner-impact.elv fish:corner-impact.fish powershell:_corner-impact.ps1 zsh:_corner-impact; do
+    "$prints" completions "${file%%:*}" > "$new/$name/completions/${file#*:}"
+done
 "$prints" man --quiet --out "$new/$name/man"
 cd target/dist
 case $target in

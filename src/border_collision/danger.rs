@@ -1,8 +1,8 @@
 //! Danger at a corner impact that Feigin's counts do not show: basins that shrink to nothing, or several attractors.
 //!
-//! *Dangerous* (Hassouneh, Abed and Nusse 2004; Ganguli and Banerjee 2005): the local map has an attractor on either side of the corner
-//! impact, such as a stable fixed point, and yet motions diverge at mu = 0. The map looks the same at every scale. So its basins at mu are
-//! those at mu = 1 or -1, scaled by |mu|. The motions that diverge at mu = 0 bound the basins, which shrink to nothing as mu goes to 0.
+//! *Dangerous* (Hassouneh, Abed and Nusse 2004; Ganguli and Banerjee 2005): motions diverge at mu = 0, although the local map has an
+//! attractor on either side of the corner impact, such as a stable fixed point. The map looks the same at every scale. So its basins at
+//! mu are those at mu = 1 or -1, scaled by |mu|. The motions that diverge at mu = 0 bound the basins, which shrink to nothing as mu goes to 0.
 //!
 //! *Multiple attractors* (Dutta, Nusse, Ott, Yorke and Yuan 1999): the local map has several attractors at one sign of mu. They and
 //! the borders between their basins shrink to one point as mu goes to 0. So the smallest disturbance there decides between them.

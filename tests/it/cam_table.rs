@@ -291,7 +291,7 @@ fn tables_that_are_refused() {
     };
     let cases: [(&str, String, &[&str]); 20] = [
         ("empty", String::new(), &[".csv: is empty", "angle_deg,lift"]),
-        ("header", "place,height\n0,1\n".into(), &[".csv:1: header = place,height", "as angle_deg,lift does"]),
+        ("header", "place,height\n0,1\n".into(), &[".csv:1: header = place,height", "such as angle_deg,lift"]),
         (
             "inches",
             "angle [deg],lift [mille]\n0,1\n".into(),

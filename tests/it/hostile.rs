@@ -202,9 +202,9 @@ fn a_corner_that_cannot_be_is_refused_by_every_command() {
         ("corners_deg = [60.0, 60.0]", "has 60 twice"),
         ("corners_deg = [-60, 300]", "has 300 twice"),
         ("corners_deg = [0, 60, 360]", "has 0 twice"),
-        ("corners_deg = [0.0]", "has 0, which is inside of a dwell"),
-        ("corners_deg = [355]", "has 355, which is inside of a dwell"),
-        ("corners_deg = [20.0]\ndwells_deg = [[10, 40]]", "has 20, which is inside of a dwell"),
+        ("corners_deg = [0.0]", "has 0, which is inside a dwell"),
+        ("corners_deg = [355]", "has 355, which is inside a dwell"),
+        ("corners_deg = [20.0]\ndwells_deg = [[10, 40]]", "has 20, which is inside a dwell"),
     ] {
         fs::write(folder.path().join("model.toml"), model(corners)).unwrap();
         let mut sentences = std::collections::BTreeSet::new();
@@ -339,8 +339,8 @@ fn a_name_in_quotes_is_one_name() {
     let folder = TempDir::new().unwrap();
     let path = folder.path().join("model.toml");
     for (line, says) in [
-        ("\"follower.mass\" = 2.0", "\"follower.mass\" is one name"),
-        ("\"segment[0]\" = 2.0", "\"segment[0]\" is one name"),
+        ("\"follower.mass\" = 2.0", "\"follower.mass\" must not be in quotes"),
+        ("\"segment[0]\" = 2.0", "\"segment[0]\" must not be in quotes"),
         ("'a.b' = { c = 1 }", "'a.b' must not be in quotes"),
     ] {
         fs::write(&path, format!("{line}\n{}", osorio_text(&[]))).unwrap();

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use approx::assert_abs_diff_eq;
+use approx::{assert_abs_diff_eq, assert_relative_eq};
 use corner_impact::cam::{Cam, Corner, Law, Segment, Side, apart};
 use corner_impact::measured::{PlausibleCams, Remarks};
 use corner_impact::model::{Model, Study};
@@ -11,7 +11,7 @@ use corner_impact::orbit::{Parameter, PeriodicOrbit, Search};
 use corner_impact::progress::Unwatched;
 use corner_impact::study::attractors::{Cause, Resolution, Step, Transition};
 use corner_impact::study::design::contact::{Contact, Separation};
-use corner_impact::study::design::needs::Answer;
+use corner_impact::study::design::needs::{Answer, Lever};
 use corner_impact::study::design::{Asked, Design, SeparationPlace, design, known};
 use corner_impact::study::locate::locate;
 use corner_impact::study::orbit::{OrbitQuery, orbits};
@@ -1041,6 +1041,14 @@ fn a_new_measured_machine() {
     found.attractors[1].birth.as_mut().unwrap().error = None;
     let page = found.text().unwrap();
     assert_eq!(page.matches(" 2915 ± ? ").count(), 2, "{page}");
+    // A need and a survey over the number to change find one value with one uncertainty.
+    let needs = design(&model, &asked("no separation to 3500 rpm"), &Unwatched).unwrap().needs;
+    let preload = needs.iter().find(|it| it.lever == Lever::Preload).unwrap();
+    let survey = ["speeds", "valve.toml", "--rpm", "3500", "--over", "preload=425:440:4", "--starts", "4", "--json"];
+    let survey: Value = serde_json::from_str(&run(&survey)).unwrap();
+    assert_relative_eq!(survey["detachment"].as_f64().unwrap(), preload.value.unwrap(), max_relative = 1e-9);
+    let error = preload.error.unwrap().total();
+    assert_relative_eq!(survey["detachment_error"].as_f64().unwrap(), error, max_relative = 1e-6);
     run(&["report", "valve.toml", "--no-external", "--rpm", "2700:3500", "--out", "report.html"]);
     let report = std::fs::read_to_string(folder.path().join("report.html")).unwrap();
     for says in [

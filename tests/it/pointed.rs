@@ -168,7 +168,7 @@ fn near_parameters_are_asked_for() {
         let message = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), Some(2));
         assert!(
-            message.contains("there are: rpm, cam.base_radius") && message.trim_end().ends_with(meant),
+            message.contains("allowed are: rpm, cam.base_radius") && message.trim_end().ends_with(meant),
             "{message}"
         );
     }

@@ -214,7 +214,7 @@ fn numbers_are_read_however_they_are_typed() {
     is_the_lobe(&format!("angle [deg];lift\n{degrees}"), "", 1.0);
     is_the_lobe(&degrees, "", 1.0);
     for (csv, says) in [
-        (format!("angle [rad];lift\n{degrees}"), "name rad and deg"),
+        (format!("angle [rad];lift\n{degrees}"), "name both rad and deg"),
         ("angle;lift [um]\n0;1'08\n1;2\n".to_owned(), "lift = 1'08: must be a finite number"),
         ("angle;lift [um]\n0;1'0a8\n1;2\n".to_owned(), "lift = 1'0a8: must be a finite number"),
         ("angle;lift\n0;1°\n1;2\n".to_owned(), "lift = 1°: must be a finite number"),

@@ -1,5 +1,7 @@
-//! Checks of the chaotic motion that coexists with the motion of one impact a revolution: the border of their basins, the speed at which the
-//! chaotic motion is lost, and the change to it when the orbit of one impact has vanished.
+//! Checks of the chaotic motion that coexists with the motion of one impact a revolution.
+//!
+//! They are about the border of their basins, the speed at which the chaotic motion is lost, and the change to it when the orbit of one
+//! impact has vanished.
 
 use super::transition::{from_x_star, is_period_one, map};
 use super::{listed, machine, one_impact};

@@ -1,7 +1,9 @@
 //! Checks, by the simulator, of statements about the follower's motion at a speed.
 //!
-//! `chattering` is about slow cams, where the follower comes to rest on the cam once a revolution; `transition` is
-//! about fast ones, near the corner impact; `global` is about the motions that coexist there, and the change from one to the other.
+//! - `chattering`: slow cams, on which the follower comes to rest once a revolution.
+//! - `transition`: fast cams, near the corner impact.
+//! - `global`: motions that coexist there, and the change from one to the other.
+//!
 //! Evidence must not depend on the computer: for a chaotic run it contains only results that every run shows.
 
 mod chattering;

@@ -1,6 +1,7 @@
 //! Finds the change of one number that makes a machine meet a need, with the other numbers kept.
 
 use std::cell::Cell;
+use std::convert::Infallible;
 
 use rayon::prelude::*;
 use serde::Serialize;
@@ -8,7 +9,7 @@ use serde::Serialize;
 use super::contact::Contact;
 use super::loads::Loads;
 pub use super::need::{Need, What, in_si};
-use crate::bracket::{Width, halve};
+use crate::bracket::{Width, halve, secants};
 use crate::cam::Cam;
 use crate::known::Evidence;
 use crate::model::{Follower, Model};
@@ -197,8 +198,11 @@ pub(super) fn answer(
     let machines = machines.filter(|_| found.value.is_some() && found.note.is_empty());
     let ends = |found: &Found| [found.value, found.other].into_iter().flatten().collect::<Vec<f64>>();
     let there = |model: &Model, cam: &Cam| {
-        let found = find(&of.on(model, &Contact::new(cam, model.follower)), need, lever).ok()?;
-        Some(ends(&found)).filter(|found_there| found_there.len() == ends(&found).len())
+        let changed = of.on(model, &Contact::new(cam, model.follower));
+        let near =
+            if need.what == What::NoSeparation { ends_near(&changed, need.rpm, lever, &ends(&found)) } else { None };
+        let found_there = near.or_else(|| Some(ends(&find(&changed, need, lever).ok()?)));
+        found_there.filter(|found_there| found_there.len() == ends(&found).len())
     };
     // The number that is sought has no error.
     let of_numbers =
@@ -255,6 +259,23 @@ pub(super) fn answer(
         note: notes.collect::<Vec<_>>().join("; "),
         known,
     })
+}
+
+/// Finds the ends of the range that meets a need of no separation, by secants from the ends for a similar machine. None if these do not
+/// converge nearby.
+fn ends_near(of: &Changed<'_>, rpm: f64, lever: Lever, ends: &[f64]) -> Option<Vec<f64>> {
+    /// Largest difference of the ends of similar machines, over the end.
+    const NEARBY: f64 = 0.2;
+    const STEPS: usize = 12;
+    let excess =
+        |value: f64| -> Result<f64, Infallible> { Ok(of.with(lever, value).contact.separation().speed() - rpm) };
+    let near = |end: &f64| {
+        let seen = |value: f64| excess(value).map(|excess| (value, excess));
+        let (Ok(first), Ok(second)) = (seen(1.01 * end), seen(*end));
+        let Ok(([_, (value, _)], converges)) = secants([first, second], STEPS, tolerance::ROOT_WIDTH.value, excess);
+        Some(value).filter(|value| converges && (value / end - 1.0).abs() < NEARBY)
+    };
+    ends.iter().map(near).collect()
 }
 
 /// Uncertainty of the separation speed that a measured cam causes, over that speed. To meet a need for certain, its speed is raised by it.
