@@ -81,7 +81,7 @@ archive: $(RELEASING) ## build the program for TARGET (this machine's without it
 	PATH="$(CURDIR)/$(BIN):$$PATH" crates/program/archive.sh $(TARGET)
 
 # All but those that say `publish = false`. The live page's module is a file that git does not have: hence --allow-dirty.
-PUBLISHED := --workspace --exclude corner-impact-explore-module --exclude corner-impact-python --exclude corner-impact-tests \
+PUBLISHED := --workspace --exclude corner-impact-benches --exclude corner-impact-explore-module --exclude corner-impact-python --exclude corner-impact-tests \
     --locked --allow-dirty
 package: ## pack the crates that are published, and compile each from its package (after `make explore`)
 	$(CARGO) package $(PUBLISHED) $(PACKAGING)
@@ -201,10 +201,10 @@ soak: ## a thousand million revolutions at 700 rpm, a hundred million at 670: me
 	SOAK=all $(CARGO) test $(RELEASE) --test it -- --include-ignored --nocapture the_length_of_a_run a_million_impacts
 
 bench: ## time a revolution: the scan-and-bisect baseline and the simulator side by side, interleaved
-	$(CARGO) bench --locked --quiet --bench table
+	$(CARGO) bench --locked --quiet --package corner-impact-benches --bench table
 
 bench-each: ## the same pieces of work one by one, with criterion's statistics
-	$(CARGO) bench --locked --bench simulate
+	$(CARGO) bench --locked --package corner-impact-benches --bench simulate
 
 bench-growth: ## how the work of each command grows with its size (a quarter of an hour)
 	$(CARGO) build $(RELEASE) --quiet --bins
@@ -218,7 +218,7 @@ $(PEERS): benches/peers/requirements.txt
 	@touch $@
 
 bench-peers: $(PEERS) ## the same cam by other event-finding integrators: time beside accuracy (some minutes)
-	$(CARGO) build $(RELEASE) --quiet --bins --example baseline
+	$(CARGO) build $(RELEASE) --quiet --bins --package corner-impact-cli --package corner-impact-benches
 	$(CARGO) build $(RELEASE) --quiet --manifest-path benches/peers/diffsol/Cargo.toml
 	benches/peers/.venv/bin/python benches/peers/run.py
 

@@ -49,7 +49,7 @@ PEERS = [
     ("diffsol", "default, restarted", ["diffsol/target/release/diffsol-events"], "default", True),
     ("diffsol", "tightest, across", ["diffsol/target/release/diffsol-events"], "tightest", False),
     ("diffsol", "tightest, restarted", ["diffsol/target/release/diffsol-events"], "tightest", True),
-    ("scan and bisect", "256 steps a revolution", [str(ROOT / "target/release/examples/baseline")], None, None),
+    ("scan and bisect", "256 steps a revolution", [str(ROOT / "target/release/baseline")], None, None),
     ("corner-impact", "", [str(PROGRAM)], None, None),
 ]
 # The paper's x* on the cam's coordinates, to the digits that every program is given.
@@ -280,7 +280,7 @@ def chattering(peers, quick):
 
 def global_answer(peers, quick):
     """What runs end on over twenty speeds, and how many starts on each."""
-    loop = ROOT / "target/release/examples/baseline"
+    loop = ROOT / "target/release/baseline"
     reference = Reference(model(), 700)
     circles = task_for(reference, 700.0, [], 0.0)["problem"]["arcs"]
     return attractors.table(loop, PROGRAM, MODEL, circles, float(reference.restitution))

@@ -25,7 +25,7 @@ use crate::work::spread;
 /// The piecewise-linear map of the paper (eq:pwlf) at a corner impact of a model.
 ///
 /// A deviation dx from the state of the corner impact at its section, and a change dT, s, of the period, map to A dx + B dT one
-/// revolution later. dx is (position, m; velocity, m/s). A and B are `A_minus`, `B_minus` if the impact comes before the corner, and
+/// revolution later. The entries of dx are a position, m, and a velocity, m/s. A and B are `A_minus`, `B_minus` if the impact comes before the corner, and
 /// `A_plus`, `B_plus` if it comes after it. The impact comes before the corner where e dx + f dT < 0; `border` is (e1, e2, f).
 ///
 /// The corner impact is the slowest that `locate` finds over `rpm`, (lowest, highest), or in the model's `[study]`, of orbits with

@@ -146,7 +146,7 @@ pub(super) fn smoothing(
             dwells_deg.iter().flatten().any(is_inside)
         };
         if let Some(corner) = corners.iter().find(inside) {
-            return Err(fields.reject(path, format!("has {corner}, which is inside of a dwell")));
+            return Err(fields.reject(path, format!("has {corner}, which is inside a dwell")));
         }
         corners_deg = Some(corners);
     }

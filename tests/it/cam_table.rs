@@ -323,7 +323,7 @@ fn tables_that_are_refused() {
             &[".csv:4: angle_deg = 60: angles must rise", "above 120"],
         ),
         ("one-row", "angle_deg,lift\n0,1\n".into(), &[".csv: has 1 different angles; 3 to 1000000 are needed"]),
-        ("two-rows", "angle_deg,lift\n0,1\n180,1\n360,1\n".into(), &[".csv: 2 different angles"]),
+        ("two-rows", "angle_deg,lift\n0,1\n180,1\n360,1\n".into(), &[".csv: has 2 different angles"]),
         ("gap", degrees(100..120), &[".csv:101: angle_deg = 99: no row from 99 to 120: rows are missing", "10"]),
         ("open", format!("{}360,0.2\n", degrees(0..0)), &[".csv:362: lift = 0.2: must be 0.119", "on line 2"]),
     ];

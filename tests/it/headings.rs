@@ -227,7 +227,7 @@ fn a_unit_that_is_not_understood_is_refused_with_the_line_that_says_it() {
         ("Angle [deg];Lift (mm) inches", "name both mm and in", "unit = \"mm\"", 1.0),
         ("Angle [deg];Lift [mm]\nDEG;INCH", "name both mm and in", "unit = \"in\"", 25.4),
         ("# angle [deg]; lift [mm]\nangle;lift [in]", "name both mm and in", "unit = \"in\"", 25.4),
-        ("Angle [deg];Lift [mm]\nrad;mm", "name deg and rad", "angle_unit = \"deg\"", 1.0),
+        ("Angle [deg];Lift [mm]\nrad;mm", "name both deg and rad", "angle_unit = \"deg\"", 1.0),
         ("# lifts in inches\nangle;lift", "unit = inches: is a unit of length", "unit = \"in\"", 25.4),
         ("angle;lift  # deg, inch", "unit = inch: is a unit of length", "unit = \"in\"", 25.4),
         ("# Lift in 0.01 mm\nangle;lift", "is a unit of length", "unit = \"0.01 mm\"", 0.01),

@@ -576,10 +576,7 @@ fn tolerances() {
         (json!({ "dwells_deg": [[60, 110], [100, 120]] }), "has dwells that meet"),
         (json!({ "dwells_deg": [[60, 60]] }), "a dwell must be longer than 0"),
         (json!({ "dwells_deg": [[1, 359]] }), "leaves fewer than three rows"),
-        (
-            json!({ "dwells_deg": [[10, 50]], "corners_deg": [20] }),
-            "cam.corners_deg has 20, which is inside of a dwell",
-        ),
+        (json!({ "dwells_deg": [[10, 50]], "corners_deg": [20] }), "cam.corners_deg has 20, which is inside a dwell"),
     ] {
         let refused = refused(more.clone());
         assert!(refused.contains(says), "{more}: {refused}");

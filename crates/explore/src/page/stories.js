@@ -71,7 +71,7 @@
       { title: "What separation costs", view: "loads", state: { rpm: 3500, views: { loads: { range: [2000, 4000], load: "impact_speed" } } },
         text: "At 3500 rpm the follower is off the cam for 24.7 % of the time and lands at up to 3668 ± 21 mm/s. These loads are sampled: each is the largest value in runs from four starts." },
       { title: "A need", view: "loads", state: { rpm: 3600, views: { loads: { range: [2000, 4000], need: { kind: "separation", rpm: 3600 } } } },
-        text: "Suppose that the follower must stay on the cam up to 3600 rpm (green line). One change is enough: a preload of at least 472.7 ± 6.6 N instead of 220 N, or a stiffness of at least 60.03 ± 0.78 N/mm instead of 30 N/mm (computed)." },
+        text: "Suppose that the follower must stay on the cam up to 3600 rpm (green line). One change is enough: a preload of at least 472.7 ± 7.6 N instead of 220 N, or a stiffness of at least 60.03 ± 0.57 N/mm instead of 30 N/mm (computed)." },
       { title: "A spring that meets the need", view: "loads", state: { rpm: 3600, set: { "follower.stiffness": 40, "follower.preload": 400 }, views: { loads: { range: [2000, 4000], need: { kind: "separation", rpm: 3600 } } } },
         text: "With a spring of 40 N/mm and a preload of 400 N the follower separates at 3629 ± 17 rpm. This whole range lies above the required 3600 rpm (computed)." },
     ],
