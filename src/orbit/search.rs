@@ -172,10 +172,17 @@ impl<'a> Found<'a> {
         Ok(self.searched)
     }
 
+    /// Adds an orbit that was found without a proof, unless it is known or the list of its kind is proved to be complete. Next to a
+    /// corner, Newton's method also finds an orbit that exists within rounding alone.
     fn keep(&mut self, orbit: PeriodicOrbit) {
+        let impacts = orbit.impacts().count();
+        let is_listed = |complete: &Complete| complete.known == Evidence::Proved && complete.impacts == impacts;
+        if matches!(orbit.course, Course::Impacts(_)) && self.searched.complete.iter().any(is_listed) {
+            return;
+        }
         // A long run may settle on an orbit that repeats sooner.
-        let wanted = orbit.revolutions == self.wanted.revolutions
-            && self.wanted.impacts.is_none_or(|impacts| orbit.impacts().count() == impacts);
+        let wanted =
+            orbit.revolutions == self.wanted.revolutions && self.wanted.impacts.is_none_or(|wanted| impacts == wanted);
         if wanted && !self.searched.orbits.iter().any(|known| known.is_same(&orbit)) {
             self.searched.orbits.push(orbit);
         }

@@ -1019,10 +1019,13 @@ fn a_new_measured_machine() {
         assert_eq!(notes.contains("cam.tolerance: 0.50 mm"), is_loose, "{notes}");
     }
     let page = run(&["design", "valve.toml", "--speeds", "3"]);
-    assert!(page.contains(" ± ") && page.contains(" rpm: lift rounded to 0.001 mm."), "{page}");
+    assert!(page.contains(" ± ") && page.contains(" rpm (± from the cam: lift rounded to 0.001 mm)."), "{page}");
     let speeds = ["speeds", "valve.toml", "--rpm", "2700:4500", "--speeds", "10", "--starts", "8"];
     let page = run(&speeds);
-    assert!(page.contains("leaves the cam first at 29") && page.contains("rpm: lift rounded to 0.001 mm"), "{page}");
+    assert!(
+        page.contains("leaves the cam first at 29") && page.contains("rpm (± from the cam: lift rounded to 0.001 mm)"),
+        "{page}"
+    );
     assert!(page.contains("± is the uncertainty from the cam, lift rounded to 0.001 mm"), "{page}");
     // No speed has more digits than the cam leaves it, whether how far it is open is known or not.
     let decimals =

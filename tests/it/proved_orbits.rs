@@ -110,6 +110,25 @@ fn the_paper_s_machine_has_no_orbit_of_one_impact_below_its_corner_impact_and_tw
     assert_eq!(of_one(&located).len(), 1, "{located}");
 }
 
+/// 4e-9 rpm below the corner impact, where Newton's method still finds the orbit that exists above it: both lists are the proved one.
+#[test]
+fn an_orbit_that_exists_within_rounding_alone_is_not_listed() {
+    let paper = "models/osorio-2008.toml";
+    for (rpm, count) in [("673.234445", 0), ("673.23444500382", 2)] {
+        for arguments in [&["orbit", paper, "--rpm", rpm][..], &["orbit", paper, "--rpm", rpm, "--impacts", "1"]] {
+            let found = document(arguments);
+            let orbits = found["orbits"].as_array().unwrap().iter();
+            let one = orbits.filter(|orbit| orbit["impacts"].as_array().is_some_and(|impacts| impacts.len() == 1));
+            assert_eq!(one.count(), count, "{arguments:?}");
+            assert_eq!(
+                found["complete"][0],
+                json!({"revolutions": 1, "impacts": 1, "known": "proved"}),
+                "{arguments:?}"
+            );
+        }
+    }
+}
+
 #[test]
 #[ignore = "slow"]
 fn folds_and_grazes_are_proved_where_branches_have_them() {

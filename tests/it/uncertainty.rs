@@ -440,7 +440,7 @@ fn pages_say_where_the_uncertainty_comes_from() {
     let speeds = ["speeds", "--rpm", "2800:3000", "--speeds", "3", "--starts", "4"];
     for command in [&design[..], &speeds[..]] {
         let page = run(&[command, &["valve.toml"]].concat());
-        assert!(page.contains(of_cam) && page.contains("rpm: lift rounded to 0.001 mm"), "{page}");
+        assert!(page.contains(of_cam) && page.contains("rpm (± from the cam: lift rounded to 0.001 mm)"), "{page}");
         let page = run(&[command, &["valve.toml", "--set", "mass.error=0.001"]].concat());
         assert!(page.contains(both) && page.contains(" from the cam (lift rounded to 0.001 mm), "), "{page}");
         assert!(page.contains(" from the numbers (mass 2"), "{page}");

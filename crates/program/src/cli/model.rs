@@ -240,17 +240,21 @@ impl ModelArgument {
         self.file.as_deref()
     }
 
+    fn is_table(&self) -> bool {
+        self.file.as_deref().is_some_and(|path| ends_in(path, &TABLES))
+    }
+
     /// Options of the follower that a table of lifts still needs, each after a blank, with units as placeholders; empty for a model file.
     pub(super) fn still_needed(&self) -> String {
-        let is_table = self.file.as_deref().is_some_and(|path| ends_in(path, &TABLES));
-        let missing = self.changes.follower.missing().filter(|_| is_table);
+        let missing = self.changes.follower.missing().filter(|_| self.is_table());
         missing.map(|option| format!(" --{} {}", option.name, option.unit.to_uppercase())).collect()
     }
 
-    /// Returns the number that an option varies; rejects a number that --set fixes.
+    /// Returns the number that an option varies; rejects a number that --set fixes. The options of a follower are the model's own numbers if
+    /// the file is a table of lifts.
     pub(super) fn varied(&self, model: &Model, name: &str, option: &str) -> Result<Parameter, CommandError> {
         let parameter = Parameter::named(model, name)?;
-        let changes = self.changes.all()?;
+        let changes = if self.is_table() { self.changes.numbers.clone() } else { self.changes.all()? };
         // The varied number is exact, whatever its error.
         let values = changes.iter().filter(|change| error_of(&change.name).is_none());
         let set = values.map(|change| Parameter::named(model, &change.name));

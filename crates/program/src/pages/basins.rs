@@ -16,7 +16,7 @@ impl Paged for Summary {
         let mut lines =
             vec![format!("{model} at {rpm} rpm, {} at {angle:.4} deg", words::many(basins.starts as u64, "start"))];
         lines.push(HEAD.into());
-        lines.extend(basins.parts.iter().map(|part| format!("  {}", ending(part))));
+        lines.extend(basins.parts.iter().map(|part| format!("  {}", ending(basins, part))));
         lines.extend(words::transient_chaos(&basins.wandering).map(|words| format!("  {words}")));
         lines.extend(below_cam(basins).map(|words| format!("  {words}")));
         lines.extend(basins.failure.iter().map(|why| format!("  failed ({}): {why}", basins.failed)));
@@ -32,8 +32,8 @@ impl Paged for BasinsOver {
         lines.push(HEAD.into());
         for at in &self.at {
             lines.push(format!("  {}", self.over.words(Digits::Significant(6).text(at.place.across()))));
-            let parts = at.found.iter().flat_map(|found| &found.parts);
-            lines.extend(parts.map(|part| format!("    {}", ending(part))));
+            let parts = at.found.iter().flat_map(|found| found.parts.iter().map(move |part| ending(found, part)));
+            lines.extend(parts.map(|line| format!("    {line}")));
             lines.extend(at.found.iter().filter_map(below_cam).map(|words| format!("    {words}")));
             lines.extend(at.failure().map(|why| format!("    failed: {why}")));
         }
@@ -43,10 +43,11 @@ impl Paged for BasinsOver {
 }
 
 /// Line of a motion: the share of the starts that end on it, and their number.
-fn ending(part: &Basin) -> String {
+fn ending(of: &Basins, part: &Basin) -> String {
     // Given starts are counted.
     let error = if part.share.error > 0.0 { format!(" ± {:.4}", part.share.error) } else { String::new() };
-    format!("{:.4}{error}  {} ({})", part.share.value, words::followed(&part.ending, part.followed), part.starts)
+    let ending = words::followed(&part.ending, part.followed, of.wandering.rested > 0);
+    format!("{:.4}{error}  {ending} ({})", part.share.value, part.starts)
 }
 
 /// Number of the starts below the cam.

@@ -115,15 +115,18 @@ fn motions(outcome: &LocalOutcome) -> Vec<(Words, Words)> {
 
 /// Statement of the theorem of robust chaos, and its conditions.
 fn theorem(chaos: &RobustChaos) -> Words {
-    let (three, four) = (Digits::Significant(3), Digits::Fixed(4));
-    let rests = chaos.hypotheses.iter().map(|hypothesis| words![hypothesis.name, " = ", (hypothesis.value, three)]);
+    let rests = chaos
+        .hypotheses
+        .iter()
+        .map(|hypothesis| words![hypothesis.name, " = ", (hypothesis.value, Digits::of(hypothesis.value, 3))]);
     let rests = words![" (", Words::joined(rests, ", "), "; ", chaos.known.to_string(), ")"];
     if !chaos.holds() {
         return words!["no robust chaos: phi must be positive", rests];
     }
     words![
         "theorem: the local map has robust chaos: an attractor, no stable orbit of any period, and each exponent at least ",
-        (chaos.least_exponent, four),
+        // Rounded down, as a lower bound must be.
+        ((1e4 * chaos.least_exponent).floor() / 1e4, Digits::Fixed(4)),
         " per turn",
         rests,
         "; by a cited theorem the follower has it too, near enough to omega*, but over how many rpm is not known"

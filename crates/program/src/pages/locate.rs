@@ -87,10 +87,10 @@ fn meanings(found: &[LocatedImpact]) -> Vec<Block> {
     for (index, impact) in found.iter().enumerate() {
         let scenario = impact.local.scenario();
         match &impact.local {
-            Happens::BorderCollision(Ok(Classification { minus, plus, .. })) => {
-                let scenario = words::verdict_with(&scenario, impact.danger.as_ref());
+            Happens::BorderCollision(Ok(kind @ Classification { minus, plus, .. })) => {
+                let verdict = words::border_collision(kind, impact.danger.as_ref());
                 meanings.push(Block::paragraph(format!(
-                    "{}: {scenario}. The fixed point with its impact before the corner exists at {} speeds and is {}. The one with its impact \
+                    "{}: {verdict}. The fixed point with its impact before the corner exists at {} speeds and is {}. The one with its impact \
                      after the corner exists at {} speeds and is {}.",
                     index + 1,
                     minus.exists_for,

@@ -46,7 +46,7 @@ impl Paged for Run {
             let rests = *exponent == f64::NEG_INFINITY;
             let why = if rests { ": it rests on the cam, where every deviation is lost" } else { "" };
             let error = lyapunov_standard_error.map_or(String::new(), |error| format!(" ± {error:.4}"));
-            lines.push(format!("  in the long run {}", words::followed(ending, *followed)).into());
+            lines.push(format!("  in the long run {}", words::followed(ending, *followed, false)).into());
             lines.push(format!("  Lyapunov exponent {exponent:.4}{error} per revolution{why}").into());
         }
         lines.push(format!("  computed in {wall_s:.3} s{}", per_turn(*wall_s, *revolutions)).into());

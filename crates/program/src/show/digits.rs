@@ -83,12 +83,10 @@ pub(crate) fn with_error(error: f64) -> (Digits, f64) {
     (Digits::Fixed(place.clamp(0.0, 12.0) as usize), rounded_up(error, place))
 }
 
-/// Text of a part of an error, rounded up to the place of the whole error, like the whole; `None` for less than half of that place.
-pub(crate) fn part_of_error(part: f64, whole: f64) -> Option<String> {
-    let (digits, _) = with_error(whole);
-    let place = 1.0 - elementary::log10(whole).floor();
-    let is_seen = part * elementary::powf(10.0_f64, place) >= 0.5;
-    (is_seen || !part.is_finite()).then(|| digits.text(rounded_up(part, place)))
+/// Text of a part of an error: two digits of its own, rounded up.
+pub(crate) fn part_of_error(part: f64) -> String {
+    let (digits, part) = with_error(part);
+    digits.text(part)
 }
 
 /// Rounds a number up to this many decimals; a negative number of decimals rounds to tens and so on.

@@ -44,11 +44,10 @@ impl<'a> Sources<'a> {
     /// Parts of an uncertainty: `13 from the cam (lift rounded to 0.001 mm), 45 from the numbers (stiffness 40, mass 20)`. For a cam alone
     /// it gives only the cam's accuracy.
     pub(crate) fn parts(self, error: &SourcedUncertainty) -> String {
-        let seen = |part: f64| part_of_error(part, error.total());
-        let shown = |part: f64| seen(part).unwrap_or_else(|| "0".to_owned());
-        let each = error.of_each().into_iter();
-        let each: Vec<String> =
-            each.filter_map(|(name, part)| Some(format!("{} {}", spoken(name), seen(part)?))).collect();
+        /// Least part of the whole that is listed.
+        const LEAST: f64 = 0.005;
+        let each = error.of_each().into_iter().filter(|(_, part)| *part >= LEAST * error.total());
+        let each: Vec<String> = each.map(|(name, part)| format!("{} {}", spoken(name), part_of_error(part))).collect();
         let each = match (each.as_slice(), error.each) {
             ([], None) => " (together)".to_owned(),
             ([], Some(_)) => String::new(),
@@ -58,9 +57,9 @@ impl<'a> Sources<'a> {
             (Some(cam), true) => accuracy(cam),
             (Some(cam), false) => format!(
                 "{} from the cam ({}), {} from the numbers{each}",
-                shown(error.cam),
+                part_of_error(error.cam),
                 accuracy(cam),
-                shown(error.numbers)
+                part_of_error(error.numbers)
             ),
             (None, _) => format!("from the numbers{each}"),
         }
@@ -115,7 +114,12 @@ impl<'a> Sources<'a> {
 
     /// Parts of an uncertainty, written after it.
     fn from(self, error: &SourcedUncertainty) -> String {
-        format!("{}{}", if self.cam.is_some() { ": " } else { ", " }, self.parts(error))
+        let parts = self.parts(error);
+        match (self.cam, self.errors.are_none()) {
+            (Some(_), true) => format!(" (± from the cam: {parts})"),
+            (Some(_), false) => format!(": {parts}"),
+            (None, _) => format!(", {parts}"),
+        }
     }
 
     /// Value in a unit, with a space before it, with its uncertainty and the sources of it.

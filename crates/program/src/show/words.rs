@@ -9,7 +9,7 @@ use crate::show::digits::Digits;
 use corner_impact::agreement::Quantity;
 use corner_impact::border_collision::conditions::Decides;
 use corner_impact::border_collision::danger::{Danger, DangerKind, Divergence, LocalAttractor, Returns};
-use corner_impact::border_collision::feigin::{Scenario, Speeds};
+use corner_impact::border_collision::feigin::{Classification, Scenario, Speeds};
 use corner_impact::border_collision::long_run::{LocalChaos, LocalLongRun};
 use corner_impact::border_collision::validity::{ComparedMotion, Ends};
 use corner_impact::cam::Side;
@@ -184,6 +184,13 @@ pub(crate) fn verdict_with(scenario: &str, danger: Option<&Danger>) -> String {
         Some(DangerKind::MultipleAttractors) => format!("{scenario}, multiple attractors"),
         None => scenario.into(),
     }
+}
+
+/// Verdict on a border collision in words: the scenario, its danger, and the orbit of period two that a fold may have beside it.
+pub(crate) fn border_collision(kind: &Classification, danger: Option<&Danger>) -> String {
+    let is_second = kind.period_two_orbit && kind.scenario != Scenario::NonsmoothFlip;
+    let second = if is_second { ", with an orbit of period two" } else { "" };
+    format!("{}{second}", verdict_with(&kind.scenario.to_string(), danger))
 }
 
 /// Describes a danger in a sentence.
@@ -381,13 +388,14 @@ pub(crate) fn ending(ending: &LongRun) -> String {
     motion(ending.kind(), period.map(|(revolutions, _)| revolutions), period.map(|(_, impacts)| impacts))
 }
 
-/// Name of a long-run motion with its evidence: the number of revolutions for which chaotic or undecided runs were followed.
-pub(crate) fn followed(ending: &LongRun, revolutions: u64) -> String {
+/// Name of a long-run motion with its evidence: the number of revolutions for which chaotic or undecided runs were followed, and whether any
+/// of them rested on the cam.
+pub(crate) fn followed(ending: &LongRun, revolutions: u64, rested: bool) -> String {
     let words = self::ending(ending);
     match ending {
         // A chaotic run may rest in between, even at its start.
-        LongRun::Chaotic(recorded) if recorded.rested => {
-            format!("{words} (no orbit and no rest that repeats in {revolutions} revolutions)")
+        LongRun::Chaotic(recorded) if recorded.rested || rested => {
+            format!("{words} (rests occurred, but nothing repeated in {revolutions} revolutions)")
         }
         LongRun::Chaotic(_) => format!("{words} (no rest in {revolutions} revolutions)"),
         LongRun::Undecided(_) => format!("{words} after {revolutions} revolutions"),

@@ -10,7 +10,7 @@ use crate::show::digits::Digits;
 use crate::show::sources::Sources;
 use crate::show::words;
 use corner_impact::agreement::{Agreement, Quantity, shared_decimals};
-use corner_impact::border_collision::feigin::{Scenario, SideCounts};
+use corner_impact::border_collision::feigin::SideCounts;
 use corner_impact::border_collision::{Classification, Danger, NormalForm, Refusal};
 use corner_impact::cam::Side;
 use corner_impact::study::routes::Skipped;
@@ -183,16 +183,13 @@ fn rows(matrix: &nalgebra::Matrix2<f64>) -> Span {
 }
 
 fn classification(kind: &Classification, danger: Option<&Danger>) -> Vec<(Words, Words)> {
-    let Classification { scenario, minus, plus, .. } = kind;
+    let Classification { minus, plus, .. } = kind;
     let counts = format!(
         "{} + {} real eigenvalues above 1, {} + {} below -1",
         minus.above_one, plus.above_one, minus.below_minus_one, plus.below_minus_one
     );
-    let born = kind.period_two_orbit && *scenario != Scenario::NonsmoothFlip;
-    let born = if born { ", and an orbit of period two" } else { "" };
     let verdict = words![
-        words::verdict_with(&scenario.to_string(), danger),
-        born,
+        words::border_collision(kind, danger),
         Span::Break,
         words::meaning(kind.scenario, kind.minus.stable || kind.plus.stable, danger)
     ];

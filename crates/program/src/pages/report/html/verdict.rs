@@ -34,7 +34,7 @@ fn strong(text: &str) -> Words {
 fn findings(report: &Report, found: &Verification) -> Vec<Words> {
     let kind = match &found.classification {
         Ok(kind) => {
-            let verdict = words::verdict_with(&spoken(&kind.scenario.to_string()), found.danger.as_ref());
+            let verdict = spoken(&words::border_collision(kind, found.danger.as_ref()));
             let danger =
                 found.danger.as_ref().map(|danger| words![" It is ", about("danger", words::danger(danger)), "."]);
             words!["It is a ", strong(&verdict), ".", danger.unwrap_or_default()]
