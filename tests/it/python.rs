@@ -228,15 +228,15 @@ fn an_h_set_that_is_off_is_refused_in_balls_too() {
     type Change = fn(&mut Value);
     let cases: [(u64, &str, Change); 13] = [
         (5, "", |_| {}),
-        (5, "go beyond", |set| set["strips"][0]["x"] = json!([-3.6901, -3.6141])),
-        (5, "go beyond", |set| set["strips"][0]["x"] = json!([-3.8901, -3.8141])),
+        (5, "lie beyond", |set| set["strips"][0]["x"] = json!([-3.6901, -3.6141])),
+        (5, "lie beyond", |set| set["strips"][0]["x"] = json!([-3.8901, -3.8141])),
         (5, "does not go beyond N", |set| set["strips"][0]["x"] = json!([-3.7751, -3.7141])),
         (5, "does not go beyond N", |set| set["strips"][0]["x"] = json!([-3.7901, -3.7291])),
         (6, "leaves N at", |set| set["y"] = json!([-0.159, 1.2])),
         (2, "leaves N at", |set| set["y"] = json!([0.05, 1.386])),
         // The flights of a part of it touch the cam; its edges are carried across all the same.
         (2, "is not proved to", |set| set["strips"][0]["x"] = json!([-0.3, 0.201])),
-        (5, "go beyond", |set| set["strips"][0]["revolutions"] = json!(5)),
+        (5, "lie beyond", |set| set["strips"][0]["revolutions"] = json!(5)),
         (5, "cones are not proved", |set| set["cone_slope"] = json!(0.01)),
         (5, "is not inside N", |set| set["x"] = json!([-3.75, 0.211])),
         (5, "are parallel", |set| set["stable"] = set["unstable"].clone()),
