@@ -909,7 +909,7 @@ fn an_answer_without_an_error_says_how_well_its_cam_is_known() {
         assert_eq!(told.matches(rounded).count(), usize::from(is_without), "{command}: {told}");
     }
     let page = crate::common::text(run("design valve.toml --rpm 3000:3400 --speeds 3 --limit impact-speed=100").stdout);
-    assert!(crate::common::in_one_line(&page).contains("for the cam as drawn, with the ± above"), "{page}");
+    assert!(crate::common::in_one_line(&page).contains("for the fitted cam, without a ±"), "{page}");
     let page = crate::common::text(run("orbit valve.toml --rpm 8000").stdout);
     let ends = crate::common::in_one_line(&page);
     assert!(ends.contains("± 0.0") && ends.contains("in a multiplier") && ends.contains("lift rounded to 0.001 mm."));

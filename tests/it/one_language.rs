@@ -185,6 +185,8 @@ fn numbers_are_taken_as_people_type_them() {
     assert!(kilograms == grams && kilograms != as_in_the_file);
     for (value, says) in [
         ("mass=900N", "mass is in kg in this model"),
+        ("mass=0.15 ±0.01", "set it with --set mass.error=0.01"),
+        ("mass=0.15 +/- 0.01", "set it with --set mass.error=0.01"),
         ("preload=3kg", "is not a number of this model"),
         ("restitution=0.5kg", "restitution is a number without a unit"),
         ("mass=1,5", "\"1,5\" may be 1.5 or 15: write a decimal point"),

@@ -182,6 +182,16 @@ impl Change {
             Some(value) if value == number.number => Ok(number),
             Some(value) => Ok(value.into()),
             None if unit == "%" && units.of_number(path).is_empty() => Ok((number.number / 100.0).into()),
+            None if unit.starts_with(['±', '+']) => {
+                let error = unit.trim_start_matches(['±', '+', '/', '-', ' ']);
+                let words = "an error is a number of its own: set it with --set";
+                Err(CommandError::Words(format!(
+                    "{name} = {} {}: {words} {name}.error={}",
+                    number.text,
+                    untrusted::value(&unit),
+                    untrusted::value(error)
+                )))
+            }
             None => {
                 let own = units.of_number(path);
                 let own = if own.is_empty() {

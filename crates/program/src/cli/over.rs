@@ -25,7 +25,7 @@ pub(super) fn varied(
         }
         (Some(Speeds::Span(span)), None) => Ok((None, Some((Parameter::Speed.name().into(), span)))),
         (Some(Speeds::One(rpm)), None) => Err(CommandError::Words(format!(
-            "--rpm {rpm} is one speed: give a range, --rpm LO:HI, or add --over NAME=LO:HI to vary a number at this speed; `simulate` runs at one speed"
+            "--rpm {rpm} is one speed: give a range, --rpm LO:HI, or add --over NAME=LO:HI to vary a number at this speed; `basins` shows the attractors at one speed, and `simulate` one run"
         ))),
         (Some(Speeds::One(rpm)), Some(over)) => Ok((Some(rpm), Some(over.clone()))),
         (None, over) => Ok((None, over.cloned())),

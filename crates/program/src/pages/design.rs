@@ -282,8 +282,8 @@ fn hardest(found: &Design) -> Option<Words> {
 
 fn limits(found: &Design) -> Vec<Block> {
     let open = match table_sources(found) {
-        Some(Sources { cam: Some(_), errors }) if errors.are_none() => "; for the cam as drawn, with the ± above",
-        Some(_) => "; for the machine as given, with the ± above",
+        Some(Sources { cam: Some(_), errors }) if errors.are_none() => "; for the fitted cam, without a ±",
+        Some(_) => "; for the machine as given, without a ±",
         None => "",
     };
     let sentence = |passed: &corner_impact::study::design::Passed| {
@@ -302,7 +302,7 @@ fn limits(found: &Design) -> Vec<Block> {
                     if lowest == Some(at.across()) {
                         format!(" already, the lowest of the {values} with loads")
                     } else {
-                        format!(", the first of the {values} above")
+                        format!(", between two of the {values} above")
                     },
                     open
                 ]

@@ -168,8 +168,8 @@ pub(crate) fn meaning(scenario: Scenario, has_stable: bool, danger: Option<&Dang
             "the two fixed points meet at omega* = 60/T* rpm and vanish: beyond it, a motion has no fixed point to follow"
         }
         Scenario::NonsmoothFold => {
-            "the two fixed points meet at omega* = 60/T* rpm and vanish. Both are unstable, so a follower loses no fixed point there, \
-             but any other attractor that the local map has"
+            "the two fixed points meet at omega* = 60/T* rpm and vanish. Both are unstable. Any attractor that the local map \
+             has beside them can be lost there"
         }
         Scenario::NonsmoothFlip => {
             "the fixed point crosses from one side to the other, and an orbit of period two is born"
