@@ -230,6 +230,23 @@ fn what_must_be_changed_of_an_eccentric_is_a_root() {
     }
 }
 
+/// A machine whose mass alone is uncertain: the most mass is as certain as the runs resolve it, and the other numbers are as uncertain as the
+/// mass makes them.
+#[test]
+fn a_number_that_is_sought_counts_as_exact() {
+    let model = OWN.model(true, false).changed(&[("mass.error".to_owned(), 0.01)]).unwrap();
+    for what in ["no separation", "impact speed below 0.1 m/s"] {
+        let need = format!("{what} to {:?} rpm", 1.1 * rpm(OWN.leaves()));
+        for answer in design(&model, &asked(&need), &Unwatched).unwrap().needs {
+            let error = answer.error.map(|error| error.total());
+            match answer.lever {
+                Lever::Mass => assert_eq!(error, Some(0.0), "{answer:?}"),
+                _ => assert!(answer.value.is_none() || error > Some(0.0), "{answer:?}"),
+            }
+        }
+    }
+}
+
 /// Of what the machine does already: how much damping still does, how little preload, and that there is a mass above which it does no more.
 #[test]
 fn what_is_done_already_has_its_ends() {
