@@ -2,7 +2,7 @@
 //!
 //! A strip S covers N if its flights are proved over all of it and its two edges are carried beyond opposite sides of N. No part of it may
 //! be carried to a point with x inside N's range and y outside. Let its derivative be [[a, b], [c, d]], with a of one sign over all of S.
-//! It keeps the cones `|dy| <= L |dx|`, and stretches differences in them, if
+//! S keeps the cones `|dy| <= L |dx|`, and stretches differences in them, if
 //!
 //! ```text
 //! |a| - L |b| > 1        |c| + L |d| <= L (|a| - L |b|)

@@ -1,9 +1,10 @@
 //! Do doc comments say what each item is, in sentences that are read at first sight?
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use crate::common::ROOT;
 use crate::help_prose::prose::{LONGEST, of_text, words};
+use crate::layering::rust_files;
 
 /// Beginnings that point elsewhere before they say what the item is.
 const RIDDLES: [&str; 12] =
@@ -11,19 +12,6 @@ const RIDDLES: [&str; 12] =
 
 /// Folders whose code is documented.
 const FOLDERS: [&str; 5] = ["src", "crates/plot/src", "crates/explore/src", "crates/program/src", "python/src"];
-
-fn sources(folder: &Path) -> Vec<PathBuf> {
-    let mut found = Vec::new();
-    for entry in std::fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        if path.is_dir() {
-            found.extend(sources(&path));
-        } else if path.extension().is_some_and(|extension| extension == "rs") {
-            found.push(path);
-        }
-    }
-    found
-}
 
 /// The paragraphs of each doc comment of a text, with the line that the comment begins in. Tables, headings, code and formulas that are set
 /// off are left out.
@@ -81,7 +69,7 @@ fn complaints(text: &str) -> Vec<String> {
 fn doc_comments_say_what_the_item_is() {
     let root = Path::new(ROOT);
     let mut found = Vec::new();
-    for path in FOLDERS.iter().flat_map(|folder| sources(&root.join(folder))) {
+    for path in FOLDERS.iter().flat_map(|folder| rust_files(&root.join(folder))) {
         let text = std::fs::read_to_string(&path).unwrap();
         let name = path.strip_prefix(root).unwrap().display().to_string();
         found.extend(complaints(&text).into_iter().map(|complaint| format!("{name}:{complaint}")));

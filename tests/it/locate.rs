@@ -452,3 +452,14 @@ fn numbers_typed_to_ten_digits_change_no_agreement() {
         assert!((one.at.speed_rpm() - other.at.speed_rpm()).abs() < 1e-5, "{one:?} {other:?}");
     }
 }
+
+/// With much damping a fold has an orbit of period two beside it, which `verify` names as well; the condition of its theorem is small, not 0.
+#[test]
+fn an_orbit_of_period_two_beside_a_fold_is_named() {
+    let verdict = "nonsmooth-fold, with an orbit of period two";
+    let page = common::text(locate(&[MODEL, "--set", "damping=100", "--rpm", "680:690"]).stdout);
+    assert!(page.contains(verdict), "{page}");
+    let output = common::program(["verify", MODEL, "--set", "damping=100", "--no-external"]).output().unwrap();
+    let page = common::in_one_line(&common::text(output.stdout));
+    assert!(page.contains(verdict) && page.contains("delta_L = 4.86e-4"), "{page}");
+}

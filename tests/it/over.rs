@@ -630,3 +630,16 @@ fn a_design_over_a_number_has_its_unit() {
     assert!(page.contains("\n  mass kg  least force N"), "{page}");
     assert!(common::in_one_line(&page).contains("are for the model's own mass."), "{page}");
 }
+
+/// A table of lifts needs a mass by an option; that is the model's own number, which `--over` may vary as it may vary one of a file.
+#[test]
+fn a_number_that_a_table_of_lifts_needs_can_be_varied() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |words: &str| common::program(words.split(' ')).current_dir(folder.path()).output().unwrap();
+    assert!(run("new valve.toml --law table").status.success());
+    let needs = "--mass 0.11 --stiffness 30 --preload 220";
+    let output = run(&format!("design valve.csv {needs} --rpm 2000 --over mass=0.1:0.2:2"));
+    assert_eq!(output.status.code(), Some(0), "{}", text(output.stderr));
+    let output = run("design valve.toml --mass 0.12 --rpm 2000 --over mass=0.1:0.2:2");
+    assert!(output.status.code() == Some(2) && text(output.stderr).contains("drop one of them"));
+}

@@ -444,6 +444,9 @@ fn pages_say_where_the_uncertainty_comes_from() {
         let page = run(&[command, &["valve.toml", "--set", "mass.error=0.001"]].concat());
         assert!(page.contains(both) && page.contains(" from the cam (lift rounded to 0.001 mm), "), "{page}");
         assert!(page.contains(" from the numbers (mass 2"), "{page}");
+        // A part has two digits of its own, however large the whole is.
+        let page = run(&[command, &["valve.toml", "--set", "mass.error=0.005"]].concat());
+        assert!(page.contains(": 13 from the cam (lift rounded to 0.001 mm), 140 from the numbers"), "{page}");
         let page = run(&[command, &["valve.toml", "--set", "mass.error=1 g"]].concat());
         assert!(page.contains(" from the numbers (mass 2"), "{page}");
     }
