@@ -66,6 +66,7 @@ def certificate(machine, candidate, apart):
         "border": [ball(x) for x in found.border],
         "conditions": [{"name": one.name, "value": ball(one.value), "sign": one.sign} for one in found.conditions],
         "verdict": found.scenario,
+        "period_two_orbit": found.period_two_orbit(),
         "assumed": apart,
         "proved": True,
     }

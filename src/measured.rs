@@ -54,6 +54,11 @@ impl Measured {
         measured.as_ref().filter(|cam| cam.is_noisy)
     }
 
+    /// Largest likely error of a row, m: that of rounding, or of the spread of the rows.
+    pub fn row_error(&self) -> f64 {
+        row_error(self.step_m.unwrap_or(0.0) / 2.0, self.noise_m)
+    }
+
     /// Whether the noise is rounding alone.
     pub fn is_rounded(&self) -> bool {
         /// Noise above which it is more than rounding, in standard deviations of the rounding.
@@ -103,6 +108,11 @@ pub struct PlausibleCams {
     pub closer: Option<LikelyCam>,
     /// Models of tables that might have been measured.
     pub others: Vec<LikelyCam>,
+}
+
+/// Largest error, m, that is uniformly distributed like rounding, from half a step of the decimals and a standard deviation.
+fn row_error(half_step: f64, noise: f64) -> f64 {
+    half_step.max(3.0_f64.sqrt() * noise)
 }
 
 /// Number of tables that might have been measured: the largest of this many deviations is near two standard deviations.
@@ -158,8 +168,7 @@ impl PlausibleCams {
         let noise = if fitted.noise.is_finite() { fitted.noise } else { 0.0 };
         let lifts = fitted.lifts(profile);
         let size = lifts.iter().fold(0.0_f64, |size, lift| size.max((lift - lifts[0]).abs()));
-        // Uniformly distributed, like rounding.
-        let spread = half_step.max(3.0_f64.sqrt() * noise);
+        let spread = row_error(half_step, noise);
         let is_noisy = spread > tolerance::NOISE_SEEN.value * size;
         let (corners, are_found) = (fitted.corners_deg(), own.is_none_or(|own| own.corners_deg.is_none()));
         let smoothed = |lifts: &[f64], weight: f64| {

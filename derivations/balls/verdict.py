@@ -71,7 +71,15 @@ class Verdict:
         signs = self.signs()
         if signs["det(I - A-)"] * signs["det(I - A+)"] < 0:
             return "nonsmooth-fold"
-        return "nonsmooth-flip" if signs["det(I + A-)"] * signs["det(I + A+)"] < 0 else "persistence"
+        return "nonsmooth-flip" if self.period_two_orbit() else "persistence"
+
+    def period_two_orbit(self):
+        """Return True if, next to omega*, an orbit of period two exists on one side of it; False if on none.
+
+        The distances of its two points from the border are in the ratio det(I + A+) : det(I + A-). So they lie on different sides
+        exactly where these determinants have different signs."""
+        signs = self.signs()
+        return signs["det(I + A-)"] * signs["det(I + A+)"] < 0
 
     def exists_for(self, side):
         """Where the fixed point of a side is one of the machine: "slower" (dT > 0) or "faster"."""

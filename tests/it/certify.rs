@@ -75,9 +75,23 @@ fn every_corner_impact_is_proved_to_its_digits() {
         let proved = impacts.iter().find(|impact| impact["speed_rpm"]["mid"].as_str().unwrap().starts_with(speed));
         let proved = proved.unwrap_or_else(|| panic!("{model}: {found}"));
         assert_eq!((proved["verdict"].as_str(), proved["proved"].as_bool()), (Some(verdict), Some(true)), "{model}");
+        // By Feigin's counts, there is one where the number of real eigenvalues below -1 is odd.
+        let below = ["minus", "plus"].iter().flat_map(|side| proved[side]["eigenvalues"].as_array().unwrap());
+        let number = |ball: &Value| ball["mid"].as_str().unwrap().parse::<f64>().unwrap();
+        let below = below.filter(|one| number(&one["im"]) == 0.0 && number(&one["re"]) < -1.0).count();
+        assert_eq!(proved["period_two_orbit"], below % 2 == 1, "{model}");
         // The flip's numbers are in the thousands.
         assert!(radii(proved).iter().all(|radius| *radius <= 1e-28), "{model}: {:?}", radii(proved));
     }
+}
+
+/// `verify` and `locate` name the orbit of period two beside this fold as well.
+#[test]
+#[ignore = "slow"]
+fn an_orbit_of_period_two_beside_a_fold_is_proved() {
+    let words = ["certify", "models/osorio-2008.toml", "--set", "damping=100", "--rpm", "680:690"];
+    let page = in_one_line(&text(common::program(words).output().unwrap().stdout));
+    assert!(page.contains("nonsmooth-fold, with an orbit of period two: the two fixed points meet"), "{page}");
 }
 
 #[test]
@@ -572,7 +586,7 @@ fn a_document_has_the_hypotheses_of_its_proofs() {
             "speed_rpm": ball(), "period_s": ball(), "cam_angle_rad": ball(), "alone_within": 1e-3, "revolutions": 1,
             "section_angle_rad": ball(), "state": [ball(), ball()], "state_origin_m": ball(), "impacts": [],
             "minus": side, "plus": side, "C": [ball(), ball()], "D": ball(), "border": [ball(), ball(), ball()],
-            "conditions": [], "verdict": "persistence", "assumed": assumed, "proved": true,
+            "conditions": [], "verdict": "persistence", "period_two_orbit": false, "assumed": assumed, "proved": true,
         }))
         .unwrap();
         let orbits = json!({ "orbits": [], "complete": [1], "undecided": [], "assumed": assumed });

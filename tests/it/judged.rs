@@ -225,7 +225,8 @@ fn the_speed_of_detachment_is_told_in_the_range_alone() {
     let found = common::speeds(&model("laws/polynomial"), [420.0, 420.5], resolution(0.5, 1), &Unwatched).unwrap();
     assert!(found.off.is_empty() && found.off_for_good().is_none());
     for (rpm, is_told) in [(419.0, false), (420.0, true), (420.2, true), (420.5, true), (421.0, false)] {
-        let separation = Some(Separation::At { rpm, error: 1e-9, cam_angle: 1.0, angle_error: None });
+        let separation =
+            Some(Separation::At { rpm, error: 1e-9, cam_angle: 1.0, angle_error: None, within_errors: false });
         let told = SpeedSurvey { separation, attractors: Vec::new(), ..found.clone() }.detachment();
         assert_eq!(told, is_told.then_some([rpm, 1e-9]));
     }

@@ -203,6 +203,26 @@ fn separation(cam: Value) -> (f64, f64) {
     (found, error)
 }
 
+/// Without preload and weight, errors of rows at the ends of a dwell decide where the follower leaves first. With a preload they do not, and
+/// rounded rows have none there: their dwell is flat.
+#[test]
+fn a_separation_that_errors_of_rows_decide_is_told() {
+    let exact = Cam::new(&machine(program("cycloidal", 90.0, 60.0, 60.0)).unwrap()).unwrap();
+    let rows = rounded(&exact, 3);
+    // Errors without a pattern, of up to a hundredth of a millimetre.
+    let noise = |row: usize| 0.01 * (2.0 * (1e4 * (1.0 + row as f64).sin()).rem_euclid(1.0) - 1.0);
+    let noisy: Vec<_> = rows.iter().enumerate().map(|(row, (angle, lift))| (*angle, lift + noise(row))).collect();
+    for (rows, preload, is_told) in [(&noisy, 0.0, true), (&noisy, 50.0, false), (&rows, 0.0, false)] {
+        let mut model = machine(smoothing(rows, &json!({}))).unwrap();
+        let lowest = Cam::new(&model).unwrap().lowest().value;
+        model.follower.rest_position = lowest - preload / 30.0;
+        let found = design(&model, &Asked::default(), &Unwatched).unwrap();
+        let page = common::in_one_line(&found.text().unwrap());
+        assert_eq!(page.contains("errors of the rows decide the speed"), is_told, "{preload}: {page}");
+        assert_eq!(serde_json::to_value(&found).unwrap()["separation"]["within_errors"], is_told);
+    }
+}
+
 /// Cams that all leave at 3285.37 rpm, each in three roundings: the smoothed ones leave there within what they say, the cubic
 /// splines within what is said of them, and the roundest of these by less than half of that speed.
 #[test]

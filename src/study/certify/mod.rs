@@ -134,6 +134,8 @@ pub struct Certificate {
     pub border: [Ball; 3],
     pub conditions: Vec<ProvedCondition>,
     pub verdict: Scenario,
+    /// Whether an orbit of period two, with an impact on each side of the corner, exists on one side of omega*, next to it.
+    pub period_two_orbit: bool,
     pub assumed: Option<Assumed>,
     pub proved: bool,
 }

@@ -56,6 +56,8 @@ pub enum Separation {
         cam_angle: f64,
         /// Uncertainty of the cam angle for a measured cam, rad; none for an exact cam.
         angle_error: Option<f64>,
+        /// Whether, on this or another likely cam, spring and weight press at the place with less force than an error of a row changes.
+        within_errors: bool,
     },
     /// Separation at any speed, however slow. Here the spring does not press the follower on the cam, or a damper holds back a follower
     /// without load. In some range of higher speeds, inertia may press it on.
@@ -119,6 +121,11 @@ impl<'a> Contact<'a> {
     pub fn force(&self, lift: &Lift, omega: f64) -> f64 {
         let [of_lift, of_slope, of_curvature, _] = self.weights(omega);
         of_curvature * lift.curvature + of_slope * lift.slope + of_lift * lift.value + self.constant()
+    }
+
+    /// Force of spring and weight on the cam at an angle, rad, in kg times the model's length over s^2.
+    pub(super) fn static_force(&self, cam_angle: f64) -> f64 {
+        self.force(&self.cam.lift(cam_angle), 0.0)
     }
 
     /// Coefficients of c, c' and c'' in N.
@@ -332,7 +339,7 @@ impl<'a> Contact<'a> {
         // dN/dw = 2 m w c'' + b c'
         let rate = 2.0 * self.follower.mass * omega * at.lift.curvature + self.follower.damping * at.lift.slope;
         let error = rpm(self.rounding(at.segment, omega) / rate.abs()) + tolerance::ULP.value * rpm(omega);
-        Separation::At { rpm: rpm(omega), error, cam_angle: at.angle, angle_error: None }
+        Separation::At { rpm: rpm(omega), error, cam_angle: at.angle, angle_error: None, within_errors: false }
     }
 }
 

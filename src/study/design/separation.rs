@@ -1,6 +1,7 @@
 //! First separation of the follower from the cam, with the uncertainty of the machine.
 
 use std::f64::consts::{PI, TAU};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use serde::Serialize;
 
@@ -44,6 +45,7 @@ pub(super) struct Separated<'a> {
     cam_angle_error_parts: Option<UncertaintyParts>,
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
     places: &'a [SeparationPlace],
+    within_errors: bool,
     located: bool,
 }
 
@@ -54,7 +56,9 @@ impl<'a> Separated<'a> {
         errors: Option<[SourcedUncertainty; 2]>,
         places: &'a [SeparationPlace],
     ) -> Option<Self> {
-        let Separation::At { rpm, error, cam_angle, angle_error } = separation else { return None };
+        let Separation::At { rpm, error, cam_angle, angle_error, within_errors } = separation else {
+            return None;
+        };
         Some(Self {
             speed_rpm: rpm,
             error_rpm: error,
@@ -63,6 +67,7 @@ impl<'a> Separated<'a> {
             cam_angle_error_rad: angle_error,
             cam_angle_error_parts: angle_error.and(errors).map(|[_, of_angle]| UncertaintyParts(of_angle, "_rad")),
             places,
+            within_errors,
             located: true,
         })
     }
@@ -77,15 +82,24 @@ pub fn known(
     let (Some(machines), Separation::At { rpm, error, cam_angle, .. }) = (machines.uncertain(), separation) else {
         return (separation, None);
     };
-    let of = |model: &Model, cam: &Cam| match Contact::new(cam, model.follower).separation() {
-        Separation::At { rpm, cam_angle: of_other, .. } => Some([rpm, nearest_turn(of_other, cam_angle)]),
-        _ => None,
+    let row_error = machines.cams.as_ref().map_or(0.0, |cams| cams.measured.row_error());
+    let is_within = |model: &Model, contact: &Contact<'_>, angle: f64| {
+        contact.static_force(angle) < model.follower.stiffness * model.cam.lever_ratio() * row_error
+    };
+    let within_errors =
+        AtomicBool::new(is_within(machines.model, &Contact::new(machines.cam, machines.model.follower), cam_angle));
+    let of = |model: &Model, cam: &Cam| {
+        let contact = Contact::new(cam, model.follower);
+        let Separation::At { rpm, cam_angle: of_other, .. } = contact.separation() else { return None };
+        within_errors.fetch_or(is_within(model, &contact, of_other), Ordering::Relaxed);
+        Some([rpm, nearest_turn(of_other, cam_angle)])
     };
     let errors = machines.error([rpm, cam_angle], of).unwrap_or([SourcedUncertainty::UNKNOWN; 2]);
     let [open, angle_error] = errors.map(|error| error.total());
     // At a corner of an exact cam, the angle has no uncertainty.
     let angle_error = Some(angle_error).filter(|error| !(*error <= tolerance::UNCERTAINTY_SEEN.value));
-    (Separation::At { rpm, error: error + open, cam_angle, angle_error }, Some(errors))
+    let within_errors = within_errors.into_inner();
+    (Separation::At { rpm, error: error + open, cam_angle, angle_error, within_errors }, Some(errors))
 }
 
 /// Returns the places where the follower first separates on likely machines, the likeliest first; none if they agree to 10 degrees.

@@ -259,7 +259,10 @@ fn certificate(of: &Certificate) -> Vec<Block> {
         Block::Paragraph(
             2,
             words![
-                (TextMark::Strong, of.verdict.to_string().as_str()),
+                (
+                    TextMark::Strong,
+                    format!("{}{}", of.verdict, words::beside(of.verdict, of.period_two_orbit)).as_str()
+                ),
                 format!(
                     ": {}. Next to omega*, the machine's fixed point with its impact before the corner exists {}. The one with its impact \
                      after the corner exists {}. {how_far}{others}",

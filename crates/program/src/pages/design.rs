@@ -79,8 +79,29 @@ pub(crate) fn separation(found: &Design) -> Words {
     leaves(found.separation, &found.places, sources(found), error)
 }
 
-/// Sentence about a separation, with its angle or the competing places.
+/// Sentence about a separation, with its angle or the competing places. Another sentence follows if errors of the rows decide it.
 pub(crate) fn leaves(
+    separation: Separation,
+    places: &[SeparationPlace],
+    sources: Option<Sources<'_>>,
+    error: Option<SourcedUncertainty>,
+) -> Words {
+    let first = leaves_first(separation, places, sources, error);
+    match decided_by_errors(separation) {
+        Some(sentence) => words![first, " ", sentence],
+        None => first,
+    }
+}
+
+/// Sentence about a separation where hardly any force presses the follower on a measured cam.
+pub(crate) fn decided_by_errors(separation: Separation) -> Option<&'static str> {
+    matches!(separation, Separation::At { within_errors: true, .. }).then_some(
+        "On this or another likely cam, it leaves where spring and weight press with less force than an error of one row changes. There \
+         errors of the rows decide the speed: is the preload right?",
+    )
+}
+
+fn leaves_first(
     separation: Separation,
     places: &[SeparationPlace],
     sources: Option<Sources<'_>>,

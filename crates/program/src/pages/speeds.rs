@@ -1,5 +1,6 @@
 //! Page of `speeds`: the short answer first, then every attractor with its beginning and end.
 
+use crate::pages::design::decided_by_errors;
 use crate::show::Paged;
 use crate::show::block::{Block, Column, Table, TextMark, Words, words};
 use crate::show::digits::{Digits, with_error};
@@ -28,6 +29,7 @@ impl Paged for SpeedSurvey {
             Block::Gap,
             Block::Table(table(self)),
         ]);
+        page.extend(self.separation.and_then(decided_by_errors).map(Block::paragraph));
         page.extend(remarks(self));
         page.extend(self.off_for_good().map(|off| Block::paragraph(off.words)));
         page.extend(dangers(self));

@@ -188,9 +188,12 @@ pub(crate) fn verdict_with(scenario: &str, danger: Option<&Danger>) -> String {
 
 /// Verdict on a border collision in words: the scenario, its danger, and the orbit of period two that a fold may have beside it.
 pub(crate) fn border_collision(kind: &Classification, danger: Option<&Danger>) -> String {
-    let is_second = kind.period_two_orbit && kind.scenario != Scenario::NonsmoothFlip;
-    let second = if is_second { ", with an orbit of period two" } else { "" };
-    format!("{}{second}", verdict_with(&kind.scenario.to_string(), danger))
+    format!("{}{}", verdict_with(&kind.scenario.to_string(), danger), beside(kind.scenario, kind.period_two_orbit))
+}
+
+/// Orbit of period two beside the fixed points, as the end of a verdict. A nonsmooth flip has one by definition.
+pub(crate) fn beside(scenario: Scenario, period_two_orbit: bool) -> &'static str {
+    if period_two_orbit && scenario != Scenario::NonsmoothFlip { ", with an orbit of period two" } else { "" }
 }
 
 /// Describes a danger in a sentence.
