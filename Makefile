@@ -206,7 +206,7 @@ bench: ## time a revolution: the scan-and-bisect baseline and the simulator side
 bench-each: ## the same pieces of work one by one, with criterion's statistics
 	$(CARGO) bench --locked --package corner-impact-benches --bench simulate
 
-bench-growth: ## how the work of each command grows with its size (a quarter of an hour)
+bench-growth: ## how the work of each command grows with its size (some minutes on a quiet machine)
 	$(CARGO) build $(RELEASE) --quiet --bins
 	$(PYTHON) benches/growth.py
 

@@ -58,6 +58,7 @@ def square(words, sizes):
     return of, sizes, lambda folder, size: command(folder, math.isqrt(size))
 
 
+LOWEST = 600  # rpm, of the range of locate
 RESTITUTIONS = [0.9, 0.99, 0.999, 0.9999]
 TASKS = [
     ("cam", rows(["cam"])),
@@ -73,9 +74,9 @@ TASKS = [
     ("design --rpm 300:700 --speeds N", paper(["design", "--rpm", "300:700", "--speeds", "N"], "speeds", [5, 20, 80, 320])),
     ("basins --rpm 678 --grid NxN", square(["basins", "--rpm", "678", "--grid", "NxN"], [400, 2500, 10_000, 40_000])),
     ("chart of N x N points", square(["chart", "--x", "rpm=600:760:N", "--y", "restitution=0.6:0.9:N", "--out", "-"], [100, 400, 2500, 10_000])),
-    ("orbit --rpm 150 --impacts N", paper(["orbit", "--rpm", "150", "--impacts", "N"], "impacts", [1, 2, 3, 4])),
-    ("continue --from-rpm 700 --impacts N", paper(["continue", "--from-rpm", "700", "--impacts", "N", "--parameter", "rpm=640:760"], "impacts", [1, 2, 3])),
-    ("locate --rpm 600:N", paper(["locate", "--rpm", "600:N"], "highest speed, rpm", [610, 640, 760, 1200])),
+    ("orbit --rpm 300 --impacts N", paper(["orbit", "--rpm", "300", "--impacts", "N"], "impacts", [1, 2, 3, 4, 5, 6])),
+    ("continue --from-rpm 300 --impacts N", paper(["continue", "--from-rpm", "300", "--impacts", "N", "--parameter", "rpm=280:320"], "impacts", [3, 4])),
+    ("locate --rpm 600:N", paper(["locate", "--rpm", f"{LOWEST}:N"], "highest speed, rpm", [610, 640, 760, 1200])),
     ("simulate --rpm 183 --restitution N", paper(["simulate", "--rpm", "183", "--revolutions", "1000", "--restitution", "N"], "restitution", RESTITUTIONS)),
     ("speeds --rpm 181:185 --restitution N", paper(["speeds", "--rpm", "181:185", "--step", "2", "--starts", "8", "--restitution", "N"], "restitution", RESTITUTIONS)),
 ]  # fmt: skip
@@ -91,6 +92,15 @@ def took(words, seconds):
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     used = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
     return used, None if done.returncode == 0 else (done.stderr.strip().splitlines() or ["failed"])[0]
+
+
+def scaled(of, size):
+    """Return what the work should be proportional to: the size itself but for a restitution and for the end of a range."""
+    if of == "restitution":
+        # The number of impacts until a rest goes as 1 / (1 - r).
+        return 1.0 / (1.0 - size)
+    # The range is searched at speeds in a fixed ratio.
+    return math.log(size / LOWEST) if of.startswith("highest speed") else size
 
 
 def main():
@@ -109,8 +119,7 @@ def main():
                 used, trouble = took(command(Path(folder), size), arguments.seconds)
             used = max(used - started, 0.0)
             cells.append(f"{size:,}: {trouble or f'{used:.2f}'}")
-            # Losses count for a restitution, since the number of impacts until a rest goes as 1/(1 - r).
-            scale = 1.0 / (1.0 - size) if of == "restitution" else size
+            scale = scaled(of, size)
             if trouble is None and last and last[1] > 0.05:
                 powers.append(math.log(used / last[1]) / math.log(scale / last[0]))
             last = None if trouble else (scale, used)
