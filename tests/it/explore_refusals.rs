@@ -209,8 +209,8 @@ fn a_crowd_and_slow_clients_stop_nobody() {
         }
     }
     assert_eq!(served.post(&answer, quick.as_bytes()).status, 200);
-    let threads = served.threads();
-    assert!(threads < 150, "{threads} threads");
+    // A thread that has given its place back may take a moment to end.
+    common::until("there are few threads", || served.threads() < 150);
     // With no more than a line each.
     for mut silent in &crowd {
         let _ = silent.write_all(b"GET / HTTP/1.1\r\n");
