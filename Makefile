@@ -45,7 +45,7 @@ test: $(VENV) ## run every test
 
 properties: $(VENV) ## attractors and corner impacts of many models over parts of ranges and at two resolutions, all answers of 200 machines in other units, separation of 500, corners of 5000 cams without any, and a search for orbits that complete lists lack
 	PROPERTIES=all $(CARGO) test $(RELEASE) --test it -- --include-ignored --nocapture a_part_of_a_range parts_of_ranges all_answers_are_the_same \
-	    the_force_tells without_corners bend_the_cam adversary::
+	    the_force_tells without_corners bend_the_cam of_120_machines of_any_number plain_runs_end eighty_columns adversary::
 
 RELEASING := .venv/.releasing
 WHEEL ?= $(if $(filter Linux,$(shell uname)),--zig --compatibility manylinux_2_28) $(if $(TARGET),--target $(TARGET))

@@ -69,7 +69,7 @@ fn nothing_is_wrong(machines: &[Value]) {
 #[test]
 #[ignore = "slow"]
 fn no_orbit_is_found_that_a_complete_list_lacks() {
-    let is_whole = std::env::var_os("PROPERTIES").is_some();
+    let is_whole = crate::common::is_whole();
     let machines = match is_whole {
         true => {
             drawn(0, 207, "--ask orbit:1 --ask pairs:1 --ask proofs:1 --ask counts:1 --ask locate:1 --ask certify:10")
@@ -99,7 +99,7 @@ fn no_orbit_is_found_that_a_complete_list_lacks() {
 fn an_orbit_next_to_a_jump_of_velocity_is_not_denied() {
     let mut given =
         words("--model tests/it/corpus/velocity-jump.toml 542.617 --ask orbit:1 --ask pairs:1 --ask proofs:1");
-    if std::env::var_os("PROPERTIES").is_some() {
+    if crate::common::is_whole() {
         given.extend(words("--ask certify:1"));
     }
     let machines = looked_at(&given);

@@ -110,7 +110,7 @@ fn documents_are_those_of_the_commands() {
         let page = asked(&model, json!({ "view": "model" }));
         let [low, high] = [0, 1].map(|end| page["found"]["speeds"][end].as_f64().unwrap());
         let middle = (0.5 * (low + high)).round();
-        let over = json!({ "name": "rpm", "low": low.round(), "high": high.round(), "count": 3 });
+        let over = json!({ "name": "rpm", "low": low.round(), "high": high.round(), "count": 2 });
         for view in [
             json!({ "view": "design", "count": 5 }),
             json!({ "view": "design", "rpm": [low.round(), high.round()], "count": 4, "needs": [format!("no separation to {middle} rpm")] }),

@@ -317,7 +317,7 @@ fn met(model: &Model, [low, high]: [f64; 2], revolutions: u64) -> Vec<(f64, f64,
 fn parts_are_the_whole(model: &Model, range: [f64; 2], revolutions: u64, least: usize) {
     let whole = met(model, range, revolutions);
     assert!(whole.len() >= least, "{}: {whole:?}", model.name);
-    let counts = if std::env::var_os("PROPERTIES").is_some() { &[2, 4, 8][..] } else { &[2] };
+    let counts = if crate::common::is_whole() { &[2, 4, 8][..] } else { &[2] };
     for &count in counts {
         let end = |index: i32| range[0] + (range[1] - range[0]) * f64::from(index) / f64::from(count);
         let parts: Vec<_> = (0..count).flat_map(|i| met(model, [end(i), end(i + 1)], revolutions)).collect();
@@ -368,7 +368,7 @@ fn parts_of_ranges_have_their_parts_of_the_corner_impacts() {
         ("laws/rectified-sine", [13.0, 20.0], 1, 2),
         ("laws/table-quintic", [690.0, 694.0], 1, 3),
     ];
-    if std::env::var_os("PROPERTIES").is_some() {
+    if crate::common::is_whole() {
         ranges.extend([
             ("damped-light", [560.0, 760.0], 1, 2),
             ("nonsmooth-flip", [800.0, 950.0], 4, 4),

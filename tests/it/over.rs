@@ -194,7 +194,11 @@ fn parts_of_a_range_of_any_number_have_their_part_of_the_answer() {
     let is_asked = |path: &str| changes_nothing(path) || asked.iter().any(|name| path.ends_with(name));
     assert!(wall.numbers().all(|(path, _)| is_asked(path)), "{:?}", wall.numbers().collect::<Vec<_>>());
     let mut seen = 0;
-    for (index, (name, [low, middle, high], step)) in axes.into_iter().enumerate() {
+    // Every second number, of the follower and of the cam.
+    let every = if crate::common::is_whole() { 1 } else { 2 };
+    for (index, (name, [low, middle, high], step)) in
+        axes.into_iter().enumerate().filter(|(index, _)| (index + 1) % every == 0)
+    {
         let over = Over::new(&wall, Parameter::named(&wall, name).unwrap(), Some(250.0)).unwrap();
         let found = |range, step| {
             let budget = Budget { patience: 2_000, ..Budget::SURVEY };
@@ -202,7 +206,7 @@ fn parts_of_a_range_of_any_number_have_their_part_of_the_answer() {
             speeds(&over, range, &resolution, &Unwatched).unwrap()
         };
         // One part of each: the lower and the upper by turns.
-        let part = if index % 2 == 0 { [low, middle] } else { [middle, high] };
+        let part = if index / every % 2 == 0 { [low, middle] } else { [middle, high] };
         let [whole, part] = [[low, high], part].map(|range| found(range, step));
         let fine = (name == "restitution").then(|| found([low, high], 0.5 * step));
         let all = values(&whole);
@@ -233,7 +237,7 @@ fn parts_of_a_range_of_any_number_have_their_part_of_the_answer() {
             }
         }
     }
-    assert!(seen >= 8, "{seen}");
+    assert!(seen >= 8 / every, "{seen}");
 }
 
 /// A table of amplitude a lets go of a ball that lies on it where gravity falls below `a w^2`.

@@ -292,7 +292,7 @@ fn a_cam_without_corners_is_given_none() {
 #[test]
 #[ignore = "slow"]
 fn hardly_any_cam_without_corners_is_given_one() {
-    let count = if std::env::var_os("PROPERTIES").is_some() { 5000 } else { 1000 };
+    let count = if crate::common::is_whole() { 5000 } else { 1000 };
     for from in [0, OTHERS] {
         let alarms = alarms(from, count);
         let with_corner = alarms.iter().filter(|alarm| !alarm.contains("corners []")).count();
@@ -345,7 +345,7 @@ fn more_rows_have_the_corners_that_fewer_have() {
 #[test]
 #[ignore = "slow"]
 fn corners_that_bend_the_cam_by_more_than_the_noise_are_found() {
-    let count = if std::env::var_os("PROPERTIES").is_some() { 1000 } else { 200 };
+    let count = if crate::common::is_whole() { 1000 } else { 200 };
     let corner = |seed: u64| {
         let mut random = Random((seed << 32) + 1);
         let kind = random.one_of(&["harmonic", "parabolic"]);

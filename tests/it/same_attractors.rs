@@ -162,13 +162,15 @@ fn attractors_of_120_machines_are_the_same_whoever_finds_them() {
         "laws/harmonic",
         "laws/program",
     ];
+    // A third of them, at speeds that go on from model to model.
+    let part = if crate::common::is_whole() { 1 } else { 3 };
     let mut again = 0;
     for (index, model) in MODELS.iter().enumerate() {
-        for case in 0..12 {
+        for case in (index as u32 % part..12).step_by(part as usize) {
             let rpm = 100 + 120 * case + 7 * index as u32;
             let restitution = format!("0.{}", 12 + 7 * ((case + index as u32) % 12));
             again += agree(model, rpm, &restitution);
         }
     }
-    assert!(again >= 10, "{again}");
+    assert!(again >= 10 / part as usize, "{again}");
 }

@@ -332,7 +332,7 @@ fn answers_are_the_same_in_any_units() {
 #[test]
 #[ignore = "slow"]
 fn all_answers_are_the_same_in_any_units() {
-    let count = if std::env::var_os("PROPERTIES").is_some() { 200 } else { 1 };
+    let count = if crate::common::is_whole() { 200 } else { 1 };
     check(count, |case| {
         in_any_units(case, &QUICK, Duration::from_secs(10))?;
         in_any_units(case, &SLOW, Duration::from_secs(10))

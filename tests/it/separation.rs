@@ -305,6 +305,6 @@ fn is_where_runs_part(case: &Case) -> TestCaseResult {
 /// `make properties`.
 #[test]
 fn the_force_tells_where_runs_leave_the_cam() {
-    let count = if std::env::var_os("PROPERTIES").is_some() { 500 } else { 30 };
+    let count = if crate::common::is_whole() { 500 } else { 30 };
     random::check(count, is_where_runs_part);
 }

@@ -98,6 +98,11 @@ pub fn ends<T: Send + 'static>(run: impl FnOnce() -> T + Send + 'static) -> Resu
     receiver.recv_timeout(PATIENCE).map_err(|error| format!("no end after {PATIENCE:?}, or a panic: {error}"))
 }
 
+/// Whether tests over many cases look at all of them: in `make properties`.
+pub fn is_whole() -> bool {
+    std::env::var_os("PROPERTIES").is_some()
+}
+
 /// Waits until something is so, for as long as a busy machine may take.
 #[track_caller]
 pub fn until(what: &str, is_so: impl Fn() -> bool) {
