@@ -1,7 +1,7 @@
 """The problem that every peer is given: the follower, the cam, and the loop around its flights.
 
-A peer is a class with a constructor `Peer(problem, tolerance)`, a height `above` the cam, m, where flights start after an impact (0,
-or an ulp or two if the peer does not accept a gap of exactly 0), and a method
+A peer is a class with a constructor `Peer(problem, tolerance)`. Its `above` is the height above the cam, m, at which flights start
+after an impact: 0, or an ulp or two if the peer does not accept a gap of exactly 0. It has a method
 
     fly(t, state, end, arc) -> (t, state, hit)
 
