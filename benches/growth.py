@@ -1,9 +1,9 @@
-"""How the work of each command grows with its size: processor seconds, size by size, and the power between neighbouring sizes.
+"""Growth of the work of each command with its size: processor seconds, size by size, and the power between neighbouring sizes.
 
   python benches/growth.py [--seconds 30] [--only WORD]      or make bench-growth
 
-Prints a table in Markdown. A row ends at the first size that takes longer than so many seconds. The program is that of
-`cargo build --release`; start-up, some 10 ms, is taken off.
+Prints a table in Markdown. A row ends at the first size that takes more than --seconds. The program is built by `cargo build
+--release`. The time of start-up, about 10 ms, is subtracted.
 """
 
 import argparse
@@ -34,7 +34,7 @@ file = "lobe.csv"
 
 
 def lobe(folder, rows):
-    """A 3-4-5 lobe of 10 mm over the whole turn, as a table of so many rows."""
+    """Write a 3-4-5 lobe of 10 mm over the whole turn, as a table of so many rows, and return its model file."""
     lines = ["angle_deg,lift_m"]
     for row in range(rows):
         x = 1.0 - abs(2.0 * row / rows - 1.0)
@@ -53,7 +53,7 @@ def paper(words, of, sizes):
 
 
 def square(words, sizes):
-    """Sizes are numbers of points; the command takes the side of their square."""
+    """Return a task whose sizes are numbers of points. The command takes the side of their square."""
     of, _, command = paper(words, "points", sizes)
     return of, sizes, lambda folder, size: command(folder, math.isqrt(size))
 
@@ -83,7 +83,7 @@ TASKS = [
 
 
 def took(words, seconds):
-    """Processor seconds of a command, or why there is no answer."""
+    """Return (processor seconds of a command, None), or with the reason if there is no answer."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     try:
         done = subprocess.run([PROGRAM, *words], capture_output=True, text=True, timeout=4 * seconds, check=False)
@@ -95,9 +95,9 @@ def took(words, seconds):
 
 
 def scaled(of, size):
-    """Return what the work should be proportional to: the size itself but for a restitution and for the end of a range."""
+    """Return the number that the work should be proportional to: the size itself, except for a restitution and for the end of a range."""
     if of == "restitution":
-        # The number of impacts until a rest goes as 1 / (1 - r).
+        # The number of impacts until a rest grows as 1 / (1 - r).
         return 1.0 / (1.0 - size)
     # The range is searched at speeds in a fixed ratio.
     return math.log(size / LOWEST) if of.startswith("highest speed") else size

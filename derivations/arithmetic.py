@@ -1,4 +1,4 @@
-"""Numbers to many digits: exact input, expression text, and the responses of free flight for every damping alike.
+"""Numbers to many digits: exact input, expression text, and the responses of free flight for any damping.
 
 Uses mpmath alone, so that a script that only evaluates starts without computer algebra.
 """
@@ -23,7 +23,7 @@ OPERATORS = {
 
 
 def exact(value):
-    """A decimal, as text or as an integer, at working precision; refuses what is no finite number."""
+    """Return a decimal, given as text or as an integer, at working precision. Raise ValueError for anything that is no finite number."""
     if isinstance(value, bool) or not isinstance(value, (str, int)):
         raise ValueError(f"{value!r} is not a number")
     try:
@@ -36,12 +36,12 @@ def exact(value):
 
 
 def text(value, digits):
-    """A decimal with that many significant digits; 0 if it is none to working precision."""
+    """Return a number as text with that many significant digits; "0" if the number is 0."""
     return mp.nstr(value, digits, strip_zeros=False, min_fixed=-6, max_fixed=16) if value else "0"
 
 
 def evaluate(source, names):
-    """The value of an expression in + - * / **, integers and names; nothing else is allowed in it."""
+    """Return the value of an expression in + - * / **, integers and names. Nothing else is allowed in the expression."""
 
     def value(node):
         if isinstance(node, ast.BinOp):
@@ -59,9 +59,9 @@ def evaluate(source, names):
 
 
 def responses(zeta, omega0_squared, time):
-    """(p, s) after `time`, p' = s and s' = 1 - omega0^2 p - 2 zeta s, by their power series and doubling.
+    """Return (p, s) after `time`, where p' = s and s' = 1 - omega0^2 p - 2 zeta s, by power series and doubling.
 
-    No formula for one damping enters, so the stiffness and the damping may be 0 or near it.
+    No formula is specific to one kind of damping, so the stiffness and the damping may be 0 or near 0.
     """
     halvings, size = 0, (2 * abs(zeta) + mp.sqrt(abs(omega0_squared))) * abs(time)
     while size > mpf(1) / 4:
@@ -85,14 +85,14 @@ def responses(zeta, omega0_squared, time):
 
 
 def later(zeta, omega0_squared, first, second):
-    """The responses after both times, from those after each: F_b (p, s)_a + (p, s)_b."""
+    """Return the responses after the sum of two times, from the responses after each: F_b (p, s)_a + (p, s)_b."""
     (p, s), (pb, sb) = first, second
     fb = 1 - omega0_squared * pb
     return fb * p + sb * s + pb, -omega0_squared * sb * p + (fb - 2 * zeta * sb) * s + sb
 
 
 def flow(zeta, omega0_squared, response, state, force):
-    """The state after a flight: force is the acceleration at the start position and v = 0; displacement is from there."""
+    """Return the state after a flight. `force` is the acceleration at the start position with v = 0."""
     p, s = response
     position, velocity = state
     return position + s * velocity + p * force, (1 - omega0_squared * p - 2 * zeta * s) * velocity + s * force

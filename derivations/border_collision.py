@@ -1,14 +1,17 @@
-"""What piecewise-linear maps do at a border, in terms of slopes or of trace and determinant.
+"""Piecewise-linear maps at a border, in terms of slopes or of trace and determinant.
 
-The map is x -> A x + b mu on either side of a border; L is the side where the border's function is negative, R the other.
+The map is x -> A x + b mu on either side of a border. L is the side where the border's function is negative, R the other.
 
     line        x -> a x + mu (L, x < 0),  b x + mu (R, x > 0)
     plane       (x, y) -> (tau x + y + mu, -delta x), L where x < 0, with tau and delta of the side
 
-Proved: fixed points and the orbit of period two with the conditions for their place and their stability; the stable orbits
-L^(n-1) R of the line, for n up to 7; when the unstable manifold of the fixed point on L comes back on the inside of its stable
-one (Banerjee, Yorke and Grebogi 1998); the cone of directions that both sides stretch then; and, for any continuous map of the plane, that one number decides where both fixed
-points lie.
+Proved:
+
+    fixed points and the orbit of period two, with the conditions for their place and their stability
+    the stable orbits L^(n-1) R of the line, for n up to 7
+    when the unstable manifold of the fixed point on L returns inside its stable manifold (Banerjee, Yorke and Grebogi 1998)
+    the cone of directions that both sides then stretch
+    for any continuous map of the plane, that one number decides where both fixed points lie
 """
 
 import sympy as sp
@@ -21,12 +24,12 @@ one = sp.eye(2)
 
 
 def side(tau, delta):
-    """The matrix of the plane's normal form."""
+    """Return the matrix of the plane's normal form."""
     return sp.Matrix([[tau, 1], [-delta, 0]])
 
 
 def orbit_of_the_line(n):
-    """The points of L^(n-1) R: first the one on R, then those on L, by solving for the one on R."""
+    """Return the points of the orbit L^(n-1) R: first the point on R, which is solved for, then the points on L."""
     point = x
     for letter in [b] + [a] * (n - 1):
         point = letter * point + mu
@@ -43,7 +46,7 @@ def line_proofs():
         total = sum(a**k for k in range(n))
         yield Proof(f"L^{n - 1} R: the point on R is mu (1 + a + .. + a^{n - 1})/(1 - a^{n - 1} b)",
                     first - mu * total / (1 - a ** (n - 1) * b))
-        # The last point on L is the nearest to the border where 0 < a < 1, as the fixed point of L lies beyond it.
+        # For 0 < a < 1 the last point on L is the nearest to the border, since the fixed point of L lies beyond the border.
         yield Proof(f"L^{n - 1} R: the last point on L is mu (1 + .. + a^{n - 2} + a^{n - 2} b)/(1 - a^{n - 1} b)",
                     others[-1] - mu * (sum(a**k for k in range(n - 1)) + a ** (n - 2) * b) / (1 - a ** (n - 1) * b))
         yield Proof(f"L^{n - 1} R: a times that is mu (b a^{n - 1} - 1 + (1 - a^{n})/(1 - a))/(1 - a^{n - 1} b)",
@@ -62,7 +65,7 @@ def plane_proofs():
         yield Proof(f"{name}: the fixed point is at x = mu/(1 - tau + delta)", fixed[0] - 1 / (1 - tau + delta))
         yield Proof(f"{name}: det(I - A) = 1 - tau + delta and det(I + A) = 1 + tau + delta",
                     [(one - A).det() - (1 - tau + delta), (one + A).det() - (1 + tau + delta)])
-    # L first: the point on L is the fixed point of A_R A_L, the point on R that of A_L A_R.
+    # The point on L is the fixed point of A_R A_L, and the point on R that of A_L A_R.
     on_L = (one - A_R * A_L).inv() * (A_R + one) * b_vector
     on_R = (one - A_L * A_R).inv() * (A_L + one) * b_vector
     Delta = (1 + delta_L) * (1 + delta_R) - tau_L * tau_R
@@ -74,7 +77,7 @@ def plane_proofs():
 
 
 def homoclinic_proofs():
-    """mu = 1, tau_L > 1 + delta_L, tau_R < -(1 + delta_R): with the eigenvalues l1 > 1 > l2 > 0 of A_L."""
+    """Proofs for mu = 1, tau_L > 1 + delta_L and tau_R < -(1 + delta_R), with the eigenvalues l1 > 1 > l2 > 0 of A_L."""
     l1, l2, s, t = sp.symbols("l1 l2 s t")
     of_L = {tau_L: l1 + l2, delta_L: l1 * l2}
     A_L, A_R = side(tau_L, delta_L).subs(of_L), side(tau_R, delta_R)
@@ -87,7 +90,7 @@ def homoclinic_proofs():
     first = A_L * on_border + b_vector
     yield Proof("the unstable manifold of the saddle on L folds at (1/(1 - l2), 0)", first - sp.Matrix([1 / (1 - l2), 0]))
     second = A_R * first + b_vector
-    # Above the stable manifold y = y_L - l1 (x - x_L), times a positive factor, is phi.
+    # Up to a positive factor, phi is the height above the stable manifold y = y_L - l1 (x - x_L).
     above = second[1] - (saddle[1] - l1 * (second[0] - saddle[0]))
     phi = l1 * (l1 - delta_L) + (l1 - 1) * (l1 * tau_R - delta_R)
     yield Proof("the image of the fold lies above the stable manifold just where phi > 0",
@@ -98,10 +101,10 @@ def homoclinic_proofs():
 
 
 def cone_proofs():
-    """The directions (1, m) with -l2 <= m <= k2, for eigenvalues l1 > 1 > l2 > 0 of A_L and -k1 < -1 < -k2 < 0 of A_R.
+    """Proofs for the directions (1, m) with -l2 <= m <= k2. The eigenvalues are l1 > 1 > l2 > 0 of A_L and -k1 < -1 < -k2 < 0 of A_R.
 
-    Each matrix sends them into themselves and stretches the first coordinate, at least l1-fold and k1-fold: with m + l2 and
-    k2 - m not negative, all that stands here is a sum, product or quotient of numbers whose sign is known.
+    Each matrix maps this cone into itself and stretches the first coordinate, at least l1-fold and k1-fold. Since m + l2 and k2 - m
+    are not negative, every expression here is a sum, product or quotient of numbers of known sign.
     """
     l1, l2, k1, k2, m = sp.symbols("l1 l2 k1 k2 m")
     direction = sp.Matrix([1, m])

@@ -1,11 +1,17 @@
-"""A certificate for every corner impact that is put forward: that it exists, alone, and what its map and its verdict are.
+"""Certificates for candidate corner impacts: that each exists and is the only one nearby, its map, and its verdict.
 
-One JSON document on stdin: the model's "follower" and "cam", "bits", and "candidates", places in doubles where corner impacts
-are thought to be. One on stdout: "results", for each candidate in turn a "certificate", with a ball for every number, or "refused"
-with why; and "assumed", what the pieces of the cam miss each other by, which is taken out. Everything said in a certificate is
-proved, for the machine whose constants are the decimals of the model; the candidates are only where corner impacts are looked for.
-With "orbits_at_rpm" there are "orbits" and "complete" besides, with
-"orbits_over_rpm", [low, high], "counts", "undecided" and "events", with "resting_at_rpm" "releases", "periodic" and "pressed_rad".
+Reads one JSON document from stdin: the model's "follower" and "cam", "bits", and "candidates", places in doubles where corner impacts
+are expected. Writes one to stdout:
+
+    results     for each candidate a "certificate", with a ball for every number, or "refused" with the reason
+    assumed     the mismatch of the cam's pieces, which is taken out, or null
+
+Everything in a certificate is proved, for the machine whose constants are the decimals of the model. Candidates only say where corner
+impacts are looked for. Three more keys of the input ask for more:
+
+    orbits_at_rpm               adds "orbits", "complete" and "undecided"
+    orbits_over_rpm [low, high] adds "counts", "undecided" and "events"
+    resting_at_rpm              adds "bits", "releases", "looked_at", "periodic" and "pressed_rad"
 """
 
 import json
@@ -26,21 +32,21 @@ from balls.profiles import missed_by
 from balls.resting import MOST_IMPACTS, Resting
 from balls.verdict import SIDES, Verdict
 
-# With fewer bits nothing is proved; with more a number takes longer than anyone waits.
+# Fewer bits prove nothing, and more bits take too long.
 FEWEST_BITS, MOST_BITS = 16, 16384
-# A motion that takes more until it rests is given up.
+# A motion that needs more bits until it rests is given up.
 MOST_RESTING_BITS = 4096
-# The cam's law before the corner holds on the minus side, that after it on the plus side.
+# The cam's law before the corner holds on the minus side, and the law after it on the plus side.
 LAW_OF = {"minus": "before", "plus": "after"}
 
 
 def certificate(machine, candidate, apart):
-    """Everything that is proved of one candidate, of a cam that was so far apart; Refused says what is not."""
+    """Return everything that is proved of one candidate. `apart` is the mismatch of the cam's pieces. Raise Refused if the proof fails."""
     orbit = CornerImpact(machine, candidate)
     maps, borders = {}, {}
     for side in SIDES:
         maps[side], borders[side] = orbit.side_map(LAW_OF[side])
-    # How far the flight is from the cam when the corner passes does not depend on what the impact does.
+    # The distance of the flight from the cam when the corner passes does not depend on the impact.
     found = Verdict(maps, borders["minus"])
     return {
         "period_s": ball(orbit.period),
@@ -73,7 +79,7 @@ def certificate(machine, candidate, apart):
 
 
 def side_document(found, side, beside):
-    """One side of the map, and how far its fixed point is followed."""
+    """Return one side of the map, with the range in which its fixed point is proved to exist. Raise Refused if both contradict each other."""
     a = found.a[side]
     if beside is not None and beside.exists_for != found.exists_for(side):
         raise Refused("the followed fixed point contradicts the verdict: one of them is wrong")
@@ -89,13 +95,13 @@ def side_document(found, side, beside):
 
 
 def assumed(table):
-    """By how much the pieces of a cam miss each other as they are typed, which is taken out: lift, slope; none where they meet."""
+    """Return the mismatch of lift and slope between the pieces of a cam as typed, which is taken out; None if there is none."""
     lift, slope = missed_by(table)
     return {"lift_m": float(lift), "slope_m_rad": float(slope)} if lift > 0 or slope > 0 else None
 
 
 def answer(document, candidates):
-    """A certificate or why there is none, candidate by candidate."""
+    """Return a certificate or the reason for a refusal for each candidate, and the other parts that the document asks for."""
     bits = int(decimal(document.get("bits", 128)))
     if not FEWEST_BITS <= bits <= MOST_BITS:
         raise Refused(f"bits = {bits}: must be from {FEWEST_BITS} to {MOST_BITS}")
@@ -111,8 +117,8 @@ def answer(document, candidates):
 
 
 def orbits(machine, document):
-    """All orbits of one impact and of two in one revolution at "orbits_at_rpm", where that is asked for: each with its kind; for
-    which numbers of impacts the list is proved to be all, and where it is not."""
+    """Return all orbits of one impact and of two in one revolution at "orbits_at_rpm", each with its kind; {} if not asked for.
+    "complete" has the numbers of impacts for which the list is proved complete, and "undecided" the places where it is not."""
     if "orbits_at_rpm" not in document:
         return {}
     all_of = Orbits(machine, machine.cam.turn * arb(decimal(document["orbits_at_rpm"])) / 60)
@@ -136,7 +142,8 @@ def orbits(machine, document):
 
 
 def joined(undecided):
-    """The ranges of the impacts' angles, from the angle of the first and what is turned to the next; those that meet as one."""
+    """Return the ranges of the impacts' angles of undecided places, and join places that overlap. Each place has the angle of the
+    first impact and the angle turned until the next."""
     whole = []
     for first, *others in sorted(undecided, key=lambda balls: float(balls[0].lower())):
         angles = [first] + [first + other for other in others]
@@ -148,8 +155,9 @@ def joined(undecided):
 
 
 def counts(machine, document):
-    """How many orbits of one impact in one revolution there are at every speed of "orbits_over_rpm", and of which kinds: in doubles
-    from where to where, the nearest ones to what is told in balls with the events; and the speeds at which that is not decided."""
+    """Return the number and the kinds of the orbits of one impact in one revolution at every speed of "orbits_over_rpm"; {} if not
+    asked for. "counts" has ranges of speeds between the doubles nearest to the balls of "events". "undecided" has the ranges that are
+    not decided."""
     if "orbits_over_rpm" not in document:
         return {}
     stretches = Branches(machine).over(*(float(decimal(bound)) for bound in document["orbits_over_rpm"]))
@@ -176,8 +184,8 @@ def counts(machine, document):
 
 
 def resting(document):
-    """The motions that rest at "resting_at_rpm": what follows on each place where the cam lets go, which of them come round to themselves,
-    and the bits that it took: twice as many as long as the balls get too wide on the way."""
+    """Return the motions that rest at "resting_at_rpm": the motion after each release, the periodic ones, and the bits that were
+    needed. The bits are doubled while the balls are too wide. Return {} if not asked for."""
     if "resting_at_rpm" not in document:
         return {}
     machine, speed = Machine(document), decimal(document["resting_at_rpm"])
@@ -214,7 +222,7 @@ def resting(document):
 
 
 def pressed(stretches):
-    """From where to where a is below 0, less whole turns; the first may begin in the turn before."""
+    """Return the ranges of angles in which a is below 0. The first range may continue the last one of the turn before."""
     ranges = []
     for (low, high, _, sign), before in zip(stretches, [None, *stretches]):
         if sign < 0 and before is not None and before[-1] < 0:
@@ -225,7 +233,7 @@ def pressed(stretches):
 
 
 def once_around(hops, first):
-    """The releases from one until it comes round to that; none where it does not."""
+    """Return the releases from `first` on until the motion returns to it; [] if it does not return."""
     around, at = [], first
     while hops[at] is not None and at not in around:
         around.append(at)
@@ -234,14 +242,14 @@ def once_around(hops, first):
 
 
 def one_turn(machine, angle):
-    """An angle less whole turns."""
+    """Return an angle less whole turns."""
     return angle - machine.cam.turn * int(float(angle) // float(machine.cam.turn))
 
 
 def main():
     try:
         text = sys.stdin.read()
-        # The model's numbers are taken to the digit, guesses as doubles.
+        # The model's numbers keep all their digits, and guesses are doubles.
         document, guesses = json.loads(text, parse_float=str, parse_int=str), json.loads(text).get("candidates", ())
         found = answer(document, guesses)
     except (Refused, ValueError, KeyError, TypeError, AttributeError) as error:

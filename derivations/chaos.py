@@ -1,12 +1,13 @@
 """Sets of chaotic motions, proved in ball arithmetic from the h-sets of golden/chaos.
 
     python derivations/chaos.py                    every h-set for one speed: two minutes
-    python derivations/chaos.py --all              those for ranges of speeds as well: ten seconds each
-    python derivations/chaos.py --rpm 670          those for that speed; LO:HI: those for speeds of that range
-    python derivations/chaos.py --json FILE ...    those of other files, as one JSON document
+    python derivations/chaos.py --all              h-sets for ranges of speeds as well: ten seconds each
+    python derivations/chaos.py --rpm 670          h-sets for that speed; LO:HI: h-sets for speeds within that range
+    python derivations/chaos.py --json FILE ...    h-sets of other files, as one JSON document
 
-A line a strip and a line a theorem, as soon as it is known, and what is left out; exit 1 if one is not proved. A theorem says that a set of chaotic
-motions exists at every speed that its h-set is for, not that other motions come to it. docs/theorems.md says why it follows.
+Prints one line for each strip and each theorem as soon as it is known, and what is left out. The exit code is 1 if a proof fails. A
+theorem says that a set of chaotic motions exists at every speed of its h-set. It does not say that other motions converge to this
+set. docs/theorems.md gives the argument.
 """
 
 import argparse
@@ -26,9 +27,9 @@ from balls.motion import Machine
 from balls.numbers import Refused, decimal
 
 ROOT = Path(__file__).resolve().parent.parent
-# Digits enough that a middle, followed over the impacts of any strip, is far narrower than the smallest box.
+# Enough bits that the image of a box's middle, after the impacts of any strip, is far narrower than the smallest box.
 BITS = 64
-# Rounded speeds are within it of a speed that is none, as that of the corner impact; a range is wider.
+# An h-set for one speed covers at most this range, rpm, about a speed that is no decimal, such as that of the corner impact.
 ONE_SPEED = decimal("0.03")
 HYPOTHESES = [
     "the machine is the one whose numbers are the decimals of the model file, in SI units",
@@ -39,7 +40,7 @@ HYPOTHESES = [
 
 
 def machine_of(name):
-    """The machine of models/NAME.toml; Refused where the theorem does not speak of it."""
+    """Return the machine of models/NAME.toml. Raise Refused if the theorem does not cover it."""
     document = tomllib.loads((ROOT / "models" / f"{name}.toml").read_text(), parse_float=str)
     if "units" in document:
         raise Refused("the model is not in SI units")
@@ -51,7 +52,7 @@ def machine_of(name):
 
 
 def theorem(machine, h_set, say):
-    """What is proved of one h-set, strip by strip: a dictionary, in which `proved` holds where all of it is."""
+    """Prove one h-set, strip by strip. Return the results as a dictionary, in which `proved` is True if every strip is proved."""
     strips = []
     for strip in h_set.strips:
         proof, result = Proof(machine, h_set, strip), {"impacts": strip.impacts, "revolutions": strip.revolutions}
@@ -80,17 +81,17 @@ def theorem(machine, h_set, say):
 
 
 def below(number):
-    """A double that a ball is certainly not below."""
+    """Return a double that is a lower bound of a ball."""
     return math.nextafter(float(number.lower()), -math.inf)
 
 
 def at_least(number):
-    """Six decimals of a number, rounded down."""
+    """Return a number as text, rounded down to six decimals."""
     return f"{math.floor(number * 10**6) / 10**6:g}"
 
 
 def theorems(path, is_asked, say):
-    """The theorem of each h-set of a file that is for speeds that are asked for."""
+    """Yield the theorem of each h-set of a file whose speeds are asked for."""
     document = json.loads(path.read_text(), parse_float=str, parse_int=str)
     name = document["model"]
     machine = machine_of(name)

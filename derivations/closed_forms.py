@@ -1,8 +1,8 @@
-"""The closed forms that the Rust code evaluates, once, as data: a straight-line program of named expressions.
+"""The closed forms that the Rust code evaluates, as data: a straight-line program of named expressions.
 
-Each line may use the inputs and the lines above it. corner_map.py proves that it is what the derivation gives, with residual
-exactly 0; derive.py writes the same lines into golden/derived/closed_forms.json, with its values at 200 points in
-golden/derived/points.json, and Rust is held to those.
+Each line may use the inputs and the lines above it. The proofs of corner_map.py show that the program agrees with the derivation,
+with residual exactly 0. The script derive.py writes the same lines into golden/derived/closed_forms.json, and their values at 200
+points into golden/derived/points.json. The Rust code is tested against these values.
 
 Every expression keeps to + - * / **, integers, names and brackets.
 """

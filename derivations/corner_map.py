@@ -1,6 +1,6 @@
 """The stroboscopic map of a cam-follower and its derivatives at a corner impact, from first principles.
 
-For every damping, any stiffness, any restitution r > 0 and any cam c(theta) that turns through 2 pi in T:
+For any damping, any stiffness, any restitution r > 0 and any cam c(theta) that turns through 2 pi in T:
 
     fly from -T/2 to the impact at tau, impact, fly from tau to T/2;    tau from contact, q(tau) = c(2 pi tau/T).
 
@@ -8,13 +8,16 @@ P(x, T) is that composition. With H the gap at contact, H(x, T, tau) = 0 defines
 
     dP/dx = P_x - P_tau H_x/H_tau,    dP/dT = P_T - P_tau H_T/H_tau.
 
-A and B are these at tau = 0. Nothing but the derivatives of the two responses (flight.py), restitution and the chain rule
-goes in; the cam is a function of which only c, c', c'' at the corner survive. Proved: A and B are closed_forms.py; they
-depend on position only through the spring's force; they hold for c'' of either side; det A; when the impact comes.
+A and B are these derivatives at tau = 0. The inputs are the derivatives of the two responses (flight.py), restitution and the chain
+rule. Of the cam, only c, c', c'' at the corner remain. Proved:
 
-Assumed, as the composition is: the follower comes to the cam, v < c', and flies after the impact. With r > 0 it does, at r (c' - v)
-away from the cam. At r = 0 it leaves with the cam's velocity and flies only where S = c'' + 2 zeta c' + spring < 0; where S > 0
-the cam holds it until a moment that the cam alone decides, so that A is the zero matrix.
+    A and B are those of closed_forms.py, and hold for c'' of either side
+    they depend on position only through the spring's force
+    det A, and the time of the impact
+
+Assumed, as in the composition: the follower approaches the cam, v < c', and flies after the impact. With r > 0 it does fly, since it
+leaves at r (c' - v) relative to the cam. With r = 0 it leaves with the cam's velocity and flies only if S = c'' + 2 zeta c' + spring
+is below 0. If S > 0, the cam holds the follower until a moment that the cam alone decides, so that A is the zero matrix.
 """
 
 import sympy as sp
@@ -33,7 +36,7 @@ l0, l1, l2 = sp.symbols("l0 l1 l2", real=True)
 
 
 class Lift(sp.Function):
-    """c(theta), theta from the corner."""
+    """c(theta), with theta measured from the corner."""
 
     nargs = 1
 
@@ -57,13 +60,13 @@ class Curvature(sp.Function):
 
 
 def cam(time):
-    """(c, c') at a time from the corner: the cam's angle is 2 pi time/T, so both depend on T."""
+    """Return (c, c') at a time from the corner. The cam's angle is 2 pi time/T, so both depend on T."""
     angle = 2 * sp.pi * time / T
     return sp.Matrix([Lift(angle), 2 * sp.pi / T * Slope(angle)])
 
 
 def one_revolution():
-    """P and the gap H before the implicit tau is put in: functions of x1, x2, T and tau."""
+    """Return P and the gap H as functions of x1, x2, T and tau, before tau is made implicit."""
     before = fly(T / 2 + tau, sp.Matrix([x1, x2]))
     surface = cam(tau)
     after = restitution(before, surface)
@@ -71,20 +74,20 @@ def one_revolution():
 
 
 def at_corner(expression):
-    """Evaluate at tau = 0, where x has flown to (q, v) with q = c: in p, s of T/2, spring, v, c', c''."""
+    """Return an expression at tau = 0, where x has flown to (q, v) with q = c. The result is in p, s of T/2, spring, v, c', c''."""
     F = propagator(p, s)
     start = F.inv() * (sp.Matrix([q, v]) - load * sp.Matrix([p, s]))
     expression = sp.sympify(expression).subs(tau, 0)
     expression = expression.subs({Step(T / 2): p, Impulse(T / 2): s, Lift(0): l0, Slope(0): l1, Curvature(0): l2})
     expression = expression.subs({x1: start[0], x2: start[1]})
     expression = expression.subs({l0: q, l1: c1 * T / (2 * sp.pi), l2: c2 * (T / (2 * sp.pi)) ** 2})
-    # the force that the spring and gravity leave at the corner
+    # The acceleration by spring and gravity at the corner is -spring.
     expression = expression.subs(load, omega0_squared * q - spring)
     return sp.cancel(sp.together(expression))
 
 
 def derive():
-    """A, B and the impact time's derivatives at the corner."""
+    """Return A, B, the derivatives of the impact time, H and its rate, all at the corner."""
     P, H = one_revolution()
     rate = at_corner(sp.diff(H, tau))
     P_tau = sp.diff(P, tau).applyfunc(at_corner)
@@ -104,7 +107,7 @@ _DERIVED = []
 
 
 def derived():
-    """derive(), once."""
+    """Return derive(), computed once."""
     if not _DERIVED:
         _DERIVED.append(derive())
     return _DERIVED[0]
@@ -114,7 +117,7 @@ INPUTS = {str(symbol): symbol for symbol in (zeta, omega0_squared, T, r, spring,
 
 
 def transcribed():
-    """closed_forms.py read as sympy expressions in the inputs."""
+    """Return closed_forms.py as sympy expressions in the inputs."""
     names = dict(INPUTS)
     for name, text in closed_forms.CLOSED_FORMS.items():
         names[name] = sp.sympify(text, locals=names)
@@ -122,7 +125,7 @@ def transcribed():
 
 
 def expressions():
-    """The derived A and B as text, for evaluation elsewhere."""
+    """Return the derived A and B as text, for evaluation elsewhere."""
     A, B = derived()["A"], derived()["B"]
     entries = {"A11": A[0, 0], "A12": A[0, 1], "A21": A[1, 0], "A22": A[1, 1], "B1": B[0], "B2": B[1]}
     return {name: str(sp.collect(sp.expand(sp.numer(sp.together(entry))), (p, s)) / sp.factor(sp.denom(sp.together(entry))))
@@ -156,7 +159,7 @@ def proofs():
     v_plus = (1 + r) * c1 - r * v
     after = sp.Matrix([v_plus, -2 * zeta * v_plus - spring])
     saltation = sp.Matrix([[-r, 0], [alpha, -r]])
-    # the same jump from the other side: the saltation matrix maps the field before the impact, less the cam's motion, to that after
+    # A second view of the jump: the saltation matrix maps the field before the impact, less the cam's motion, to that after it.
     cam_motion = sp.Matrix([c1, c2])
     yield Proof("the jump of A carries x' - y' before the impact to x' - y' after it",
                 saltation * (acceleration - cam_motion) - (after - cam_motion))

@@ -1,9 +1,9 @@
 """All derivations, from the equation of motion to golden/derived.
 
-    python derivations/derive.py            prove everything, print a line for each, write golden/derived
-    python derivations/derive.py --check    the same, but write nothing: fail where golden/derived is stale
+    python derivations/derive.py            prove everything, print a line for each proof, write golden/derived
+    python derivations/derive.py --check    prove everything, write nothing, and fail if golden/derived is stale
 
-Exit 1 if a proof fails or a file is stale; nothing is written unless every proof holds.
+The exit code is 1 if a proof fails or a file is stale. Nothing is written unless every proof holds.
 """
 
 import argparse
@@ -29,12 +29,12 @@ import smoothing_spline
 from proof import PLANTED, Measurement, refuses, show
 
 GOLDEN = Path(__file__).resolve().parent.parent / "golden" / "derived"
-# Doubles meet the derived values to this at every point, which is what Rust is asked for.
+# Largest relative error of doubles at a point. The Rust code is held to the same.
 DOUBLE = 1e-12
 
 
 def lines(document, key):
-    """A JSON document with the entries of one list on a line each."""
+    """Return a JSON document as text, with the entries of one list on a line each."""
     entries = ",\n".join("  " + json.dumps(entry) for entry in document[key])
     head = json.dumps({name: value for name, value in document.items() if name != key}, indent=1)
     return f'{head[:-2]},\n "{key}": [\n{entries}\n ]\n}}\n'
@@ -45,7 +45,7 @@ def pretty(document):
 
 
 def run():
-    """Prove each stage; the files, and whether all proofs hold and what is false is refused."""
+    """Prove each stage. Return the files, and True if every proof holds and every false identity is refused."""
     complete, stated = refuses(), []
     print(f"refused       {len(PLANTED)} planted identities that are false" if complete else "NOT REFUSED: `vanishes` accepts a false identity, so it proves nothing")
 
@@ -102,7 +102,7 @@ def run():
 
 
 def stale(files):
-    """The files that are not what was derived, and those that nothing derives."""
+    """Yield the files that differ from what was derived, and the files that nothing derives."""
     for name, text in files.items():
         path = GOLDEN / name
         if not path.exists() or path.read_text() != text:

@@ -1,13 +1,13 @@
 """The symbolic route: the derived A and B at a model's corner impact, to 30 digits.
 
-One JSON document on stdin (the model's follower, cam and study), one on stdout; a message on stderr and exit 1 otherwise.
-The expressions are those that corner_map.py derived and derive.py wrote to golden/derived/corner_map.json; nothing is
-proved or retyped here. Where the corner impact is, is found from the model alone:
+Reads one JSON document from stdin (the model's follower, cam and study) and writes one to stdout. On failure it writes a message to
+stderr, and the exit code is 1. The expressions are those that corner_map.py derived and derive.py wrote to
+golden/derived/corner_map.json; nothing is proved or retyped here. The corner impact is found from the model alone:
 
     leave the corner at (c, v+), fly for T, be back at c with v-;   v+ = (1 + r) c' - r v-,   c' = (2 pi/T) dc/dtheta,
 
-an equation for T. Of its roots in the study's range those count whose flight stays above the cam and comes down on it
-(v- < c'); the slowest is taken.
+which is an equation for T. A root in the study's range counts if its flight stays above the cam and lands on it (v- < c'). The
+slowest of these is taken.
 """
 
 import json
@@ -24,20 +24,20 @@ from arithmetic import evaluate, exact, flow, later, responses, text
 
 DERIVED = Path(__file__).resolve().parent.parent / "golden" / "derived" / "corner_map.json"
 DIGITS = 30
-# Samples over the study's periods, and over one revolution for the height above the cam.
+# Samples over the study's periods, and samples of the height above the cam over one revolution.
 SCAN, HEIGHT = 4096, 16384
-# T is closed to this relative width.
+# Relative width to which T is solved.
 CLOSED = mpf(10) ** -60
-# Less than this of its terms is nothing.
+# Size of a sum relative to its terms below which the sum counts as 0.
 NOTHING = mpf(10) ** -70
 
 
 class Refused(Exception):
-    """The input holds no corner impact, or is no model."""
+    """The input holds no corner impact, or is no valid model."""
 
 
 class Dwell:
-    """A circle about the axis."""
+    """Circle about the axis."""
 
     def __init__(self, radius):
         self.radius = radius
@@ -50,14 +50,14 @@ class Dwell:
 
 
 class Arc:
-    """A circle of a radius about a centre at polar (distance, direction), met by a line that is this far to the left of the axis:
-    (c - distance cos(phi))^2 + (distance sin(phi) + offset)^2 = radius^2."""
+    """Circle about a centre at polar (distance, direction), met by a line that runs `offset` to the left of the axis: (c - distance
+    cos(phi))^2 + (distance sin(phi) + offset)^2 = radius^2."""
 
     def __init__(self, distance, direction, radius, offset=0):
         self.distance, self.direction, self.radius, self.offset = distance, direction, radius, offset
 
     def lift(self, angle, library=mp):
-        """c, dc/dtheta, d^2c/dtheta^2, the last two from the circle's equation differentiated once and twice."""
+        """Return c, dc/dtheta and d^2c/dtheta^2. The derivatives come from the circle's equation, differentiated once and twice."""
         phi = angle - self.direction
         along, across = self.distance * library.cos(phi), self.distance * library.sin(phi)
         beside = across + self.offset
@@ -71,7 +71,7 @@ class Arc:
 
 
 class Face:
-    """A circle that a face square to the follower's motion touches: the distance of its tangent from the axis."""
+    """Circle that touches a face square to the follower's motion. The lift is the distance of the circle's tangent from the axis."""
 
     def __init__(self, distance, direction, radius):
         self.distance, self.direction, self.radius = distance, direction, radius
@@ -86,7 +86,7 @@ class Face:
 
 
 class Levered:
-    """A law behind a lever: every lift times its ratio."""
+    """Law behind a lever: every lift is multiplied by the lever's ratio."""
 
     def __init__(self, law, ratio):
         self.law, self.ratio = law, ratio
@@ -120,7 +120,7 @@ def numbers(document, name, fields):
 
 
 def arcs(cam):
-    """Base, flank and nose circles that touch, mirrored about pi: [(angle where it starts, law)]."""
+    """Return base, flank and nose circles that touch, mirrored about pi: [(angle where it starts, law)]."""
     fields = ("base_radius", "flank_radius", "nose_radius", "flank_start_deg", "nose_end_deg")
     base, flank, nose, start, end = (number(cam, "cam", field) for field in fields)
     if not (0 < base < flank and 0 < nose < flank and 0 < start < end <= 180):
@@ -146,7 +146,7 @@ def arcs(cam):
             raise Refused("cam.contact: a roller needs a radius above 0 and an offset within the base circle of its centre")
     elif contact not in ("point", "flat"):
         raise Refused(f"cam.contact: {contact!r} is not a contact that this route can compute")
-    # Where the centre of the roller, or the point, passes from one circle to the next.
+    # Place where the centre of the roller, or the point, passes from one circle to the next.
     passes = centre_1 + (centre_2 - centre_1) * (flank + roller) / (flank - nose)
     if contact == "flat":
         meeting = mp.arg(centre_2 - centre_1) % (2 * mp.pi)
@@ -176,13 +176,13 @@ def arcs(cam):
     ]
     if not end < mp.pi:
         del laws[2]
-    # The one that is there at angle 0 comes first.
+    # The circle at angle 0 comes first.
     laws = sorted(((angle % turn, law) for angle, law in laws), key=lambda piece: piece[0])
     return [(mpf(0), laws[-1][1]), *laws]
 
 
 def program(cam):
-    """Standard motions: [(angle where each piece starts, law)]."""
+    """Return standard motions: [(angle where each piece starts, law)]."""
     turn = mp.pi / 180
     each = [(part.get("motion"), number(part, "cam.segment", "span_deg") * turn, number(part, "cam.segment", "rise"))
             for part in cam.get("segment", [])]
@@ -190,25 +190,26 @@ def program(cam):
 
 
 def polynomial(cam):
-    """Polynomials: [(angle where each starts, law)]."""
+    """Return polynomials: [(angle where each starts, law)]."""
     each = [(number(part, "cam.segment", "start_deg") * mp.pi / 180, [exact(power) for power in part["coefficients"]])
             for part in cam.get("segment", [])]
     return motions.polynomials(motions.joined(each))
 
 
 def harmonic(cam):
-    """A sum of cosines, each of a phase: [(0, law)]."""
+    """Return a sum of cosines with phases: [(0, law)]."""
     each = zip(map(exact, cam.get("amplitudes", [])), map(exact, cam.get("phases_deg", [])))
     return motions.cosines(number(cam, "cam", "offset"), [(size, phase * mp.pi / 180) for size, phase in each])
 
 
 def rectified_sine(cam):
-    """The absolute value of a sine: [(angle where each half starts, law)]."""
+    """Return the absolute value of a sine: [(angle where each half starts, law)]."""
     return motions.rectified(number(cam, "cam", "offset"), number(cam, "cam", "amplitude"))
 
 
 def table(cam):
-    """A spline through the rows, or near them with the weight, the knots and what else was fitted to them."""
+    """Return a spline through the rows of a table. With "fitted", the spline is near the rows, with the weight, knots, corners and
+    dwells that were fitted."""
     rows = [(exact(row["angle_deg"]), exact(row["lift"])) for row in cam["rows"]]
     angles, lifts = [angle * mp.pi / 180 for angle, _ in rows], [lift for _, lift in rows]
     if "fitted" not in cam:
@@ -224,17 +225,17 @@ def table(cam):
 
 
 class Touched:
-    """A piece of a contour, its radius over the polar angle, as a flat face or a roller touches it about one of its angles."""
+    """Piece of a contour, its radius over the polar angle, touched by a flat face or a roller. `polar` is an angle of the piece."""
 
     def __init__(self, radius, polar, roller, offset):
         """`roller` is None for a flat face."""
         self.radius, self.polar, self.roller, self.offset = radius, polar, roller, offset
 
     def touch(self, polar, library):
-        """(cam angle, its rate by the polar angle), (lift, and its first and second derivative)."""
+        """Return (cam angle, its rate by the polar angle), (lift, and its first and second derivative)."""
         radius, slope, bend = self.radius.lift(polar, library)
         square = radius * radius + slope * slope
-        # The normal turns by so much for each radian of the polar angle, and leans back by the angle of the slope.
+        # The normal turns by `turns` for each radian of the polar angle, and leans back by the angle of the slope.
         turns = (square + slope * slope - radius * bend) / square
         speed, leans = library.sqrt(square), -library.atan(slope / radius)
         if self.roller is None:
@@ -249,7 +250,7 @@ class Touched:
         return (polar + angle, rate), (lift, first, -first * tan - lift * (1 + tan * tan) * (turns / rate - 1))
 
     def lift(self, angle, library=mp):
-        """c, dc/dtheta, d^2c/dtheta^2 where Newton's method finds the polar angle of a cam angle."""
+        """Return c, dc/dtheta and d^2c/dtheta^2. Newton's method finds the polar angle of the cam angle."""
         polar, close = self.polar, mp.eps * 100 if library is mp else 1e-15
         turn = 2 * library.pi
         for _ in range(50):
@@ -267,7 +268,7 @@ class Touched:
 
 
 def contour(cam):
-    """A spline of the cam's own radius, and the lift of what touches it: [(angle where each piece starts, law)]."""
+    """Return the lift of a follower on a contour, a spline of the cam's own radius: [(angle where each piece starts, law)]."""
     radii, contact = table(cam), cam.get("contact", "point")
     if contact == "point":
         return radii
@@ -294,12 +295,12 @@ SHARP = {
     "polynomial": polynomial,
     "table": table,
 }
-# A model's numbers are doubles, which meet where two segments do but for their rounding.
+# Relative difference up to which two segments count as meeting. A model's numbers are doubles, which are rounded.
 SAME = mpf(10) ** -9
 
 
 def corners(laws):
-    """Where c'' jumps and c' does not: (angle, (c, c', c'') before, (c, c', c'') after), derivatives by angle."""
+    """Yield the corners, where c'' jumps and c' does not: (angle, (c, c', c'') before, (c, c', c'') after), derivatives by angle."""
     ends = [angle for angle, _ in laws[1:]] + [2 * mp.pi]
     for (_, before), angle, (starts, after) in zip(laws, ends, laws[1:] + laws[:1]):
         left, right = before.lift(angle), after.lift(starts)
@@ -309,7 +310,7 @@ def corners(laws):
 
 
 def profile(cam):
-    """The laws of a cam with the angles where they start, its corners rounded and its lift levered where it says so."""
+    """Return the laws of a cam with the angles where they start. Corners are rounded and the lift is levered if the model asks for it."""
     if cam.get("law") not in SHARP:
         raise Refused(f"cam.law = {cam.get('law')!r}: this route computes {', '.join(SHARP)} only")
     laws = SHARP[cam["law"]](cam)
@@ -322,7 +323,7 @@ def profile(cam):
 
 
 class Follower:
-    """What the flight and the impact need of a follower."""
+    """Constants of a follower for flight and impact."""
 
     def __init__(self, document):
         fields = ("mass", "damping", "stiffness", "gravity", "rest_position", "restitution")
@@ -333,7 +334,7 @@ class Follower:
         if not (mass > 0 and damping >= 0 and stiffness >= 0):
             raise Refused("follower: mass must be above 0, damping and stiffness at least 0")
         self.zeta, self.omega0_squared = damping / (2 * mass), stiffness / mass
-        # x is measured from the spring's equilibrium, or from the slack spring if it has no stiffness.
+        # x is measured from the spring's equilibrium. Without stiffness it is measured from the rest position.
         self.origin = self.rest - self.gravity / self.omega0_squared if stiffness else self.rest
 
     def spring(self, position):
@@ -343,12 +344,12 @@ class Follower:
         return responses(self.zeta, self.omega0_squared, time)
 
     def return_rate(self, response):
-        """s' after a flight."""
+        """Return s' after a flight."""
         return 1 - self.omega0_squared * response[0] - 2 * self.zeta * response[1]
 
 
 class Return:
-    """The flights of one period from a corner back to it."""
+    """Flights of one period from a corner back to it."""
 
     def __init__(self, follower, corner):
         self.follower = follower
@@ -357,20 +358,21 @@ class Return:
         self.force = -follower.spring(self.position)
 
     def miss(self, period, response):
-        """s times (where a flight ends that leaves at the v+ of its own v-), cleared of the division: 0 = v+ s + force p."""
+        """Return (1 + r s') (v+ s + force p), which is 0 if the flight ends at the corner. Here v+ is the velocity that Newton's law
+        gives from the v- of the flight itself, so that no division is needed."""
         p, s = response
         r, cam = self.follower.r, 2 * mp.pi / period * self.slope
         return (1 + r) * cam * s - r * self.force * s * s + (1 + r * self.follower.return_rate(response)) * self.force * p
 
     def at(self, period):
-        """miss, 0 where its terms cancel to working precision: some corners are met again after every period."""
+        """Return `miss`, or 0 if its terms cancel to working precision: some corners are met again after every period."""
         p, s = response = self.follower.responses(period)
         value = self.miss(period, response)
         size = abs(self.force) * (abs(p) + s * s) + abs(self.slope * s) / period
         return value if abs(value) > NOTHING * size else mpf(0)
 
     def rounded(self):
-        """miss in doubles, for the search."""
+        """Return `miss` in doubles, for the search."""
         follower, turn = self.follower, 2 * math.pi * float(self.slope)
         r, force, zeta, omega0_squared = (float(x) for x in (follower.r, self.force, follower.zeta, follower.omega0_squared))
 
@@ -382,7 +384,8 @@ class Return:
         return miss
 
     def close(self, low, high):
-        """The root of a sign change by regula falsi, an end that stays put halved; None without one."""
+        """Return the root of a sign change by regula falsi, in which the value at an end that stays put is halved. Return None
+        without a root."""
         at_low, at_high = self.at(low), self.at(high)
         if (at_low < 0) == (at_high < 0):
             return None
@@ -400,7 +403,7 @@ class Return:
         return None
 
     def orbit(self, period, laws):
-        """The orbit of this period, or why it is none."""
+        """Return (orbit of this period, None), or (None, reason why there is no orbit)."""
         follower, (p, s) = self.follower, self.follower.responses(period)
         if abs(s) <= mpf(10) ** -40 * period:
             return None, "the follower is in resonance with the period"
@@ -417,7 +420,7 @@ class Return:
         return {"period": period, "arriving": arriving, "cam": cam, "half": half, "state": state, "corner": self}, None
 
     def stays_above(self, period, leaving, laws):
-        """Whether the follower is above the cam at every sample between the two impacts."""
+        """Return True if the follower is above the cam at every sample between the two impacts."""
         zeta, omega0_squared = float(self.follower.zeta), float(self.follower.omega0_squared)
         step = tuple(map(float, self.follower.responses(period / HEIGHT)))
         starts, rounded = [float(angle) for angle, _ in laws], [law.rounded() for _, law in laws]
@@ -433,7 +436,7 @@ class Return:
 
 
 def locate(document):
-    """The slowest corner impact of the model."""
+    """Return the follower and the slowest corner impact of the model. Raise Refused if there is none."""
     follower = Follower(document)
     cam = section(document, "cam")
     laws = profile(cam)
@@ -441,7 +444,7 @@ def locate(document):
     if not 0 < slowest_rpm < fastest_rpm:
         raise Refused("study: rpm_min must be above 0 and below rpm_max")
     first, last = 60 / fastest_rpm, 60 / slowest_rpm
-    # At least 128 samples for each radian that the follower turns through.
+    # 128 samples for each radian of the follower's own oscillation, within bounds.
     samples = max(SCAN, min(16 * SCAN, int(128 * mp.sqrt(follower.omega0_squared) * (last - first))))
     width = (last - first) / samples
     step, response = (tuple(map(float, follower.responses(time))) for time in (width, first))
@@ -457,7 +460,7 @@ def locate(document):
         for equation, low, high in zip(equations, before, now):
             if (low < 0) == (high < 0):
                 continue
-            # A hundredth more on either side: rounding may have moved the change past a sample.
+            # A hundredth more on either side, since rounding may have moved the sign change past a sample.
             root = equation.close(period - width * 1.01, period + width / 100)
             if root is None or not first <= root <= last:
                 continue
@@ -474,7 +477,7 @@ def locate(document):
 
 
 def route(document):
-    """The whole answer."""
+    """Return the whole answer: the corner impact, A and B of both sides, and what follows from them."""
     follower, orbit = locate(document)
     entries = json.loads(DERIVED.read_text())["expressions"]
     corner, period = orbit["corner"], orbit["period"]
@@ -497,7 +500,7 @@ def route(document):
         return {"A": [[value["A11"], value["A12"]], [value["A21"], value["A22"]]], "B": [value["B1"], value["B2"]]}
 
     sides = {"minus": side(corner.left), "plus": side(corner.right)}
-    # What follows from A and B, by means that do not: proved in normal_form.py and corner_map.py.
+    # Results that follow from A and B, computed without them. The formulas are proved in normal_form.py and corner_map.py.
     # h F = (1 - w0^2 p, s); the gap when the corner passes is h F dx + v dT/2
     e, f = (1 - follower.omega0_squared * p, s), orbit["arriving"] / 2
     # C dx + D dT = (1 + r) phi12 (c''+ - c''-) tau, tau = (e dx + f dT)/(c' - v)
@@ -505,7 +508,7 @@ def route(document):
     jump *= (1 + follower.r) * s / (orbit["cam"] - orbit["arriving"])
     # det A = r^2 e^{-2 zeta T}, by Liouville's formula
     determinant = follower.r**2 * mp.exp(-2 * follower.zeta * period)
-    # What is 0 but for the root's width is written as 0.
+    # An entry that is 0 up to the width of the root is written as 0.
     size = abs(orbit["state"][0]) + period * abs(orbit["arriving"])
     state = [0 if abs(value) <= CLOSED * 10**9 * size / period else value for value in orbit["state"]]
     return {
@@ -523,7 +526,8 @@ def route(document):
 
 
 def eigenvalues(matrix, determinant):
-    """The roots of x^2 - trace x + determinant, the larger real part first, of a pair the one above the axis."""
+    """Return the roots of x^2 - trace x + determinant, the larger real part first. Of a complex pair, the one above the real axis is
+    first."""
     half = (exact(matrix[0][0]) + exact(matrix[1][1])) / 2
     root = mp.sqrt(mp.mpc(half * half - determinant))
     return [{"re": text(value.real, DIGITS), "im": text(value.imag, DIGITS)} for value in (half + root, half - root)]

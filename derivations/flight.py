@@ -1,19 +1,22 @@
-"""Free flight, solved from the equation of motion for every damping.
+"""Free flight, solved from the equation of motion for any damping.
 
     m q'' + b q' + k (q - rest) = -m g,     zeta = b/(2m),  omega0^2 = k/m
 
-Two functions of time carry all of it, and need no equilibrium: the impulse response s and the step response p,
+Two functions of time describe every flight, and need no equilibrium: the impulse response s and the step response p,
 
-    p' = s,   s' = 1 - omega0^2 p - 2 zeta s,   p(0) = s(0) = 0,
+    p' = s,   s' = 1 - omega0^2 p - 2 zeta s,   p(0) = s(0) = 0.
 
-so that a flight from (q, v) ends at
+A flight from (q, v) ends at
 
     Phi_t (q, v) = F_t (q, v) + load (p, s),   F_t = [[1 - omega0^2 p, s], [-omega0^2 s, 1 - omega0^2 p - 2 zeta s]],
 
-load = omega0^2 rest - g being the acceleration at q = 0 and v = 0. Proved, with the solution that sympy finds for the
-equation of motion: this for under-damping, over-damping (also as the continuation of the first), critical damping (also
-as its limit) and stiffness 0 with and without damping; F' = G F; the group law; det F; the shift to the equilibrium;
-eq:gff in its own letters, and phi_t = F_t.
+where load = omega0^2 rest - g is the acceleration at q = 0 and v = 0. Proved, with the solution that sympy finds for the equation of
+motion:
+
+    Phi_t for under-damping, over-damping (also as the continuation of under-damping), critical damping (also as its limit), and
+        stiffness 0 with and without damping
+    F' = G F; the group law; det F; the shift to the equilibrium
+    eq:gff in its own letters, and phi_t = F_t
 """
 
 import sympy as sp
@@ -29,7 +32,7 @@ G = sp.Matrix([[0, 1], [-omega0_squared, -2 * zeta]])
 
 
 class Step(sp.Function):
-    """p(t): the position after t under a unit force, from rest; known by p' = s alone."""
+    """p(t): the position after t under a unit force, from rest. Only p' = s is known of it."""
 
     nargs = 1
 
@@ -38,7 +41,7 @@ class Step(sp.Function):
 
 
 class Impulse(sp.Function):
-    """s(t): the position after t from a unit velocity; known by s' = 1 - omega0^2 p - 2 zeta s alone."""
+    """s(t): the position after t from a unit velocity. Only s' = 1 - omega0^2 p - 2 zeta s is known of it."""
 
     nargs = 1
 
@@ -48,7 +51,7 @@ class Impulse(sp.Function):
 
 
 class Cosine(sp.Function):
-    """e^{-zeta t} cos(omega_s t), known by its derivative alone."""
+    """e^{-zeta t} cos(omega_s t), of which only the derivative is known."""
 
     nargs = 1
 
@@ -58,7 +61,7 @@ class Cosine(sp.Function):
 
 
 class Sine(sp.Function):
-    """e^{-zeta t} sin(omega_s t)/omega_s, known by its derivative alone."""
+    """e^{-zeta t} sin(omega_s t)/omega_s, of which only the derivative is known."""
 
     nargs = 1
 
@@ -68,23 +71,23 @@ class Sine(sp.Function):
 
 
 def propagator(p, s):
-    """F from the two responses."""
+    """Return F from the two responses."""
     return sp.Matrix([[1 - omega0_squared * p, s], [-omega0_squared * s, 1 - omega0_squared * p - 2 * zeta * s]])
 
 
 def fly(time, state):
-    """Phi_t, for responses known only by their derivatives."""
+    """Return Phi_t of a state, for responses of which only the derivatives are known."""
     p, s = Step(time), Impulse(time)
     return propagator(p, s) * state + load * sp.Matrix([p, s])
 
 
 def phi(time):
-    """eq:gff with the cosine and sine known only by their derivatives: phi = Cosine I + Sine N, N = G + zeta I."""
+    """Return eq:gff, with a cosine and sine of which only the derivatives are known: phi = Cosine I + Sine N, N = G + zeta I."""
     return Cosine(time) * sp.eye(2) + Sine(time) * (G + zeta * sp.eye(2))
 
 
 def group_law(expression, pairs):
-    """Cosine and Sine of sums and of negative times by those of the terms.
+    """Return an expression with Cosine and Sine of sums and of negative times written by those of the terms.
 
     `pairs` maps a time to (x, y): time = x + y, or (x, None): time = -x.
     """
@@ -104,14 +107,14 @@ def group_law(expression, pairs):
 omega_s, kappa = sp.symbols("omega_s kappa", positive=True)
 damping = sp.Symbol("zeta_positive", positive=True)
 
-# Each damping: its name, {zeta, omega0^2} by positive letters, p and s.
+# Cosine and Sine of each kind of damping. CASES has for each: name, ({zeta, omega0^2} in positive letters, p, s).
 UNDER = (sp.exp(-zeta * t) * sp.cos(omega_s * t), sp.exp(-zeta * t) * sp.sin(omega_s * t) / omega_s)
 OVER = (sp.exp(-zeta * t) * sp.cosh(kappa * t), sp.exp(-zeta * t) * sp.sinh(kappa * t) / kappa)
 CRITICAL = (sp.exp(-damping * t), t * sp.exp(-damping * t))
 
 
 def from_equilibrium(cosine, sine, zeta, omega0_squared):
-    """p where there is a stiffness: omega0^2 p = 1 - cosine - zeta sine."""
+    """Return p where there is a stiffness: omega0^2 p = 1 - cosine - zeta sine."""
     return (1 - cosine - zeta * sine) / omega0_squared
 
 
@@ -133,7 +136,7 @@ CASES = {
 
 
 def solution(values):
-    """q(t) from the equation of motion and the initial state, as sympy solves it."""
+    """Return q(t) from the equation of motion and the initial state, as sympy solves it."""
     position = sp.Function("q")
     motion = position(t).diff(t, 2) + 2 * zeta * position(t).diff(t) + omega0_squared * position(t) - load
     initial = {position(0): q, position(t).diff(t).subs(t, 0): v}
@@ -165,18 +168,18 @@ def proofs():
         yield Proof(f"{name}: det F = exp(-2 zeta t)", F.det() - sp.exp(-2 * zeta * t).subs(values))
 
         if values[omega0_squared] != 0:
-            # x = q - load/omega0^2 flies without a constant term: the shift by g/omega0^2 in x_t, the spring's rest included.
+            # x = q - load/omega0^2 flies without a constant term: this is the shift by g/omega0^2 in x_t, with the spring's rest included.
             equilibrium = load / values[omega0_squared]
             shifted = sp.Matrix([equilibrium, 0]) + F * sp.Matrix([q - equilibrium, v])
             yield Proof(f"{name}: measured from the equilibrium, Phi_t is F_t alone", shifted - flown)
 
-    # Over-damping is under-damping with omega_s = i kappa, critical damping its limit omega_s -> 0.
+    # Over-damping is under-damping with omega_s = i kappa. Critical damping is the limit omega_s -> 0.
     continued = [(under.subs(omega_s, sp.I * kappa) - over).rewrite(sp.exp) for under, over in zip(UNDER, OVER)]
     yield Proof("over-damped: the continuation omega_s = i kappa of under-damped", continued)
     limits = [sp.limit(under, omega_s, 0) - critical.subs(damping, zeta) for under, critical in zip(UNDER, CRITICAL)]
     yield Proof("critically damped: the limit omega_s -> 0 of under-damped", limits)
 
-    # The letters Cosine and Sine stand for any damping's functions: they fix F, and their derivatives follow from p's and s's.
+    # Cosine and Sine stand for the functions of any damping. They fix F, and their derivatives follow from those of p and s.
     cosine = 1 - omega0_squared * Step(t) - zeta * Impulse(t)
     abstract = cosine * sp.eye(2) + Impulse(t) * (G + zeta * sp.eye(2))
     yield Proof("F = Cosine I + Sine (G + zeta I), Cosine = 1 - omega0^2 p - zeta s, Sine = s", [

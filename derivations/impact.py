@@ -1,8 +1,8 @@
 """Impact: restitution, the matrix R, and the map that replaces an impact near t = 0 by a jump at t = 0.
 
-From the law of restitution, q'+ - c' = -r (q'- - c') at q = c, alone. Proved: R; that the law is linear in the state and
-leaves the position; its tangent and determinant; and eq:lmapd, which flies back to the impact, applies it there and flies
-forward again, so that the whole takes no time, for an impact at -t_i of either sign.
+Everything follows from the law of restitution, q'+ - c' = -r (q'- - c') at q = c. Proved: R; that the law is linear in the state and
+leaves the position; its tangent and determinant; and eq:lmapd. This map flies back to the impact, applies it there and flies forward
+again, so that the whole takes no time, for an impact at -t_i of either sign.
 """
 
 import sympy as sp
@@ -19,12 +19,15 @@ R = sp.Matrix([[0, 0], [0, -(1 + r)]])
 
 
 def restitution(before, cam):
-    """The state after an impact, from the state before and the cam's (c, c'): the relative velocity is reversed, times r."""
+    """Return the state after an impact, from the state before and the cam's (c, c'): the relative velocity is reversed, times r."""
     return sp.Matrix([before[0], cam[1] - r * (before[1] - cam[1])])
 
 
 def discontinuity_map(state, cam, time):
-    """Back from t = 0 to the impact at -time, the impact, and forward to t = 0; state and cam from the equilibrium."""
+    """Return the state after flying back from t = 0 to the impact at -time, the impact, and flying forward to t = 0.
+
+    The state and the cam are measured from the equilibrium.
+    """
     return phi(time) * restitution(phi(-time) * state, cam)
 
 

@@ -4,9 +4,9 @@ The oscillator of Shaw and Holmes (1983) and Budd and Dux (1994), x >= sigma, wa
 
     x'' + x = F cos w t
 
-Less its particular solution gamma cos w t, gamma = F/(1 - w^2), it is a free follower, y'' + y = 0, above the cam
-sigma - gamma cos(theta), theta = w t. An orbit with one impact in T = 2 pi n/w hits the wall at -U; with T = 2 h,
-P = (1+r)/(2 tan h) and Q = (1-r)/(2w), and phi the angle of the impact,
+Let gamma = F/(1 - w^2). Less its particular solution gamma cos w t, the oscillator is a free follower, y'' + y = 0, above the cam
+sigma - gamma cos(theta), theta = w t. An orbit with one impact in T = 2 pi n/w hits the wall at -U. With T = 2 h, P = (1+r)/(2 tan h)
+and Q = (1-r)/(2w), and phi the angle of the impact,
 
     gamma cos phi = sigma - P U      gamma sin phi = Q U      (P^2 + Q^2) U^2 - 2 sigma P U + sigma^2 - gamma^2 = 0
 
@@ -17,16 +17,16 @@ P = (1+r)/(2 tan h) and Q = (1-r)/(2w), and phi the angle of the impact,
     flip   U = L sigma                sigma^2 = gamma^2/((1 - P L)^2 + Q^2 L^2)
            L = -(1+r) w^2 sin T/(1 + r^2 - 2 r cos T + (1+r)^2 (1 - w^2) (1 + cos T)/2)
 
-The ball on a table at a cos(theta), theta = omega t, under gravity g (Holmes 1982, without his approximation of high bounces);
-b = g T (1-r)/(2 (1+r)) is the table's velocity at an impact:
+The ball on a table at a cos(theta), theta = omega t, under gravity g (Holmes 1982, without his approximation of high bounces). The
+table's velocity at an impact is b = g T (1-r)/(2 (1+r)):
 
     -a omega sin phi = b      v- = -g T/2      trace = 1 + r^2 - (1+r)^2 a omega^2 cos phi/g      determinant = r^2
 
     fold   a omega^2 = pi n g (1-r)/(1+r)
     flip   (a omega^2)^2 = (pi n g (1-r)/(1+r))^2 + (2 g (1+r^2)/(1+r)^2)^2
 
-The traces come from the map of one impact to the next in its instant and speed, differentiated implicitly: no saltation
-matrix enters. That no flight hits anything on the way is seen, not proved: `clears` samples it.
+The traces come from the map of one impact to the next in its instant and speed, differentiated implicitly: no saltation matrix
+enters. It is not proved that a flight hits nothing on the way: `clears` samples it.
 """
 
 import sympy as sp
@@ -35,7 +35,7 @@ from mpmath import mp, mpf
 from proof import Proof, main
 
 DIGITS = 40
-# Of a flight, to see that it stays above the wall.
+# Samples of a flight, to check that it stays above the wall.
 SAMPLES = 2000
 
 r, w, gamma, sigma, U, t0, g, a, omega = sp.symbols("r w gamma sigma U t0 g a omega", positive=True)
@@ -53,8 +53,8 @@ L = -(1 + r) * w**2 * sin_T / (1 + r**2 - 2 * r * cos_T + (1 + r) ** 2 * (1 - w*
 
 
 def map_tangent(x, at_return):
-    """Trace and determinant of the map (t0, U0) -> (t1, U1) at a fixed point, for a flight x(t; t0, U0) above the level
-    z(t): `x` is x - z, 0 at t1, and -U1 is its rate there."""
+    """Return trace and determinant of the map (t0, U0) -> (t1, U1) at a fixed point, for a flight x(t; t0, U0) above the level z(t).
+    The argument `x` is x - z. It is 0 at t1, and its rate there is -U1."""
     speed = sp.diff(x, t)
     entries = []
     for start in (t0, U):
@@ -159,8 +159,8 @@ def proofs():
     yield from table_proofs()
 
 
-# n, r, w, sigma and n, r, a, g, rpm: two orbits each, and a fold, a flip and a graze that its branch reaches.
-# After the oscillator's, where the flight of the orbit with the larger U touches the wall: sigma, and when, in parts of T.
+# Cases (n, r, w, sigma) and (n, r, a, g, rpm): two orbits each, and a fold, a flip and a graze that the branch reaches. The
+# oscillator has a guess besides: sigma, and the time in parts of T, where the flight of the orbit with the larger U touches the wall.
 OSCILLATORS = [
     (1, "0.8", "1.3", "-3.0", (0.204, 0.468)),
     (2, "0.8", "2.8", "-0.35", (-0.062, 0.17)),
@@ -175,7 +175,7 @@ def multipliers(trace, determinant):
 
 
 def clears(height, period):
-    """Whether a flight is above 0 between its ends."""
+    """Return True if a flight is above 0 at every sample between its ends."""
     return all(height(period * k / SAMPLES) > 0 for k in range(1, SAMPLES))
 
 
@@ -190,7 +190,7 @@ def entry(phase, before, state, trace, determinant):
 
 
 def oscillator(turns, restitution, frequency, wall, touch):
-    """Both orbits at one position of the wall, as those of a follower above the cam; positions of the wall that are special."""
+    """Return both orbits at one position of the wall, as those of a follower above the cam, and the special positions of the wall."""
     r, w = mpf(restitution), mpf(frequency)
     gamma, T = 1 / (1 - w**2), 2 * mp.pi * turns / w
     P, Q = (1 + r) / (2 * mp.tan(T / 2)), (1 - r) / (2 * w)
@@ -202,7 +202,7 @@ def oscillator(turns, restitution, frequency, wall, touch):
         return half - root, half + root
 
     def flight(sigma, U):
-        """phi, and (y, y') and (x - sigma, x') as functions of the time since the impact."""
+        """Return phi, and (y, y') and (x - sigma, x') as functions of the time since the impact."""
         phi = mp.atan2(Q * U / gamma, (sigma - P * U) / gamma) % (2 * mp.pi)
         A, B = sigma - gamma * mp.cos(phi), r * U + gamma * w * mp.sin(phi)
 
@@ -234,7 +234,7 @@ def oscillator(turns, restitution, frequency, wall, touch):
 
 
 def ball(turns, restitution, amplitude, gravity, rpm):
-    """Both orbits at one speed; speeds and restitutions that are special."""
+    """Return both orbits at one speed, and the special speeds and restitutions."""
     r, a, g, omega = mpf(restitution), mpf(amplitude), mpf(gravity), mpf(rpm) * mp.pi / 30
     T = 2 * mp.pi * turns / omega
     b = g * T * (1 - r) / (2 * (1 + r))

@@ -1,21 +1,21 @@
-"""How the order of the cam's jump decides the local map.
+"""The order of the cam's jump decides the local map.
 
-The lift's j-th derivative in time jumps by J at the corner, the lower ones do not. A follower comes in at velocity v, the cam
-moves at c', u = c' - v is the velocity of approach. One flight hits the cam s after the corner; its state after the impact,
-carried to the moment of the corner by free flight, is compared for the law before the corner and the law after it:
+The lift's j-th derivative in time jumps by J at the corner, and the lower ones do not. A follower arrives with velocity v while the
+cam moves at c', so that u = c' - v is the velocity of approach. One flight hits the cam at the time s after the corner. Its state
+after the impact, carried to the moment of the corner by free flight, differs between the law before the corner and the law after it
+by
 
     velocity    (1+r) J s^(j-1)/(j-1)!           position    -(1+r) J (j-1) s^j/j!
 
-to leading order, and one revolution from a deviation z = (dx, dT) ends apart by
+to leading order. One revolution from a deviation z = (dx, dT) ends apart by
 
     P+ - P-  =  (1+r) J/(j-1)! (n z)^(j-1) F e2,    n z = (h F dx + v dT/2)/u, the time from the corner to first order.
 
-So j = 1 leaves a gap, j = 2 a jump of A and B of rank one, j = 3 equal A and B and a jump of the second derivative.
+So j = 1 leaves a gap, j = 2 a jump of A and B of rank one, and j = 3 equal A and B and a jump of the second derivative.
 
-Proved: the local law for every j >= 2 at once, j a symbol and E = s^(j-1) a small quantity of its own, where what is left out
-is of the size of s E and E^2 in the velocity, of s^2 E, s E^2 and E^3 in the position; that law again, and the revolution,
-for j = 1, 2, 3, 4 one by one. For j = 1 also how often the cam is hit: once on either side, never after the corner, or
-twice before it.
+Proved: the local law for every j >= 2 at once, with j a symbol and E = s^(j-1) a small quantity of its own. The terms left out are of
+the size of s E and E^2 in the velocity, and of s^2 E, s E^2 and E^3 in the position. Also proved are that law and the revolution, for
+j = 1, 2, 3, 4 one by one. For j = 1 the number of impacts is proved too: one on either side, none after the corner, or two before it.
 """
 
 import functools
@@ -44,7 +44,7 @@ F = propagator(step_response, impulse_response)
 ORDERS = (1, 2, 3, 4)
 
 
-# Polynomials in these, with w = 1/u as a letter of its own: series of polynomials stay polynomials.
+# Letters of the polynomials. With w = 1/u as a letter of its own, series of polynomials stay polynomials.
 NAMES = "zeta omega0_squared spring v r g h dT rate u u_minus u_plus w w_minus w_plus"
 LIFTS = [f"c{k}{side}" for side in ("", "_minus", "_plus") for k in range(2, 6)]
 POLYNOMIALS, *LETTERS = ring(NAMES.split() + LIFTS, QQ)
@@ -52,7 +52,7 @@ LETTER = dict(zip(NAMES.split() + LIFTS, LETTERS))
 
 
 def times(left, right):
-    """The product of two series in epsilon, as far as they are kept."""
+    """Return the product of two series in epsilon, to the order that is kept."""
     return [sum((left[k] * right[n - k] for k in range(n + 1)), POLYNOMIALS(0)) for n in range(len(left))]
 
 
@@ -73,7 +73,8 @@ def linear(value, highest):
 
 
 def flown(time, state):
-    """Free flight for a time that is 0 with epsilon, from x' = G x - spring e2: position counted from the corner's."""
+    """Return the state after free flight for a time that is 0 with epsilon, from x' = G x - spring e2. Position is measured from the
+    corner's."""
     highest = len(time) - 1
     zeta, omega0_squared, spring = (LETTER[name] for name in ("zeta", "omega0_squared", "spring"))
 
@@ -92,23 +93,24 @@ def flown(time, state):
 
 
 def approach(order, side):
-    """u and 1/u as letters: those of the side where the velocity jumps."""
+    """Return u and 1/u as letters. If the velocity jumps (order 1), they are those of the side."""
     suffix = f"_{side}" if order == 1 else ""
     return LETTER["u" + suffix], LETTER["w" + suffix]
 
 
 def lifts(order, side):
-    """c', c'', ... of a side as letters, from index 1: alike on both sides below `order`."""
+    """Return c', c'', ... of a side as letters, from index 1. Below `order` they are the same on both sides."""
     own = [LETTER[f"c{k}" + (f"_{side}" if k >= order else "")] for k in range(2, 6)]
     return [POLYNOMIALS(0), LETTER["v"] + approach(order, side)[0], *own]
 
 
 @functools.lru_cache
 def near_corner(order, side, highest):
-    """The state at the corner's moment after an impact on one side's law, and the time of that impact.
+    """Return the time of an impact on one side's law, and the state after it at the moment of the corner. Both are series in epsilon
+    up to `highest`.
 
-    Without impact the flight would be there in (epsilon g, v + epsilon h), if it did not last epsilon dT/2 longer on either
-    side of it, while the cam keeps its angles (rate = 1/T). Series in epsilon up to `highest`.
+    Without an impact the flight would pass the corner in (epsilon g, v + epsilon h), if it did not last epsilon dT/2 longer on either
+    side of the corner. The cam keeps its angles (rate = 1/T).
     """
     cam = lifts(order, side)
     g, h, dT, rate, v, r = (LETTER[name] for name in ("g", "h", "dT", "rate", "v", "r"))
@@ -118,7 +120,7 @@ def near_corner(order, side, highest):
     incoming = [linear(g, highest), plus(constant(v, highest), linear(h, highest))]
 
     def surface(time):
-        # the cam's angle is 2 pi time/T: c^(k) goes with (T*/T)^k
+        # The cam's angle is 2 pi time/T, so c^(k) scales with (T*/T)^k.
         position, velocity = constant(0, highest), constant(0, highest)
         power, factorial = constant(1, highest), 1
         for k in range(1, highest + 2):
@@ -128,7 +130,7 @@ def near_corner(order, side, highest):
             position = plus(position, scaled(cam[k] * QQ(1, factorial), power))
         return position, velocity
 
-    # the gap closes at the rate u: contact fixes one coefficient of the time after the other
+    # The gap closes at the rate u, so contact fixes one coefficient of the time after the other.
     _, inverse = approach(order, side)
     time = constant(0, highest)
     for power in range(1, highest + 1):
@@ -140,7 +142,7 @@ def near_corner(order, side, highest):
 
 
 def reduced(polynomial):
-    """u w = 1, on either side."""
+    """Return a polynomial reduced by u w = 1, on either side."""
     for suffix in ("", "_minus", "_plus"):
         relation = LETTER["u" + suffix] * LETTER["w" + suffix] - 1
         polynomial = polynomial.rem([relation])
@@ -148,13 +150,13 @@ def reduced(polynomial):
 
 
 def apart(order, highest):
-    """The two sides' states at the corner's moment, plus less minus: two series."""
+    """Return the difference of the two sides' states at the moment of the corner, plus less minus, as two series."""
     after, before = (near_corner(order, side, highest)[1] for side in ("plus", "minus"))
     return [[left - right for left, right in zip(*pair)] for pair in zip(after, before)]
 
 
 def jump(order):
-    """J of c^(order)."""
+    """Return J, the jump of c^(order)."""
     return symbolic(lifts(order, "plus")[order] - lifts(order, "minus")[order])
 
 
@@ -165,12 +167,12 @@ MEANT |= {sp.Symbol(name): letter for name, letter in
 
 
 def symbolic(polynomial):
-    """With the letters of the other scripts, and w = 1/u."""
+    """Return a polynomial in the letters of the other scripts, with w = 1/u."""
     return polynomial.as_expr().subs(MEANT)
 
 
 def every_order_proofs():
-    """j >= 2 as a symbol: t is the time of the impact on the law before the corner, E = t^(j-1)."""
+    """Proofs for j >= 2 as a symbol. Here t is the time of the impact on the law before the corner, and E = t^(j-1)."""
     j = sp.Symbol("j", positive=True)
     t, E, V1, J, J1, factorial, c1 = sp.symbols("t E V1 J J1 factorial c1", real=True)
     d0, dt, dE, second, third = sp.symbols("d0 dt dE c2 c3", real=True)
@@ -190,7 +192,7 @@ def every_order_proofs():
     def law(time):
         return sp.Matrix([c1 * time + second * time**2 / 2 + third * time**3 / 6, c1 + second * time + third * time**2 / 2])
 
-    # The law after the corner is met delta = E t d later; (t + delta)^k = t^k (1 + E d)^k, to E^2.
+    # The law after the corner is met delta = E t d later, and (t + delta)^k = t^k (1 + E d)^k, to E^2.
     d = d0 + dt * t + dE * E
     delta = E * t * d
 
@@ -204,7 +206,7 @@ def every_order_proofs():
     arriving = sp.Matrix([on_minus[0], v + V1 * t])
     later = flight(delta, arriving)
     on_plus = (law(t + delta) + sp.Matrix([lift, slope])).applyfunc(kept)
-    # the gap at the second contact is E t times this, to the orders that fix d
+    # The gap at the second contact is E t times the coefficients here, to the orders that fix d.
     gap = sp.Poly(later[0] - on_plus[0], t, E)
     known = sp.solve([gap.coeff_monomial(E * t * monomial) for monomial in (1, t, E)], [d0, dt, dE], dict=True)[0]
     yield Proof("any j >= 2: the law after the corner is met later by J s^j/(j! (v - c')) to leading order",
@@ -224,7 +226,7 @@ def every_order_proofs():
 
 
 def each_order_proofs():
-    """j = 1 to 4 by series: nothing shared with the symbolic order but the equation of motion and restitution."""
+    """Proofs for j = 1 to 4 by series. They share only the equation of motion and restitution with the proofs for a symbolic order."""
     still = {dT: 0}
     for order in ORDERS[1:]:
         position, velocity = ([symbolic(entry).subs(still) for entry in series] for series in apart(order, order))
@@ -234,7 +236,7 @@ def each_order_proofs():
         leading = -(1 + r) * jump(order) * power * s**order / sp.factorial(order)
         yield Proof(f"j = {order}: positions differ by -(1+r) J {power} s^{order}/{order}!, by nothing below",
                     [*position[:order], position[order] - leading])
-    # j = 1: each side has its own c', so its own time of impact; s is that on the law before the corner. There h = 0.
+    # j = 1: each side has its own c', and so its own time of impact. s is the time on the law before the corner, and h = 0.
     s = sp.Symbol("s", real=True)
     position, velocity = ([symbolic(entry).subs(still | {h: 0, g: u_minus * s}) for entry in series] for series in apart(1, 2))
     S_plus, S_minus = (symbolic(c[2] + 2 * LETTER["zeta"] * c[1]) + spring for c in (lifts(1, "plus"), lifts(1, "minus")))
@@ -245,12 +247,12 @@ def each_order_proofs():
 
 
 def revolution_proofs():
-    """P+ - P- over a whole revolution, along any deviation epsilon (dx1, dx2, dT)."""
+    """Proofs for P+ - P- over a whole revolution, along any deviation epsilon (dx1, dx2, dT)."""
     deviation = sp.Matrix([dx1, dx2])
     flown_to_the_corner = {g: (F * deviation)[0], h: (F * deviation)[1]}
 
     def after(series, power):
-        """F times the coefficient of epsilon^power at the corner."""
+        """Return F times the coefficient of epsilon^power at the corner."""
         return F * sp.Matrix([symbolic(entry[power]).subs(flown_to_the_corner) for entry in series])
 
     n_z = ((F * deviation)[0] + v * dT / 2) / u
@@ -262,7 +264,7 @@ def revolution_proofs():
         yield Proof(f"j = {order}: over a revolution the sides differ by {words[order]}, by nothing below",
                     [*(after(series, lower) for lower in range(power)), after(series, power) - claimed])
 
-    # With what corner_map.py derives from the composition itself.
+    # Comparison with what corner_map.py derives from the composition itself.
     A, B = derived()["A"], derived()["B"]
 
     def derivative(order, side):
@@ -280,9 +282,9 @@ def revolution_proofs():
 
 
 def velocity_jump_proofs():
-    """j = 1 to leading order, where lengths and times shrink with g alike: straight flight over a cam with a kink.
+    """Proofs for j = 1 to leading order, where lengths and times shrink like g: straight flight over a cam with a kink.
 
-    g + v t before, c-' t and c+' t. The flight comes in from above, so u- > 0; u+ = u- + J.
+    The flight is g + v t before an impact, and the cam is c-' t and c+' t. The flight arrives from above, so u- > 0, and u+ = u- + J.
     """
     before, after, t = sp.symbols("c1_minus c1_plus t", real=True)
     closing_minus, closing_plus = before - v, after - v
@@ -291,7 +293,7 @@ def velocity_jump_proofs():
     yield Proof("j = 1, -u- < J <= r u-: one impact on either side, a gap (1+r) J", struck_after - struck - (1 + r) * J)
     yield Proof("j = 1, J <= -u-: a flight that passes the corner at g is g - u+ t above the cam after it; a gap -(1+r) u-",
                 [g + v * t - after * t - (g - closing_plus * t), v - struck + (1 + r) * closing_minus])
-    # Hit before the corner at t1 = g/u- < 0, it moves at r u- - J against the cam after it.
+    # After an impact before the corner at t1 = g/u- < 0, the follower moves at r u- - J relative to the cam after the corner.
     t1 = g / closing_minus
     position = g + v * t1
     t2 = -r * g / (J - r * closing_minus)

@@ -1,7 +1,7 @@
 """Cams of standard motions, polynomials and waves for the symbolic route: each motion is its acceleration, integrated twice.
 
-What a motion is called after is the shape of its acceleration over a unit of time, from one end at rest to the other; its size is
-whatever makes the rise 1. So nothing but the shapes is written down here.
+A motion is named after the shape of its acceleration over a unit of time, from rest at one end to rest at the other. Its size follows
+from a rise of 1. So only the shapes are written down here.
 """
 
 from itertools import zip_longest
@@ -10,13 +10,13 @@ from mpmath import mp, mpf
 
 
 def quarter(start, end, top, rising):
-    """A quarter of a sine between 0 and `top`: (start, end, powers, (amplitude, rate, phase))."""
+    """Return a quarter of a sine between 0 and `top`: (start, end, powers, (amplitude, rate, phase))."""
     rate = mp.pi / 2 / (end - start)
     return start, end, [], (top, rate, mpf(0) if rising else mp.pi / 2)
 
 
 def trapezoid():
-    """Quarter sines for flanks, an eighth of the time each, and the mirror image."""
+    """Yield quarter sines as flanks, an eighth of the time each, about a constant top, and the mirror image."""
     part = [mpf(k) / 8 for k in range(9)]
     for side, first in ((1, 0), (-1, 4)):
         yield quarter(part[first], part[first + 1], side, True)
@@ -25,28 +25,28 @@ def trapezoid():
 
 
 def modified_sine():
-    """A sine whose first and last eighth, a quarter of a wave each, run three times as fast as the half wave in between."""
+    """Yield a sine whose first and last eighth, a quarter of a wave each, run three times as fast as the half wave between them."""
     eighth = mpf(1) / 8
     yield mpf(0), eighth, [], (mpf(1), 4 * mp.pi, mpf(0))
     yield eighth, 1 - eighth, [], (mpf(1), 4 * mp.pi / 3, mp.pi / 2)
     yield 1 - eighth, mpf(1), [], (mpf(1), 4 * mp.pi, 3 * mp.pi / 2)
 
 
-# Pieces of the acceleration: where each begins and ends, powers of the time since its beginning, and A sin(rate x + phase).
+# Pieces of the acceleration: start, end, powers of the time since the start, and (A, rate, phase) of A sin(rate x + phase).
 MOTIONS = {
     "parabolic": lambda: [(mpf(0), mpf(1) / 2, [mpf(1)], None), (mpf(1) / 2, mpf(1), [mpf(-1)], None)],
     "harmonic": lambda: [(mpf(0), mpf(1), [], (mpf(1), mp.pi, mp.pi / 2))],
     "cycloidal": lambda: [(mpf(0), mpf(1), [], (mpf(1), 2 * mp.pi, mpf(0)))],
     "modified-trapezoid": trapezoid,
     "modified-sine": modified_sine,
-    # u (1 - u)(1 - 2 u) and u^2 (1 - u)^2 (1 - 2 u): what vanishes so often at both ends and in the middle.
+    # u (1 - u)(1 - 2 u) and u^2 (1 - u)^2 (1 - 2 u): both vanish at the ends and in the middle.
     "poly345": lambda: [(mpf(0), mpf(1), [mpf(0), mpf(1), mpf(-3), mpf(2)], None)],
     "poly4567": lambda: [(mpf(0), mpf(1), [mpf(0), mpf(0), mpf(1), mpf(-4), mpf(5), mpf(-2)], None)],
 }
 
 
 class Piece:
-    """Powers of the angle since its start, and amplitude sin(rate x + phase)."""
+    """Law: powers of the angle since its start, plus amplitude sin(rate x + phase)."""
 
     def __init__(self, start, powers, sine=None):
         self.start, self.powers, self.sine = start, powers, sine
@@ -71,16 +71,16 @@ class Piece:
 
 
 def motion(shape, start, span, base, rise):
-    """The pieces of one motion from `start` on: [(angle where it starts, law)]."""
+    """Yield the pieces of one motion from `start` on: (angle where it starts, law)."""
     pieces, value, slope = [], mpf(0), mpf(0)
     for begins, ends, powers, sine in shape:
-        # s'' is integrated twice from where the piece before has left s and s'.
+        # s'' is integrated twice, from s and s' at the end of the piece before.
         twice = [value, slope] + [power / ((k + 1) * (k + 2)) for k, power in enumerate(powers)]
         wave = None
         if sine:
             amplitude, rate, phase = sine
             wave = (-amplitude / rate**2, rate, phase)
-            # The wave's own value and slope at the beginning are taken back.
+            # The wave's own value and slope at the beginning are subtracted.
             twice[0] -= wave[0] * mp.sin(phase)
             twice[1] -= wave[0] * rate * mp.cos(phase)
         piece = Piece(mpf(0), twice, wave)
@@ -95,7 +95,7 @@ def motion(shape, start, span, base, rise):
 
 
 def program(base, segments):
-    """Motions one after the other from angle 0 on, each (name, span, rise)."""
+    """Return motions one after the other from angle 0 on. Each segment is (name, span, rise)."""
     laws, start = [], mpf(0)
     for name, span, rise in segments:
         if name == "dwell":
@@ -109,7 +109,7 @@ def program(base, segments):
 
 
 def polynomials(segments):
-    """Polynomials from the angles on where they start, each (start, powers); the last one goes on through the end of the turn."""
+    """Return polynomials, (start, powers) each, from their start angles on. The last one continues through the end of the turn."""
     laws = [(start, Piece(start, powers)) for start, powers in segments]
     if laws[0][0] > 0:
         start, last = laws[-1]
@@ -117,21 +117,21 @@ def polynomials(segments):
     return laws
 
 
-# Up to which part of its terms what two polynomials miss each other by is what typing leaves (docs/model-file.md).
+# Largest mismatch between two polynomials, relative to their terms, that counts as rounding of typed numbers (docs/model-file.md).
 TYPED = mpf(10) ** -9
 
 
 def joined(segments):
-    """Polynomials, (start, powers) each, without what typing their numbers left between them, in the lift and three derivatives.
+    """Return polynomials, (start, powers) each, without the mismatch that typing left between them in the lift and three derivatives.
 
-    The periodic Bernoulli function B_{n+1}((angle - joint)/turn) turn^n/(n+1)! jumps in its n-th derivative alone, at the joint
-    alone, by -1; its next derivative is 1/turn all round. So the sum of these, each times the jump that is to go, is what is added;
-    and as much to all of it as leaves the first lift where it is.
+    The periodic Bernoulli function B_{n+1}((angle - joint)/turn) turn^n/(n+1)! jumps only in its n-th derivative, only at the joint,
+    by -1. Its next derivative is 1/turn all round. So the correction is the sum of these functions, each times the jump that is to be
+    removed. A constant is added to all of it so that the first lift stays where it is.
     """
     turn = 2 * mp.pi
 
     def derivatives(powers, x):
-        """From the lift to the fourth, each with the sum of its terms' sizes."""
+        """Yield the lift and its derivatives up to the fourth, each with the sum of its terms' sizes."""
         for n in range(5):
             terms = [mp.ff(k, n) * power * x ** (k - n) for k, power in enumerate(powers) if k >= n]
             yield mp.fsum(terms), mp.fsum(terms, absolute=True)
@@ -155,7 +155,7 @@ def joined(segments):
 
 
 class Sum:
-    """Pieces one on top of the other."""
+    """Sum of pieces."""
 
     def __init__(self, pieces):
         self.pieces = pieces
@@ -168,18 +168,19 @@ class Sum:
 
 
 def cosines(offset, waves):
-    """offset + sum a_k cos(k angle + phase_k), k from 1, each wave (a_k, phase_k)."""
+    """Return offset + sum a_k cos(k angle + phase_k), k from 1. Each wave is (a_k, phase_k)."""
     each = [Piece(mpf(0), [], (size, mpf(k), phase + mp.pi / 2)) for k, (size, phase) in enumerate(waves, 1)]
     return [(mpf(0), Sum([Piece(mpf(0), [offset]), *each]))]
 
 
 def rectified(offset, amplitude):
-    """offset + amplitude |sin angle|."""
+    """Return offset + amplitude |sin angle|."""
     return [(start, Piece(start, [offset], (amplitude, mpf(1), mpf(0)))) for start in (mpf(0), mp.pi)]
 
 
 def rounded(laws, corners, half):
-    """Laws with each corner taken out: from `half` before it to `half` after it goes the quintic that has c, c', c'' of both there."""
+    """Return laws whose corners are rounded. From `half` before a corner to `half` after it runs the quintic with c, c', c'' of both
+    laws at the ends."""
     turn = 2 * mp.pi
     found = [(start + half if start in corners else start, law) for start, law in laws]
     for corner in corners:

@@ -1,7 +1,8 @@
 """The border collision of the corner map: continuity, the border, and the normal form.
 
-Two things go in. From corner_map.py, A and B as they come out, with c'' of either side: the rank of the difference, the
-border {C, D}, and on which side of it which map holds. For the change of coordinates, any continuous piecewise-linear map
+There are two inputs. The first is A and B of corner_map.py, with c'' of either side. They give the rank of the difference, the border
+{C, D}, and the side of the border on which each map holds. The second, for the change of coordinates, is any continuous
+piecewise-linear map
 
     x -> A- x + B- mu  on one side of C x + D mu = 0,    A+ = A- + E C,  B+ = B- + E D,  C = e1^T (A+ - A-),
 
@@ -9,13 +10,13 @@ so E = (1, E2): nothing there is special to the cam. Proved:
 
   continuity      A+ - A- = kappa F e2 (h F) and B+ - B- = kappa F e2 v/2, kappa = -(1+r)(c''+ - c''-)/(v - c')
   region          C dx + D dT = (1+r) phi12(T/2) (c''+ - c''-) tau, tau the impact's time from the corner. With r > -1 the
-                  sign of C dx + D dT is that of tau just where phi12(T/2) (c''+ - c''-) > 0: there A-, B- hold on
+                  sign of C dx + D dT is that of tau exactly where phi12(T/2) (c''+ - c''-) > 0: there A-, B- hold on
                   C dx + D dT < 0. Where the product is negative the sides change places; where it is 0 there is no border.
   B tilde         B - (A - I) e1 D/c1, the same on both sides
   companion form  W = T- O-: W A- W^-1 and W A+ W^-1 are companion matrices, C W^-1 = (1, 0)
   B bar           W B tilde; its second entry is r kappa det F phi12 (v+ phi11 det F + v phi22)/(2 phi11):
-                  0 just where r = 0 or v+ phi11 e^{-zeta T} + v phi22 = 0 (given C1 != 0). Without damping that is
-                  v+ = -v, which the closing of the orbit demands wherever phi12 != 0; with damping it fails.
+                  0 exactly where r = 0 or v+ phi11 e^{-zeta T} + v phi22 = 0 (given C1 != 0). Without damping that is
+                  v+ = -v, which holds on every orbit that closes with phi12 != 0; with damping it fails.
 """
 
 import sympy as sp
@@ -28,7 +29,7 @@ from proof import Proof, main
 minus, plus = sp.symbols("cpp_minus cpp_plus", real=True)
 dx1, dx2, dT = sp.symbols("dx1 dx2 dT", real=True)
 
-# phi_(T/2), and what makes the map of one side differ from that of the other
+# phi_(T/2), and the factor of the difference between the maps of the two sides
 F = propagator(p, s)
 kappa = -(1 + r) * (plus - minus) / (v - c1)
 h = sp.Matrix([[1, 0]])
@@ -37,29 +38,29 @@ v_plus = (1 + r) * c1 - r * v
 
 
 def sides():
-    """A-, B-, A+, B+, C, D of the corner map."""
+    """Return A-, B-, A+, B+, C, D of the corner map."""
     A, B = derived()["A"], derived()["B"]
     A_minus, B_minus, A_plus, B_plus = A.subs(c2, minus), B.subs(c2, minus), A.subs(c2, plus), B.subs(c2, plus)
     return A_minus, B_minus, A_plus, B_plus, h * (A_plus - A_minus), (h * (B_plus - B_minus))[0]
 
 
 def shifted(A, B, C, D):
-    """B of the map in x + e1 D mu/C1: the point and its image both move."""
+    """Return B of the map in x + e1 D mu/C1. Both the point and its image move."""
     return B - (A - sp.eye(2)) * e1 * D / C[0]
 
 
 def companion_coordinates(A, C):
-    """W = T- O-, O- = [C; C A], T- = [[1, 0], [d1, 1]], d1 = -trace A."""
+    """Return W = T- O-, where O- = [C; C A], T- = [[1, 0], [d1, 1]] and d1 = -trace A."""
     return sp.Matrix([[1, 0], [-A.trace(), 1]]) * sp.Matrix.vstack(C, C * A)
 
 
 def companion(A):
-    """The companion form with A's characteristic polynomial."""
+    """Return the companion form with A's characteristic polynomial."""
     return sp.Matrix([[A.trace(), 1], [-A.det(), 0]])
 
 
 def general():
-    """A continuous piecewise-linear map with free entries: A-, B-, A+, B+, C, D, E."""
+    """Return a continuous piecewise-linear map with free entries: A-, B-, A+, B+, C, D, E."""
     A = sp.Matrix(2, 2, sp.symbols("a11 a12 a21 a22"))
     B = sp.Matrix(sp.symbols("b1 b2"))
     C = sp.Matrix([sp.symbols("C1 C2")])
@@ -85,7 +86,7 @@ def corner_proofs():
     on_border = {dT: sp.solve(tau, dT)[0]}
     image = (A_plus - A_minus) * sp.Matrix([dx1, dx2]) + (B_plus - B_minus) * dT
     yield Proof("the map is continuous where the impact is on the corner", image.subs(on_border))
-    # and the difference is a multiple of the indicator everywhere: dividing by phi12 needs C1 != 0, as the normal form does
+    # The difference is a multiple of the indicator everywhere. Dividing by phi12 needs C1 != 0, as the normal form does.
     E = F * e2 / F[0, 1]
     whole = sp.Matrix.hstack(A_plus - A_minus, B_plus - B_minus) - E * sp.Matrix.hstack(C, sp.Matrix([D]))
     yield Proof("A+ - A- = E C and B+ - B- = E D with E = F e2/phi12, whose first entry is 1", [whole, E[0] - 1])
@@ -119,7 +120,7 @@ def change_proofs():
 
 
 def second_entry():
-    """B bar_2 of the corner map, as it comes out and as claimed."""
+    """Return B bar_2 of the corner map, as derived and as claimed."""
     A_minus, B_minus, _, _, C, D = sides()
     B_bar = companion_coordinates(A_minus, C) * shifted(A_minus, B_minus, C, D)
     claimed = r * kappa * F.det() * F[0, 1] * (v_plus * F[0, 0] * F.det() + v * F[1, 1]) / (2 * F[0, 0])
@@ -127,10 +128,10 @@ def second_entry():
 
 
 def closing():
-    """What makes the orbit close: flown back from (q, v) and forward from (q, v+) for T/2, it is in the same state.
+    """Return the state T/2 after (q, v+) and the state T/2 before (q, v). The orbit closes if both are the same.
 
-    The state is counted from the corner's position, where the acceleration at v = 0 is -spring; flying back is flying
-    forward to the start, F start + load (p, s) = (0, v).
+    The position is measured from the corner's, where the acceleration at v = 0 is -spring. The state before is solved for as the
+    start of a forward flight: F start + load (p, s) = (0, v).
     """
     forward = F * sp.Matrix([0, v_plus]) - spring * sp.Matrix([p, s])
     start = F.inv() * (sp.Matrix([0, v]) + spring * sp.Matrix([p, s]))
@@ -141,7 +142,7 @@ def second_entry_proofs():
     found, claimed = second_entry()
     yield Proof("B bar_2 = r kappa det F phi12 (v+ phi11 det F + v phi22)/(2 phi11)", found - claimed)
 
-    # Without damping F is area-preserving: p and s are no longer free, omega0^2 p^2 - 2 p + s^2 = 0.
+    # Without damping F preserves area, so p and s are no longer free: omega0^2 p^2 - 2 p + s^2 = 0.
     undamped = {zeta: 0}
     bound = (F.det() - 1).subs(undamped)
     yield Proof("zeta = 0: det F = 1 says omega0^2 (omega0^2 p^2 - 2 p + s^2) = 0",
@@ -160,7 +161,7 @@ def second_entry_proofs():
                 modulo(numerator - s * (v_plus + v) * denominator)[0])
     yield Proof("zeta = 0: B bar_2 is proportional to v+ + v, so 0 on every orbit that closes with phi12 != 0",
                 modulo((claimed - r * kappa * s * (v_plus + v) / 2).subs(undamped))[0])
-    # Equal, as closing demands, and opposite, as the reflection of time demands: 0.
+    # The velocities are equal if the orbit closes, and opposite by the reflection of time: so both are 0.
     velocity_forward = forward[1].subs(undamped)
     velocity_start = start[1].subs(undamped)
     reflected = modulo((velocity_forward + velocity_start).subs(c1, -(1 - r) * v / (1 + r)))[0]
@@ -168,9 +169,9 @@ def second_entry_proofs():
 
 
 def damped_example():
-    """(v+ phi11 det F + v phi22)/v on an orbit that closes with zeta > 0: not 0, so B bar_2 is not.
+    """Return (v+ phi11 det F + v phi22)/v on an orbit that closes with zeta > 0. It is not 0, so B bar_2 is not 0.
 
-    zeta = 1, omega0^2 = 0, so p and s at T/2 = 1 are known; both equations of closing are met by v+ and spring per v.
+    With zeta = 1 and omega0^2 = 0, p and s at T/2 = 1 are known. The two equations of closing give v+ and spring in terms of v.
     """
     s_value = (1 - sp.exp(-2)) / 2
     p_value = (1 - s_value) / 2

@@ -1,7 +1,7 @@
-"""200 rational points with the derived A and B to 50 digits: what the closed forms in Rust are held to.
+"""200 rational points with the derived A and B to 50 digits, against which the closed forms in Rust are tested.
 
-Inputs are fractions with a power of two below, so a double holds each exactly. A point is drawn again where an entry of A
-or B is less than a hundredth of the terms that it is the sum of: there a double could not meet 1e-12 of it.
+The denominators of the inputs are powers of two, so that a double holds each input exactly. A point is drawn again if an entry of A
+or B is less than a hundredth of the terms that it is the sum of. A double could not meet 1e-12 of such an entry.
 """
 
 import math
@@ -15,7 +15,7 @@ from arithmetic import evaluate, responses, text
 
 SEED = 20080417
 DIGITS = 50
-# How often each kind of damping is drawn.
+# Number of points for each kind of damping.
 KINDS = {
     "under-damped": 60,
     "undamped": 50,
@@ -29,7 +29,7 @@ LARGEST_CANCELLATION = 100
 
 
 class Sized:
-    """A number and the sum of the sizes of the terms that it is made of."""
+    """Number with the sum of the sizes of the terms that it is made of."""
 
     def __init__(self, value, size=None):
         self.value, self.size = value, abs(value) if size is None else size
@@ -63,7 +63,7 @@ def sized(value):
 
 
 def program(names):
-    """closed_forms.py run on inputs of any kind."""
+    """Run closed_forms.py on inputs of any kind, and return all names with their values."""
     for name, source in closed_forms.CLOSED_FORMS.items():
         if name not in names:
             names[name] = evaluate(source, names)
@@ -71,11 +71,11 @@ def program(names):
 
 
 def cancellation(inputs, p, s):
-    """The largest factor by which terms exceed the entry of A or B that they add up to."""
+    """Return the largest factor by which the terms of an entry of A or B exceed the entry."""
     names = {name: sized(mpf(value.numerator) / value.denominator) for name, value in inputs.items()}
     zeta, omega0_squared, half = names["zeta"].value, names["omega0_squared"].value, names["T"].value / 2
     square = omega0_squared - zeta**2
-    # A double's cosine and sine are off by as much as their argument is rounded by.
+    # In doubles, cosine and sine are off by as much as their argument is rounded.
     turn = max(1, mp.sqrt(square) * half) if square > 0 else 1
     reach = min(half, 1 / mp.sqrt(square)) if square > 0 else s
     decay = mp.exp(-zeta * half)
@@ -87,12 +87,12 @@ def cancellation(inputs, p, s):
 
 
 def dyadic(value, bits):
-    """The nearest multiple of 2^-bits."""
+    """Return the nearest multiple of 2^-bits."""
     return Fraction(round(value * 2**bits), 2**bits)
 
 
 def draw(kind, uniform):
-    """Inputs of one kind, without regard to cancellation."""
+    """Return random inputs of one kind, without regard to cancellation."""
     period = dyadic(uniform(0.02, 0.5), 14)
     # omega0 T/2, up to almost a whole turn
     rate = 2 * uniform(0.1, 6.0) / float(period)
@@ -126,7 +126,8 @@ def draw(kind, uniform):
 
 
 def points(expressions):
-    """[{kind, inputs, p, s, A, B}], the values from the derived expressions."""
+    """Return [(kind, inputs, names, value, apart)]. `value` has the entries from the derived expressions, and `apart` is their
+    largest relative difference from closed_forms.py."""
     generator = random.Random(SEED)
 
     def uniform(low, high):
@@ -151,12 +152,12 @@ def points(expressions):
 
 
 def disagreement(rows):
-    """The largest relative difference between the derived expressions and closed_forms.py over the points."""
+    """Return the largest relative difference between the derived expressions and closed_forms.py over the points."""
     return max(row[4] for row in rows)
 
 
 def in_doubles(rows):
-    """The largest relative error of closed_forms.py in double precision, cosine and sine from the library's functions."""
+    """Return the largest relative error of closed_forms.py in double precision, with cosine and sine from the library's functions."""
     worst = 0.0
     for _, inputs, _, value, _ in rows:
         names = {name: float(entry) for name, entry in inputs.items()}
@@ -175,7 +176,7 @@ def in_doubles(rows):
 
 
 def entry(row):
-    """A point as it is written."""
+    """Return a point as it is written."""
     kind, inputs, names, value, _ = row
     decimals = {name: {"exact": str(number), "decimal": repr(float(number))} for name, number in inputs.items()}
     value = {name: text(number, DIGITS) for name, number in value.items()}

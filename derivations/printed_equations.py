@@ -1,16 +1,16 @@
 """The paper's equations as printed, each proved or disproved, and the smallest repair of those that fail.
 
-An equation is given as a residual that takes a set of repairs: with none, it is what the paper prints; with all, it has to
-vanish identically; with any proper subset it must not, so that no smaller repair does. Residuals that vanish do so exactly,
-by computer algebra; those that do not are also evaluated at one rational point to 20 digits.
+An equation is given as a residual that takes a set of repairs. With none, it is what the paper prints. With all, it must vanish
+identically. With any proper subset it must not vanish, so that no smaller repair is enough. Residuals that vanish do so exactly, by
+computer algebra. Those that do not are also evaluated at one rational point to 20 digits.
 
-The truth that they are held to is flight.py's flow, impact.py's restitution and corner_map.py's derivatives; or, for a formula
-on the way, the derivative of what it claims to be the derivative of. Here x is measured from the equilibrium as the paper
-does, the stiffness is not 0, and phi_t is known by its derivative and the group law, so every damping is included.
+The reference is flight.py's flow, impact.py's restitution and corner_map.py's derivatives. For an intermediate formula it is the
+derivative that the formula claims to be. Here x is measured from the equilibrium as in the paper, the stiffness is not 0, and phi_t
+is known by its derivative and the group law, so that every damping is included.
 
     verdict "holds"      true as printed
-            "misprint"   false as printed, but what the paper goes on with is the repaired form
-            "refuted"    false, and the paper goes on with it
+            "misprint"   false as printed, but the paper continues with the repaired form
+            "refuted"    false, and the paper continues with it
 """
 
 import argparse
@@ -38,7 +38,7 @@ q, v, c1, c2, g, c = sp.symbols("q v c1 c2 g c", real=True)
 
 @dataclass(frozen=True)
 class Equation:
-    """One printed equation; `residual(repairs)` is 0 where it is true."""
+    """Printed equation. `residual(repairs)` is 0 if the equation is true."""
 
     label: str
     statement: str
@@ -54,33 +54,33 @@ class Equation:
 
 
 def dphi(time):
-    """phi' at a time."""
+    """Return phi' at a time."""
     return phi(u).diff(u).subs(u, time)
 
 
 def y(time):
-    """(c, c')."""
+    """Return (c, c') at a time."""
     return cam(time)
 
 
 def dy(time):
-    """y', the derivative by time."""
+    """Return y', the derivative by time."""
     return cam(u).diff(u).subs(u, time)
 
 
 def dy_dT(time):
-    """The derivative of y by the period as the paper prints it."""
+    """Return the derivative of y by the period as the paper prints it."""
     velocity, acceleration = dy(time)
     return sp.Matrix([-time / T * velocity, -velocity / T - time / T * acceleration])
 
 
 def map_printed(state):
-    """eq:lmap."""
+    """Return the map of eq:lmap."""
     return phi(half) * ((I + phi(t_i) * R * phi(-t_i)) * phi(half) * state - phi(t_i) * R * y(-t_i))
 
 
 def gap_printed(state):
-    """H below eq:lmap."""
+    """Return H below eq:lmap."""
     return (h * (phi(half - t_i) * state - y(-t_i)))[0]
 
 
@@ -90,7 +90,7 @@ f0, f1, k0, k1, l0, l1, l2 = sp.symbols("f0 f1 k0 k1 l0 l1 l2", real=True)
 
 
 def letters(expression):
-    """Everything by the values of phi at T/2 and t_i and of the cam at -t_i: a rational expression."""
+    """Return an expression in the values of phi at T/2 and t_i and of the cam at -t_i. The result is rational in them."""
     pairs = {half - t_i: (half, -t_i), half + t_i: (half, t_i), T: (half, half)}
     expression = group_law(group_law(expression, pairs), {-t_i: (t_i, None)})
     angle = -2 * sp.pi * t_i / T
@@ -100,7 +100,7 @@ def letters(expression):
 
 
 def at_corner(expression):
-    """The same at t_i = 0."""
+    """Return an expression at t_i = 0, in the same letters."""
     expression = expression.subs(t_i, 0)
     table = {Cosine(T): f0**2 + (zeta**2 - omega0_squared) * f1**2, Sine(T): 2 * f0 * f1}
     table |= {Cosine(half): f0, Sine(half): f1, Cosine(0): 1, Sine(0): 0, Lift(0): l0, Slope(0): l1, Curvature(0): l2}
@@ -108,7 +108,7 @@ def at_corner(expression):
 
 
 F = f0 * I + f1 * (G + zeta * I)
-# A rational point, under-damped: what is not in the list is computed from it.
+# A rational point, under-damped. Values that are not listed are computed from it.
 POINT = {
     zeta: sp.Rational(3, 5), omega0_squared: sp.Rational(17, 4), T: sp.Rational(7, 5), t_i: sp.Rational(3, 20),
     r: sp.Rational(7, 10), x[0]: sp.Rational(-2, 7), x[1]: sp.Rational(11, 13), l0: sp.Rational(1, 3), l1: sp.Rational(2, 9),
@@ -118,7 +118,7 @@ POINT = {
 
 
 def computed():
-    """phi's letters at POINT, to 60 digits."""
+    """Return phi's letters at POINT, to 60 digits."""
     shape = {omega_s: sp.sqrt(POINT[omega0_squared] - POINT[zeta] ** 2), zeta: POINT[zeta]}
     values = {}
     for cosine, sine, time in ((f0, f1, POINT[T] / 2), (k0, k1, POINT[t_i])):
@@ -144,7 +144,7 @@ def flow(repairs):
 
 
 def gravity_shift(repairs):
-    """q = [x]_1 - g/omega0^2 in m q'' + b q' + k q = -m g leaves x' = G x."""
+    """Residual of: q = [x]_1 - g/omega0^2 in m q'' + b q' + k q = -m g gives x' = G x."""
     state = sp.Matrix([q + g / omega0_squared, v])
     return sp.Matrix([v, -2 * zeta * v - omega0_squared * q - g]) - G * state
 
@@ -171,7 +171,7 @@ def composition(repairs):
 
 
 def implicit_condition(repairs):
-    """H below eq:lmap is the gap of eq:H at -t_i, of the flight that comes to t = 0 as if there were no impact."""
+    """Residual of: H below eq:lmap is the gap of eq:H at -t_i, of the flight that reaches t = 0 as if there were no impact."""
     arrived = phi(half) * x
     return letters(gap_printed(x) - (h * (phi(-t_i) * arrived - y(-t_i)))[0])
 
@@ -207,7 +207,7 @@ def dP_dti(repairs):
     if "brackets" in repairs:
         printed = phi(half) * ((first - second) * phi(half) * x + rest)
     else:
-        # a matrix less a vector: sympy refuses it
+        # A matrix less a vector, which sympy refuses.
         printed = phi(half) * (first - second * phi(half) * x + rest)
     return letters(map_printed(x).diff(t_i) - printed)
 
@@ -216,20 +216,20 @@ def dti_dx(repairs):
     by_time = -(h * (dphi(half - t_i) * x - dy(-t_i)))[0]
     by_state = h * phi(half - t_i)
     gradient = sp.Matrix([gap_printed(x)]).jacobian(x)
-    # dt_i/dx from these makes H stay 0
+    # dt_i/dx from these keeps H at 0.
     stays = gradient + gap_printed(x).diff(t_i) * (-by_state / by_time)
     return [letters(gap_printed(x).diff(t_i) - by_time), letters(gradient - by_state), letters(stays)]
 
 
 def corner_terms():
-    """The bracket, h (phi' x - y0') and the rest that eq:ftaylormapcornerX and T share, with phi_0' = G."""
+    """Return the bracket and h (phi' x - y0'), which eq:ftaylormapcornerX and T share, with phi_0' = G."""
     y0, dy0, flown = y(0), dy(0), phi(half) * x
     bracket = (R * G - G * R) * flown + G * R * y0 - R * dy0
     return bracket, (h * (dphi(half) * x - dy0))[0]
 
 
 def linearised(variable):
-    """dP/dx or dP/dT by implicit differentiation of eq:lmap and H, at t_i = 0."""
+    """Return dP/dx or dP/dT by implicit differentiation of eq:lmap and H, at t_i = 0."""
     P, H = map_printed(x), gap_printed(x)
     return at_corner(P.diff(variable) - P.diff(t_i) * H.diff(variable) / H.diff(t_i))
 
@@ -274,7 +274,7 @@ def taylor_T(repairs):
 
 
 def derived():
-    """corner_map.py's A and B in the paper's letters."""
+    """Return A and B of corner_map.py in the paper's letters."""
     table = {corner_map.p: (1 - f0 - zeta * f1) / omega0_squared, corner_map.s: f1, corner_map.spring: omega0_squared * q}
     return corner_map.derived()["A"].subs(table), corner_map.derived()["B"].subs(table)
 
@@ -300,7 +300,8 @@ def eq_B(repairs):
 
 
 def taylor_closed_form(repairs):
-    """eq:ftaylormapcornerX and T, repaired, at F x = (q, v), c = q: the same A and B."""
+    """Residual of: the derivatives of eq:lmap with F x = (q, v) and c = q are A and B. eq:ftaylormapcornerX and T, repaired, are
+    these derivatives."""
     start = dict(zip(x, F.inv() * sp.Matrix([q, v])))
     corner = {l0: q, l1: c1 * T / (2 * sp.pi), l2: c2 * (T / (2 * sp.pi)) ** 2}
     A, B = derived()
@@ -323,9 +324,10 @@ def continuity(repairs):
 
 
 def region(repairs):
-    """C dx + D dT over what it should be a positive multiple of, the impact's time: (1+r) phi12 (c''+ - c''-), not positive.
+    """Residual of: C dx + D dT is a positive multiple of the impact's time. The factor (1+r) phi12 (c''+ - c''-) need not be
+    positive.
 
-    As printed the multiple's sign is left out; the repaired indicator is divided by it.
+    As printed, the sign of the factor is left out. The repaired indicator is divided by the factor.
     """
     _, _, _, _, C, D = normal_form.sides()
     dtau = corner_map.derived()["dtau"]
@@ -333,7 +335,7 @@ def region(repairs):
     indicator = [C[0], C[1], D]
     if "factor" in repairs:
         indicator = [entry / multiple for entry in indicator]
-    # the same letter for phi12(T/2) as elsewhere
+    # The same letter for phi12(T/2) as elsewhere.
     table = {corner_map.s: f1, corner_map.p: (1 - f0 - zeta * f1) / omega0_squared}
     return [sp.cancel((entry - time).subs(table)) for entry, time in zip(indicator, dtau)]
 
@@ -345,7 +347,7 @@ GENERAL = dict(zip([*A_, *B_, *C_, D_, E_[1]], map(sp.Rational, ("3/7", "-2/5", 
 
 
 def shift_as_printed(A, B):
-    """b - (first column of A) d/c1."""
+    """Return b - (first column of A) d/c1."""
     return B - A[:, 0] * D_ / C_[0]
 
 
@@ -367,20 +369,20 @@ def coordinates(repairs):
 
 
 def coordinates_plus(repairs):
-    """Both printed companion matrices, with W applied."""
+    """Residuals of both printed companion matrices, with W applied."""
     W = normal_form.companion_coordinates(A_, C_)
     return [W * A_ - normal_form.companion(A_) * W, W * A_plus_ - normal_form.companion(A_plus_) * W, C_ - h * W]
 
 
 def b_bar(repairs):
-    """The printed numbers are those of -W B~ with B~ as printed."""
+    """Residual of B bar. The printed numbers are those of -W B~ with B~ as printed."""
     W = normal_form.companion_coordinates(A_, C_)
     tilde = normal_form.shifted(A_, B_, C_, D_) if "image" in repairs else shift_as_printed(A_, B_)
     return (W if "sign" in repairs else -W) * tilde - W * normal_form.shifted(A_, B_, C_, D_)
 
 
 def determinant(repairs):
-    """-0.64 in both companion matrices is -r^2 (det phi_(T/2))^2 = -r^2 e^{-2 zeta T}."""
+    """Residual of: -0.64 in both companion matrices is -r^2 (det phi_(T/2))^2 = -r^2 e^{-2 zeta T}."""
     A, _ = derived()
     return normal_form.companion(A)[1, 0] + r**2 * F.det() ** 2
 
@@ -394,7 +396,7 @@ NOSE = kappa2 * sp.sin(theta + theta3) + sp.sqrt(rho2**2 - kappa2**2 * sp.cos(th
 
 
 def on_circle(law, centre, radius):
-    """c - (the centre's part along the ray), squared, and its part across: Pythagoras with the radius."""
+    """Return the squared distance of the cam's point from a centre, less the squared radius."""
     return sp.simplify(sp.expand_trig(sp.expand(
         (law * sp.cos(theta) - centre[0]) ** 2 + (law * sp.sin(theta) - centre[1]) ** 2 - radius**2)))
 
@@ -406,10 +408,10 @@ def cam_laws(repairs):
 
 
 def tangency(repairs):
-    """The printed c_1 and c_2 at R, P and Q, each lift less the neighbour's and each slope.
+    """Residuals of the printed c_1 and c_2 at R, P and Q: each lift and each slope less the neighbour's.
 
-    At P both circles have one outward normal n: O1 = P - rho1 n and O2 = P - rho2 n. With a = n . e_r > 0, b = n . e_theta and
-    l = |P| that is O1 . e_r = l - rho1 a, O1 . e_theta = -rho1 b, and likewise O2, which say what sine and cosine are there.
+    At P both circles have one outward normal n: O1 = P - rho1 n and O2 = P - rho2 n. Let a = n . e_r > 0, b = n . e_theta and l =
+    |P|. Then O1 . e_r = l - rho1 a and O1 . e_theta = -rho1 b, and likewise for O2. These fix the sine and the cosine at P.
     """
     R_, Q_ = {theta: sp.pi / 2 - theta1}, {theta: sp.pi / 2 - theta3}
     ends = [
@@ -424,7 +426,7 @@ def tangency(repairs):
     nose = {sp.sin(theta + theta3): (lift - rho2 * a) / kappa2, sp.cos(theta + theta3): -rho2 * b / kappa2}
 
     def at_P(law, table):
-        # a^2 + b^2 = 1 makes each root rho a
+        # With a^2 + b^2 = 1, each root is rho a.
         roots = {sp.sqrt(rho1**2 - rho1**2 * b**2): rho1 * a, sp.sqrt(rho2**2 - rho2**2 * b**2): rho2 * a}
         return law.subs(table).subs(roots)
 
@@ -484,8 +486,8 @@ EQUATIONS = (
 
 
 def slips():
-    """Which printed equations are wrong in one way: the later ones have the earlier one's slip, and no other."""
-    # The map and the gap of an impact at t_i, which the sentence after eq:H speaks of, in place of one at -t_i.
+    """Proofs that several printed equations share one slip: the later ones have the slip of the earlier one, and no other."""
+    # The map of an impact at t_i, of which the sentence after eq:H speaks, in place of one at -t_i.
     opposite = phi(half) * ((I + phi(-t_i) * R * phi(t_i)) * phi(half) * x - phi(-t_i) * R * y(t_i))
     fixed = opposite.jacobian(x) - phi(half) * (I + phi(-t_i) * R * phi(t_i)) * phi(half)
     yield Proof("Eq:dP_dxn as printed is that of an impact at t_i", letters(fixed))
@@ -503,22 +505,22 @@ def slips():
 
 
 def flat(residual):
-    """The entries of a residual."""
+    """Return the entries of a residual."""
     if isinstance(residual, (list, tuple, sp.MatrixBase)):
         return [entry for part in residual for entry in flat(part)]
     return [sp.sympify(residual)]
 
 
 def numbers(equation, residual):
-    """A residual at the rational point."""
+    """Return a residual at the rational point."""
     values = {**POINT, **computed(), **equation.values}
     found = [sp.N(entry.subs(values), 20) for entry in flat(residual)]
-    # phi's letters are rounded at 60 digits
+    # phi's letters are rounded at 60 digits.
     return [sp.Integer(0) if abs(value) < sp.Rational(1, 10**40) else value for value in found]
 
 
 def weigh(equation, repairs):
-    """A residual's verdict: whether it vanishes, and its value at the point, as text."""
+    """Return whether a residual vanishes, and its value at the point, as text."""
     try:
         residual = equation.residual(frozenset(repairs))
     except sp.matrices.exceptions.ShapeError:
@@ -526,12 +528,12 @@ def weigh(equation, repairs):
     if repairs == equation.repairs:
         return vanishes(residual), "0"
     values = numbers(equation, residual)
-    # Not 0 at one point is not 0.
+    # A residual that is not 0 at one point does not vanish.
     return not any(values), [str(value) for value in values]
 
 
 def examine(equation):
-    """The verdict on one equation, its evidence, and whether they are what the table says."""
+    """Return the entry of one equation, with its verdict and its evidence, and True if they are what the table says."""
     complete, _ = weigh(equation, equation.repairs)
     evidence = {"residual_as_printed": "0", "residual_repaired": None, "subsets": []}
     good = complete
@@ -557,7 +559,7 @@ def examine(equation):
 
 
 def examined():
-    """Every equation's entry, and the proofs of the verdicts."""
+    """Return the entry of every equation, and the proofs of the verdicts."""
     entries, results = [], []
     for equation in EQUATIONS:
         entry, good = examine(equation)

@@ -1,11 +1,10 @@
-"""What a proof is here: a statement and a residual that computer algebra reduces to exactly 0.
+"""Proofs: each is a statement and a residual that computer algebra reduces to exactly 0.
 
-No tolerance enters. A residual is first cleared of denominators and expanded; what that leaves is handed to sympy's
-simplifiers. A residual that still does not reduce counts as not proved, even if it were 0. What is compared by its digits is a
-measurement, and is told apart.
+No tolerance enters. A residual is first cleared of denominators and expanded; the rest is left to sympy's simplifiers. A residual
+that still does not reduce counts as not proved, even if it is 0. A comparison of digits is a measurement, and is marked as one.
 
-A judge that lets everything pass would prove everything: five false identities are planted, each for another way through
-`vanishes`, and no stage is complete unless all five are refused.
+A check that accepts everything would prove everything. So five false identities are planted, each for another way through `vanishes`.
+No stage is complete unless all five are refused.
 """
 
 import sys
@@ -16,7 +15,7 @@ import sympy as sp
 
 @dataclass(frozen=True)
 class Proof:
-    """`residual = 0` makes `statement` true."""
+    """Statement that is true if `residual` is 0."""
 
     statement: str
     residual: object
@@ -27,7 +26,7 @@ class Proof:
 
 @dataclass(frozen=True)
 class Measurement:
-    """A statement that numbers bear out, each to so many digits; no proof."""
+    """Statement that numbers confirm to a stated number of digits. It is no proof."""
 
     statement: str
     within: bool
@@ -37,7 +36,7 @@ class Measurement:
 
 
 def vanishes(residual):
-    """Whether an expression, or each entry of a matrix or list, is exactly 0."""
+    """Return True if an expression, or each entry of a matrix or list, is proved to be exactly 0."""
     if isinstance(residual, (list, tuple)):
         return all(vanishes(entry) for entry in residual)
     if isinstance(residual, sp.MatrixBase):
@@ -52,7 +51,7 @@ def vanishes(residual):
 
 
 _a, _b, _t = sp.symbols("a b t", real=True)
-# False, and each nearly true: a residual of one kind for each step of `vanishes`.
+# False identities, each nearly true: one kind of residual for each step of `vanishes`.
 PLANTED = (
     Proof("(a + b)^2 = a^2 + b^2: a polynomial", (_a + _b) ** 2 - _a**2 - _b**2),
     Proof("1/(a - b) - 1/(a + b) = 2 a/(a^2 - b^2): denominators to be cleared", 1 / (_a - _b) - 1 / (_a + _b) - 2 * _a / (_a**2 - _b**2)),
@@ -64,7 +63,7 @@ PLANTED = (
 
 
 def refuses():
-    """Whether each planted identity is refused; those that are not are printed."""
+    """Return True if every planted identity is refused. Print those that are not."""
     passed = [planted for planted in PLANTED if planted.holds()]
     for planted in passed:
         print(f"PASSED, though it is false: {planted.statement}", flush=True)
@@ -72,7 +71,7 @@ def refuses():
 
 
 def show(title, proofs):
-    """Print each proof and each measurement on one line; True if all hold."""
+    """Print each proof and each measurement on one line. Return True if all hold."""
     complete = True
     for proof in proofs:
         good = proof.holds()
@@ -83,6 +82,6 @@ def show(title, proofs):
 
 
 def main(title, proofs):
-    """A stage run by itself."""
+    """Run a stage by itself. The exit code is 0 if all of it holds."""
     complete = refuses()
     sys.exit(0 if show(title, proofs()) and complete else 1)

@@ -4,7 +4,7 @@ The paper prints A-+, B-+, C, D, x* and T* but no mass, spring or cam. With
 
     A = F [[-r, 0], [alpha, -r]] F,   F = phi_{T/2},   C = h (A+ - A-) = d12 h F,  D = d12 v/2,
 
-d12 = phi12 (alpha+ - alpha-), one after the other (corner_map.py and normal_form.py prove each relation):
+and d12 = phi12 (alpha+ - alpha-), the constants follow one after the other (corner_map.py and normal_form.py prove each relation):
 
     det A = (r e^{-zeta T})^2;   (A+ - A-)_11 - (A+ - A-)_22 = 2 zeta (A+ - A-)_12, so equal diagonals are zeta = 0;
     A11 - A12/tau = r with tau = phi12/phi11 = C2/C1, a second way to r;
@@ -13,12 +13,12 @@ d12 = phi12 (alpha+ - alpha-), one after the other (corner_map.py and normal_for
     q = x1* cos, v = -x1* omega0 sin, c' = -v (1 - r)/(1 + r), c'' from alpha, all at omega0 T/2;
     slope and curvature by angle from c', c'' and omega = 2 pi/T.
 
-These are all that A, B, T* and x* know: three numbers of the cam at one point, on two sides. The cam's circles need one
-length more, taken here to be the base circle's radius, and an orientation, taken to be R at 90 degrees. The flank and
-nose circles, P, Q and the spring's rest position follow.
+A, B, T* and x* contain nothing more: three numbers of the cam at one point, on two sides. The cam's circles need one more length,
+here the base circle's radius, and an orientation, here R at 90 degrees. The flank and nose circles, P, Q and the spring's rest
+position follow.
 
-Uncertainty: each printed number counts as known to half a unit of its last digit or 1e-13 of its size, whichever is more;
-the shifts that each makes in the result are added up.
+Uncertainty: each printed number is known to half a unit of its last digit or 1e-13 of its size, whichever is more. The shifts that
+each one makes in the result are added up.
 """
 
 import argparse
@@ -43,7 +43,7 @@ BASE_RADIUS, FLANK_START = mpf("0.4"), mp.pi / 2
 
 
 def published():
-    """Each printed number, and what it is known to."""
+    """Return each printed number, and the uncertainty of each."""
     values, known = {}, {}
     for entry in json.loads(PUBLISHED.read_text())["numbers"]:
         for index, printed in enumerate(entry["printed"]):
@@ -52,24 +52,24 @@ def published():
             key = (entry["quantity"], index)
             values[key] = mpf(decimal)
             known[key] = max(mpf(10) ** -places / 2, ROUND_OFF * abs(values[key]))
-    # The second entry of x* is printed as 0: a speed, of which nothing is said but that it is none.
+    # The second entry of x* is printed as 0: a velocity that is exactly 0.
     known["x_star", 1] = mpf(0)
     return values, known
 
 
 def sources(values):
-    """The printed numbers that the constants are taken from."""
+    """Return the keys of the printed numbers from which the constants are computed."""
     names = ("T_star", "x_star", "A_minus", "A_plus", "B_minus", "B_plus", "C", "D")
     return [key for key in values if key[0] in names]
 
 
 def two_by_two(values, name):
-    """A printed matrix."""
+    """Return a printed matrix."""
     return matrix([[values[name, 0], values[name, 1]], [values[name, 2], values[name, 3]]])
 
 
 def constants(values):
-    """Every constant from the printed numbers."""
+    """Return every constant, computed from the printed numbers."""
     period, x1, D = values["T_star", 0], values["x_star", 0], values["D", 0]
     A_minus, A_plus = two_by_two(values, "A_minus"), two_by_two(values, "A_plus")
     C1, C2 = values["C", 0], values["C", 1]
@@ -106,10 +106,10 @@ def constants(values):
 
 
 def circles(slope, curvature_minus, curvature_plus, position):
-    """The cam's circles from its slope and two curvatures at P, its base radius and where the flank starts.
+    """Return the cam's circles from its slope and two curvatures at P, its base radius, and the angle where the flank starts.
 
-    The flank circle (radius rho1, centre rho1 - rho0 behind the axis from R) has both its slope and its curvature right at
-    one rho1 and one angle; the nose has the same point and normal, so its curvature fixes its radius.
+    The flank circle has radius rho1, and its centre is rho1 - rho0 behind the axis as seen from R. One rho1 and one angle give both
+    the slope and the curvature. The nose has the same point and normal, so its curvature fixes its radius.
     """
     def flank(radius, turn):
         return evaluate.Arc(radius - BASE_RADIUS, mp.pi, radius).lift(turn)
@@ -120,7 +120,7 @@ def circles(slope, curvature_minus, curvature_plus, position):
 
     radius, turn = findroot(misses, (mpf("0.9"), mpf(1)))
     lift = flank(radius, turn)[0]
-    # P and the outward normal there, with R at angle 0
+    # P and the outward normal there, with R at angle 0.
     point = lift * mp.expj(turn)
     normal = (point + (radius - BASE_RADIUS)) / radius
 
@@ -146,7 +146,7 @@ def circles(slope, curvature_minus, curvature_plus, position):
 
 
 def authors():
-    """The same constants from the authors' published example."""
+    """Return the same constants from the authors' published example."""
     follower, orbit = evaluate.locate(AUTHORS)
     corner, omega = orbit["corner"], 2 * mp.pi / orbit["period"]
     laws = evaluate.arcs(AUTHORS["cam"])
@@ -174,21 +174,21 @@ def authors():
 
 
 def recovery():
-    """Value, uncertainty, digits and the authors' value of each constant."""
+    """Return value, uncertainty, digits and the authors' value of each constant."""
     values, known = published()
     found, own = constants(values), authors()
     spread = dict.fromkeys(found, mpf(0))
     for key in sources(values):
         if not known[key]:
             continue
-        # the mean of both directions: the shift to first order
+        # Mean of both directions: the shift to first order.
         up, down = (constants({**values, key: values[key] + sign * known[key]}) for sign in (1, -1))
         for name in found:
             spread[name] += abs(up[name] - down[name]) / 2
     rows = []
     for name, value in found.items():
         difference = value - own[name]
-        # None where the value is 0: the uncertainty says it all
+        # None for a value of 0, which has only an uncertainty.
         digits = int(mp.floor(-mp.log10(spread[name] / abs(own[name])))) if own[name] else None
         rows.append({
             "constant": name,
@@ -203,19 +203,19 @@ def recovery():
 
 
 def units(found, printed, places):
-    """How far apart two numbers are, in units of the printed one's last digit."""
+    """Return the distance between two numbers, in units of the printed one's last digit."""
     return abs(found - printed) * mpf(10) ** places
 
 
 def rounded(value):
-    """15 digits, or one of what is left of a cancellation."""
+    """Return 15 digits of a number, or one digit of the remainder of a cancellation."""
     if abs(value) < mpf(10) ** -30:
         return "0"
     return arithmetic.text(value, 15 if abs(value) > mpf(10) ** -9 else 1)
 
 
 def cross_checks():
-    """Published numbers from other published numbers, by the rule named."""
+    """Return published numbers computed from other published numbers, by the named rule."""
     values, _ = published()
     A_minus, A_plus = two_by_two(values, "A_minus"), two_by_two(values, "A_plus")
     B = matrix([values["B_minus", 0], values["B_minus", 1]])
@@ -262,7 +262,7 @@ def document():
 
 
 def proofs():
-    """Not identities but measurements: each recovered constant is within its uncertainty of the authors'."""
+    """Yield measurements, not proofs: each recovered constant is within its uncertainty of the authors'."""
     for row in recovery():
         words = f"{row['constant']} = {row['recovered']} +- {row['uncertainty']} is the authors' {row['authors']}"
         yield Measurement(words, row["agrees"])

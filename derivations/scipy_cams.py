@@ -1,6 +1,6 @@
-"""The cams of the outside check with SciPy: lift, slope and curvature of every law, from the numbers of a model file.
+"""The cams of the independent check with SciPy: lift, slope and curvature of every law, from the numbers of a model file.
 
-Circles are taken as what they are seen from the axis, motions as handbooks print them, and splines are SciPy's.
+Circles are computed as seen from the axis, motions are written as in handbooks, and splines are SciPy's.
 """
 
 import math
@@ -14,12 +14,12 @@ try:
 except ImportError as missing:
     sys.exit(f"this check needs numpy and scipy: {missing}")
 
-# What counts as zero beside the terms it is the sum of: well above the integrator's error.
+# Size of a sum relative to its terms below which it counts as 0: well above the integrator's error.
 NOISE = 1e-8
 
 
 class CannotCheck(Exception):
-    """The input is not a model that this check can take, or there is nothing to check."""
+    """The input is not a model that this check supports, or there is nothing to check."""
 
 
 def number(table, key, least=None):
@@ -32,16 +32,16 @@ def number(table, key, least=None):
 
 
 class Circle:
-    """A stretch of the cam's outline: the lift is where a line parallel to the ray at angle theta, and this far to its left, leaves it."""
+    """Stretch of the cam's outline. The lift is where a line parallel to the ray at theta, `offset` to its left, leaves the circle."""
 
     def __init__(self, centre, radius, offset=0.0):
         self.x, self.y = centre
         self.radius, self.offset = radius, offset
 
     def law(self, theta):
-        """Lift, and its first and second derivative by the angle."""
+        """Return the lift, and its first and second derivative by the angle."""
         cos, sin = math.cos(theta), math.sin(theta)
-        # The circle's centre along the ray and across it, and half of the chord that it cuts from the line.
+        # The circle's centre along the ray and across it, and half of the chord that the circle cuts from the line.
         along, across = self.x * cos + self.y * sin, self.x * sin - self.y * cos
         beside = across + self.offset
         square = (self.radius - beside) * (self.radius + beside)
@@ -55,7 +55,7 @@ class Circle:
         return Circle((self.x, -self.y), self.radius, self.offset)
 
     def last_ray(self, theta):
-        """Angle from theta to the nearest line that only touches the circle; the lift is not analytic there."""
+        """Return the angle from theta to the nearest line that only touches the circle. The lift is not analytic there."""
         distance = math.hypot(self.x, self.y)
         from_centre = math.remainder(theta - math.atan2(self.y, self.x), math.tau)
         ways = [(self.radius - self.offset, -from_centre), (self.radius + self.offset, from_centre)]
@@ -63,10 +63,10 @@ class Circle:
 
 
 class Tangent(Circle):
-    """A stretch of the outline under a flat face: the lift is the distance of its tangent from the axis."""
+    """Stretch of the outline under a flat face. The lift is the distance of its tangent from the axis."""
 
     def law(self, theta):
-        """Lift, and its first and second derivative by the angle."""
+        """Return the lift, and its first and second derivative by the angle."""
         cos, sin = math.cos(theta), math.sin(theta)
         along, across = self.x * cos + self.y * sin, self.x * sin - self.y * cos
         return along + self.radius, -across, -along
@@ -75,21 +75,21 @@ class Tangent(Circle):
         return Tangent((self.x, -self.y), self.radius)
 
     def last_ray(self, theta):
-        """No angle: it is analytic everywhere."""
+        """Return infinity: the lift is analytic everywhere."""
         return math.inf
 
 
 class Stretch:
-    """A displacement given in closed form over a stretch: a polynomial and a sine, in the part of the stretch gone through."""
+    """Displacement in closed form over a stretch: a polynomial and a sine of the fraction of the stretch."""
 
     def __init__(self, start, span, base, rise, powers, sine=(0.0, 1.0, 0.0), centre=None):
         self.start, self.span, self.base, self.rise = start, span, base, rise
-        # Angles are taken from the turn around here.
+        # Angles are taken in the turn about this angle.
         self.centre = start + 0.5 * span if centre is None else centre
         self.powers, self.sine = np.polynomial.Polynomial(powers), sine
 
     def law(self, theta):
-        """Lift, and its first and second derivative by the angle."""
+        """Return the lift, and its first and second derivative by the angle."""
         part = (self.centre - self.start + math.remainder(theta - self.centre, math.tau)) / self.span
         size, rate, phase = self.sine
         turned = rate * part + phase
@@ -99,28 +99,28 @@ class Stretch:
         return self.base + self.rise * lift, self.rise * slope / self.span, self.rise * bend / self.span**2
 
     def last_ray(self, theta):
-        """No angle: it is analytic everywhere."""
+        """Return infinity: the lift is analytic everywhere."""
         return math.inf
 
 
 class Levered:
-    """A stretch behind a lever of a ratio."""
+    """Stretch behind a lever: every lift is multiplied by the lever's ratio."""
 
     def __init__(self, stretch, ratio):
         self.stretch, self.ratio = stretch, ratio
 
     def law(self, theta):
-        """Lift, and its first and second derivative by the angle."""
+        """Return the lift, and its first and second derivative by the angle."""
         lift, slope, bend = self.stretch.law(theta)
         return self.ratio * lift, self.ratio * slope, self.ratio * bend
 
     def last_ray(self, theta):
-        """Angle to where the stretch is not analytic."""
+        """Return the angle to the place where the stretch is not analytic."""
         return self.stretch.last_ray(theta)
 
 
 PI = math.pi
-# Displacements from 0 to 1 in a unit of time, as handbooks of cams print them: (up to where, powers, (size, rate, phase)).
+# Displacements from 0 to 1 in a unit of time, as handbooks of cams print them: (end, powers, (size, rate, phase)).
 DISPLACEMENTS = {
     "dwell": [(1.0, [0.0], (0.0, 1.0, 0.0))],
     "parabolic": [(0.5, [0.0, 0.0, 2.0], (0.0, 1.0, 0.0)), (1.0, [-1.0, 4.0, -2.0], (0.0, 1.0, 0.0))],
@@ -134,7 +134,7 @@ DISPLACEMENTS = {
     "poly345": [(1.0, [0.0, 0.0, 0.0, 10.0, -15.0, 6.0], (0.0, 1.0, 0.0))],
     "poly4567": [(1.0, [0.0, 0.0, 0.0, 0.0, 35.0, -84.0, 70.0, -20.0], (0.0, 1.0, 0.0))],
 }
-# Of the modified trapezoid the first half; the second is its image, s(u) = 1 - s(1 - u).
+# First half of the modified trapezoid. The second half is its image, s(u) = 1 - s(1 - u).
 WHOLE = 2.0 + PI
 FIRST_HALF = [
     (0.125, [0.0, 2.0 / WHOLE], (-0.5 / (PI * WHOLE), 4.0 * PI, 0.0)),
@@ -144,7 +144,7 @@ FIRST_HALF = [
 
 
 def imaged(powers, sine):
-    """1 - s(1 - u)."""
+    """Return 1 - s(1 - u)."""
     turned = np.polynomial.Polynomial(powers)(np.polynomial.Polynomial([1.0, -1.0]))
     size, rate, phase = sine
     return (1.0 - turned).coef, (size, rate, -rate - phase)
@@ -156,7 +156,7 @@ DISPLACEMENTS["modified-trapezoid"] = FIRST_HALF + [
 
 
 def program(numbers):
-    """The pieces of standard motions one after the other: angles where they start, and laws."""
+    """Return the pieces of standard motions one after the other: angles where they start, and laws."""
     start, base, starts, laws = 0.0, number(numbers, "base"), [], []
     for part in numbers.get("segment", []):
         span, rise = math.radians(number(part, "span_deg", least=0.0)), number(part, "rise")
@@ -172,7 +172,7 @@ def program(numbers):
 
 
 def polynomials(numbers):
-    """Polynomials of the angle from where they start: angles where they start, and laws."""
+    """Return polynomials of the angle from where they start: angles where they start, and laws."""
     each = [(math.radians(number(part, "start_deg")), part["coefficients"]) for part in numbers.get("segment", [])]
     starts = [start for start, _ in each]
     ends = [*starts[1:], starts[0] + math.tau]
@@ -183,37 +183,37 @@ def polynomials(numbers):
 
 
 class Waves:
-    """A sum of cosines, by its Fourier coefficients."""
+    """Sum of cosines, by its Fourier coefficients."""
 
     def __init__(self, offset, waves):
         self.offset, self.waves = offset, np.array(waves)
         self.k = 1j * np.arange(1, len(waves) + 1)
 
     def law(self, theta):
-        """Lift, and its first and second derivative by the angle."""
+        """Return the lift, and its first and second derivative by the angle."""
         turned = self.waves * np.exp(self.k * theta)
         lift, slope, bend = (float(np.sum(self.k**order * turned).real) for order in range(3))
         return self.offset + lift, slope, bend
 
     def last_ray(self, theta):
-        """No angle: it is analytic everywhere."""
+        """Return infinity: the lift is analytic everywhere."""
         return math.inf
 
 
 def harmonic(numbers):
-    """A sum of cosines all round: the angle where it starts, and its law."""
+    """Return a sum of cosines for the whole turn: the angle where it starts, and its law."""
     phases = np.radians(numbers["phases_deg"])
     return [0.0], [Waves(number(numbers, "offset"), np.array(numbers["amplitudes"]) * np.exp(1j * phases))]
 
 
 def rectified_sine(numbers):
-    """A half wave and its image: angles where they start, and laws."""
+    """Return a half wave and its image: angles where they start, and laws."""
     offset, amplitude = number(numbers, "offset"), number(numbers, "amplitude")
     return [0.0, PI], [Waves(offset, [-1j * sign * amplitude]) for sign in (1.0, -1.0)]
 
 
 def pieces(polynomial):
-    """Angles where the pieces of a piecewise polynomial of one turn start, and laws; its first may start after 0."""
+    """Return the pieces of a piecewise polynomial of one turn: angles where they start, and laws. The first knot may lie after 0."""
     ends = polynomial.x
     found = [
         (low % math.tau, Stretch(low, 1.0, 0.0, 1.0, powers[::-1], centre=0.5 * (low + high)))
@@ -227,29 +227,29 @@ def pieces(polynomial):
 
 
 def table(numbers):
-    """A spline through the rows, by scipy's, or near them: angles where its pieces start, and laws."""
+    """Return a spline through the rows, by SciPy, or near them: angles where its pieces start, and laws."""
     angles, lifts = np.array([(row["angle_deg"], row["lift"]) for row in numbers["rows"]], dtype=float).T
     angles = np.radians(angles)
     if "fitted" not in numbers:
         degree = {"cubic": 3, "quintic": 5}[numbers["spline"]]
         around = np.append(angles, angles[0] + math.tau), np.append(lifts, lifts[0])
         spline = PPoly.from_spline(make_interp_spline(*around, k=degree, bc_type="periodic"))
-        # Without what reaches out of the turn.
+        # Drop the pieces outside the turn.
         return pieces(PPoly(spline.c[:, degree:-degree], spline.x[degree:-degree]))
     return pieces(smoothed(numbers["fitted"], angles, lifts))
 
 
 def smoothed(fitted, angles, lifts):
-    """The quintic with the least integral of c'''^2 + weight sum (c(row) - lift)^2, by least squares.
+    """Return the quintic with the least integral of c'''^2 + weight sum (c(row) - lift)^2, by least squares.
 
-    The integral is a sum of squares: c'''^2 is of degree 4 in each piece, which three points of Gauss take exactly. Lift, slope
-    and curvature are continuous where three knots are in one, lift and slope where four are: at corners. The lift stays where all
-    B-splines that are not 0 have one factor.
+    The integral is a sum of squares: c'''^2 is of degree 4 in each piece, for which Gauss's rule with three points is exact. Lift,
+    slope and curvature are continuous where three knots coincide. At corners four coincide, and only lift and slope are continuous.
+    The lift is constant where all B-splines that are not 0 have one factor.
     """
     corners, dwells = fitted["corners_rad"], fitted["dwells_rad"]
     places = np.unique([*fitted["knots_rad"], *(end for dwell in dwells for end in dwell)])
     inside = np.repeat(places, np.where(np.isin(places, corners), 4, 3))
-    # All that reach into the turn from the first knot on.
+    # All B-splines that reach into the turn from the first knot on.
     count = len(inside)
     around = np.concatenate([inside - math.tau, inside, inside + math.tau])[count - 5 : 2 * count + 6]
     each = BSpline(around, np.eye(count + 5), 5)
@@ -270,12 +270,12 @@ def smoothed(fitted, angles, lifts):
     system = np.vstack([bending, weight * rows]) @ together
     numbers = linalg.lstsq(system, np.append(np.zeros(len(bending)), weight * lifts), lapack_driver="gelsy")[0]
     spline = PPoly.from_spline(BSpline(around, together @ numbers, 5))
-    # Without what reaches out of the turn.
+    # Drop the pieces outside the turn.
     return PPoly(spline.c[:, 5 : 5 + count], spline.x[5 : 6 + count])
 
 
 class Touched:
-    """A stretch of a contour, its radius over the polar angle, as a flat face or a roller touches it."""
+    """Stretch of a contour, its radius over the polar angle, touched by a flat face or a roller."""
 
     def __init__(self, radius, polar, contact):
         self.radius, self.polar, self.is_flat = radius, polar, contact == "flat"
@@ -283,13 +283,14 @@ class Touched:
         self.middle = self.touch(polar)[0]
 
     def touch(self, polar):
-        """Cam angle at which the follower touches there, its rate by the polar angle; lift, and its first and second derivative."""
+        """Return the cam angle at which the follower touches at a polar angle, its rate by the polar angle, the lift, and its first
+        and second derivative."""
         radius, slope, bend = self.radius.law(polar)
         speed = math.hypot(radius, slope)
         turns = (radius**2 + 2.0 * slope**2 - radius * bend) / speed**2
         if not (radius > 0.0 and (turns > 0.0 if self.is_flat else speed + self.roller * turns > 0.0)):
             raise CannotCheck(f"the follower does not touch the contour at its polar angle {polar}")
-        # Along the ray at the polar angle, and to its left.
+        # Complex numbers: the real part is along the ray at the polar angle, the imaginary part to its left.
         normal = complex(radius, -slope) / speed
         leans = math.atan2(normal.imag, normal.real)
         if self.is_flat:
@@ -304,7 +305,7 @@ class Touched:
         return polar + angle, rate, lift, first, -first * tan - lift * (1.0 + tan**2) * (turns / rate - 1.0)
 
     def law(self, theta):
-        """Lift, and its first and second derivative by the angle, from the polar angle that Newton's method finds."""
+        """Return the lift, and its first and second derivative by the angle. Newton's method finds the polar angle."""
         theta = self.middle + math.remainder(theta - self.middle, math.tau)
         polar = self.polar
         for _ in range(50):
@@ -316,12 +317,12 @@ class Touched:
         return tuple(self.touch(polar)[2:])
 
     def last_ray(self, theta):
-        """No angle: it is analytic everywhere."""
+        """Return infinity: the lift is analytic everywhere."""
         return math.inf
 
 
 def contour(numbers):
-    """The follower's lift on a spline of the radius: angles where its pieces start, and laws."""
+    """Return the follower's lift on a contour whose radius is a spline: angles where its pieces start, and laws."""
     starts, radii = table(numbers)
     contact = numbers.get("contact", "point")
     if contact == "point":
@@ -345,7 +346,7 @@ LAWS = {
 
 
 class Cam:
-    """Stretches, each from its first angle on: circles, motions, polynomials, waves, and mirror images of circles."""
+    """Stretches, each from its start angle on: circles, motions, polynomials, waves, and mirror images of circles."""
 
     def __init__(self, numbers):
         if numbers.get("law") == "arcs":
@@ -362,7 +363,8 @@ class Cam:
             self.base, self.circles = ratio * self.base, [Levered(circle, ratio) for circle in self.circles]
 
     def round(self, half):
-        """From `half` before each corner to `half` after it the quintic that has lift, slope and curvature of both there."""
+        """Round each corner. From `half` before it to `half` after it runs the quintic with lift, slope and curvature of both laws at
+        the ends."""
         if not half:
             return
         starts, laws = list(self.starts), list(self.circles)
@@ -371,7 +373,7 @@ class Cam:
             quintic = PPoly.from_bernstein_basis(BPoly.from_derivatives([theta - half, theta + half], ends))
             blend = Stretch(theta - half, 1.0, 0.0, 1.0, quintic.c[::-1, 0], centre=theta)
             starts[self.starts.index(theta)] = theta + half
-            # One that goes over the end of a turn holds both ends of it.
+            # A blend across the end of a turn is entered at both ends of the turn.
             for start in {(theta - half) % math.tau, max(theta - half, 0.0)}:
                 starts.append(start)
                 laws.append(blend)
@@ -386,9 +388,9 @@ class Cam:
             raise CannotCheck("the cam needs 0 <= flank_start_deg < nose_end_deg <= 180")
         self.base = base
         toward_start, toward_end = (np.array([math.cos(angle), math.sin(angle)]) for angle in (start, end))
-        # The flank touches the base circle at `start` from outside it: its centre lies behind the axis.
+        # The flank touches the base circle at `start` and encloses it, so its centre lies behind the axis.
         flank_centre = -(flank - base) * toward_start
-        # The nose touches the flank from inside: their centres are flank - nose apart. The root along the ray at `end`:
+        # The nose touches the flank from inside, so their centres are flank - nose apart. The root along the ray at `end`:
         b, c = toward_end @ flank_centre, flank_centre @ flank_centre - (flank - nose) ** 2
         if flank <= base or flank <= nose or b * b < c or b + math.sqrt(b * b - c) <= 0.0:
             raise CannotCheck("the circles of the cam cannot touch each other")
@@ -400,7 +402,7 @@ class Cam:
             raise CannotCheck(f"cam.contact = {contact!r}: this route cannot check it")
         roller, offset = (number(contact, key) for key in ("roller_radius", "offset")) if is_roller else (0.0, 0.0)
         normal = (nose_centre - flank_centre) / (flank - nose)
-        # A flat face is on two circles where its normal is theirs, a roller where its centre is on the line of motion.
+        # A flat face touches both circles where its normal is theirs; a roller does where its centre is on the line of motion.
         meeting_point = normal if contact == "flat" else flank_centre + (flank + roller) * normal
         meeting = math.atan2(meeting_point[1], meeting_point[0])
         if not start < meeting < end:
@@ -426,7 +428,7 @@ class Cam:
         if end == math.pi:
             del stretches[2]
         stretches = sorted(((first % math.tau, law) for first, law in stretches), key=lambda stretch: stretch[0])
-        # Before the first the last goes on.
+        # The last stretch continues up to the first.
         stretches.insert(0, (0.0, stretches[-1][1]))
         return [first for first, _ in stretches], [law for _, law in stretches]
 
@@ -434,8 +436,8 @@ class Cam:
         return self.circles[bisect_right(self.starts, theta % math.tau) - 1].law(theta)
 
     def corners(self):
-        """(angle, circle before, circle after, angle to the nearest other boundary) of each jump of the curvature."""
-        # Of a short polynomial the rounding would look like a jump.
+        """Yield (angle, circle before, circle after, angle to the nearest other boundary) for each jump of the curvature."""
+        # On a short polynomial, rounding would look like a jump.
         for i, theta in enumerate([] if self.is_rounded else self.starts):
             before, after = self.circles[i - 1], self.circles[i]
             if abs(after.law(theta)[1] - before.law(theta)[1]) > NOISE * self.base:

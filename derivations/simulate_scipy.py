@@ -1,26 +1,26 @@
-"""A and B at the corner impact, by nothing but simulated revolutions: an outside check with SciPy.
+"""A and B at the corner impact from simulated revolutions alone: an independent check with SciPy.
 
-Reads one JSON document from stdin, the numbers of a model file ("follower", "cam", "study"), and writes one to stdout.
-It may know nothing else: no formula of the flow, of A or of B, and no result of the program that starts it. What goes in
-is the equation of motion, Newton's impact and the circles that the cam is made of; the rest is integrated.
+Reads one JSON document from stdin, the numbers of a model file ("follower", "cam", "study"), and writes one to stdout. It uses
+nothing else: no formula of the flow, of A or of B, and no result of the program that starts it. The inputs are the equation of
+motion, Newton's impact and the cam's laws; the rest is integrated.
 
-  1. The cam: circles, and the polar angles where two of them meet with different curvature (the corners).
-  2. The corner impact: leave a corner with v+, fly for T, and be back at the corner with the v- that Newton's law turns into
-     v+. Two conditions for v+ and T; a flight counts if it stays above the cam for the whole revolution.
+  1. The cam: its stretches, and the angles where two of them meet with different curvature (the corners).
+  2. The corner impact: leave a corner with v+, fly for T, and return to the corner with the v- that Newton's law turns into
+     v+. These are two conditions for v+ and T. A flight counts if it stays above the cam for the whole revolution.
   3. The map of either side: the cam's law of that side is continued past the corner, and one revolution is simulated from
-     perturbed (x1, x2, T). A and B are the linear coefficients of a polynomial fitted to where the revolutions end.
+     perturbed (x1, x2, T). A and B are the linear coefficients of a polynomial fitted to the ends of the revolutions.
 
-What limits it, measured against the closed forms (largest error of an entry of A, absolute; of B, relative):
+Limits, measured against the closed forms (largest error of an entry: absolute for A, relative for B):
 
-  - The perturbations' size. With all monomials up to the fourth degree, the bias is of the fifth and falls with the fourth
-    power of the width: for the paper's cam 6e-7 and 4e-7 at 0.2 of the reach, 4e-8 and 2e-8 at 0.1, and so on down to 2e-10
-    at 0.025. From 0.0125 on rounding takes over, 2e-11 and 5e-12, and grows with the inverse width: 6e-11 at 0.003.
-  - The integrator's tolerance hardly: 2e-9 and 4e-9 at 1e-8, 1e-9 at 1e-9, and no difference any more from 1e-11 down.
-  - The event hardly: its state comes from the last step's interpolant. To fly there again from before that step, with
-    Newton's correction, changes nothing that shows; only at strong damping (100 N s/m) is A then 1e-11 off and not 8e-11.
+  - Size of the perturbations. With all monomials up to the fourth degree, the bias is of the fifth degree and falls with the
+    fourth power of the width. For the paper's cam it is 6e-7 and 4e-7 at 0.2 of the reach, 4e-8 and 2e-8 at 0.1, and so on
+    down to 2e-10 at 0.025. From 0.0125 on rounding dominates, 2e-11 and 5e-12. It grows with the inverse width: 6e-11 at 0.003.
+  - Tolerance of the integrator, hardly: 2e-9 and 4e-9 at 1e-8, 1e-9 at 1e-9, and no difference from 1e-11 down.
+  - The event, hardly: its state comes from the last step's interpolant. Flying there again from before that step, with
+    Newton's correction, makes no visible difference. Only at strong damping (100 N s/m) is A then 1e-11 off instead of 8e-11.
 
-The bias is what is left where the cam's law bends fast: 3e-9 and 2e-10 without a spring, at a gravity of 300 m/s^2. The
-standard errors hold it, estimated from a second, wider fit; not what the integrator gets wrong each time alike, 1e-10.
+The bias is what remains where the cam's law bends fast: 3e-9 and 2e-10 without a spring, at a gravity of 300 m/s^2. The standard
+errors include it, estimated from a second, wider fit. They do not include the error that the integrator makes alike each time, 1e-10.
 """
 
 import json
@@ -41,15 +41,15 @@ METHOD = "DOP853"
 # Error allowed per step, relative, and absolute in units of the base radius (for velocities: base radius times omega).
 RTOL = ATOL = 1e-13
 
-# Periods tried per corner, at least, and for each swing of the follower on its spring, before roots are refined.
+# Least number of periods tried per corner, and more for each swing of the follower on its spring, before roots are refined.
 SCAN, SCAN_PER_SWING = 4000, 40
 # Points at which a revolution is compared with the cam, before minima are refined.
 LOOKS = 2000
 # Furthest continuation of a law past its corner, rad.
 REACH = 0.05
-# How far each perturbation moves the impact, about, over the reach. The bias of the wider fit is 2^DEGREE of the other's.
+# Approximate shift of the impact by each perturbation, relative to the reach. The bias of the wider fit is 2^DEGREE times the other's.
 WIDTHS = 0.025, 0.0125
-# Degree of the fitted polynomial, even: the first one left out is odd, so that the bias falls with the width to the DEGREE.
+# Degree of the fitted polynomial. It is even: the first degree left out is odd, so that the bias falls with the width to the DEGREE.
 DEGREE = 4
 LIMITS = (
     "bias of the fit, of the fifth degree in the perturbations, above some hundredths of the reach, and rounding below a "
@@ -58,7 +58,7 @@ LIMITS = (
 
 
 class Follower:
-    """The mass on its spring, flying or hit by the cam."""
+    """Mass on its spring, flying or hit by the cam."""
 
     def __init__(self, numbers):
         self.mass = number(numbers, "mass", least=0.0)
@@ -72,16 +72,16 @@ class Follower:
             raise CannotCheck("stiffness and damping must be at least 0, restitution from 0 to 1")
 
     def origin(self):
-        """Where x1 is measured from: the spring's equilibrium, or where it is slack if it has no stiffness."""
+        """Return the position from which x1 is measured: the spring's equilibrium, or the rest position without stiffness."""
         return self.rest - self.gravity * self.mass / self.stiffness if self.stiffness > 0.0 else self.rest
 
     def motion(self, _, state):
-        """m q'' + b q' + k (q - rest) = -m g."""
+        """Return the rates of q and v, from m q'' + b q' + k (q - rest) = -m g."""
         q, v = state
         return v, -self.gravity - (self.damping * v + self.stiffness * (q - self.rest)) / self.mass
 
     def fly(self, state, start, end, units, **options):
-        """Free flight from `start` to `end`; `units` are a length and a velocity for the absolute tolerance."""
+        """Return the free flight from `start` to `end`. `units` are a length and a velocity for the absolute tolerance."""
         atol = [ATOL * unit for unit in units]
         flight = solve_ivp(self.motion, (start, end), state, method=METHOD, rtol=RTOL, atol=atol, **options)
         if not flight.success or not np.all(np.isfinite(flight.y)):
@@ -96,7 +96,7 @@ class Follower:
 
 
 class CornerImpact:
-    """A flight of one period from a corner to the same corner, found by shooting."""
+    """Flight of one period from a corner to the same corner, found by shooting."""
 
     def __init__(self, follower, cam, corner, guess):
         self.cam, self.follower = cam, follower
@@ -110,7 +110,7 @@ class CornerImpact:
             rebound = follower.rebound(self.cam_velocity(period), v)
             return (q - self.height) / cam.base, (rebound - leaves) / speed
 
-        # v+ and T in units of their guesses; a flight is smooth in both, so that the solver stops at rounding.
+        # v+ and T in units of their guesses. A flight is smooth in both, so that the solver stops at rounding.
         speed = max(abs(guess[0]), cam.base / guess[1])
         found = optimize.root(misses, (guess[0] / speed, 1.0), method="hybr", options={"xtol": 1e-15})
         self.residual = float(np.max(np.abs(found.fun)))
@@ -119,7 +119,7 @@ class CornerImpact:
         orbit = follower.fly(corner, 0.0, self.period, units, dense_output=True)
         self.arrives, self.orbit = float(orbit.y[1, -1]), orbit.sol
         self.closing_speed = self.cam_velocity(self.period) - self.arrives
-        # x* needs no interpolation: fly there.
+        # A flight to x* needs no interpolation.
         self.start = follower.fly(corner, 0.0, 0.5 * self.period, units).y[:, -1]
 
     def units(self, period):
@@ -129,7 +129,7 @@ class CornerImpact:
         return self.slope * math.tau / period
 
     def admissible(self):
-        """It hits the cam at the corner and is above it for the rest of the revolution."""
+        """Return True if the flight hits the cam at the corner and stays above it for the rest of the revolution."""
         if not (self.residual < NOISE and self.closing_speed > NOISE * self.units(self.period)[1]):
             return False
 
@@ -139,32 +139,32 @@ class CornerImpact:
 
         times = np.linspace(0.0, self.period, LOOKS + 1)[1:-1]
         gaps = [gap(t) for t in times]
-        # A minimum between two looks may be lower than both.
+        # A minimum between two samples may be lower than both.
         lows = [times[i - 1 : i + 2 : 2] for i in range(1, len(gaps) - 1) if gaps[i] <= min(gaps[i - 1], gaps[i + 1])]
         lowest = (optimize.minimize_scalar(gap, bounds=between, method="bounded").fun for between in lows)
         return min(gaps) > 0.0 and all(height > 0.0 for height in lowest)
 
 
 def guesses(follower, cam, corner, periods):
-    """(v+, T) near each solution: where the miss changes its sign over the study's periods."""
+    """Yield (v+, T) near each solution, where the miss changes its sign over the study's periods."""
     height, slope, _ = corner[2].law(corner[0])
     units = cam.base, cam.base * math.tau / periods[-1]
-    # The equation of motion is linear, so that two flights over the longest period tell how all others end.
+    # The equation of motion is linear, so that two flights over the longest period give the ends of all others.
     flights = (follower.fly((height, v), 0.0, periods[-1], units, dense_output=True) for v in (0.0, units[1]))
     rest, moving = (flight.sol for flight in flights)
 
     def ends(period):
-        """End of the flight that leaves at rest, and what each unit of v+ adds to it."""
+        """Return the end of the flight that leaves at rest, and what each unit of v+ adds to it."""
         return *rest(period), *(moving(period) - rest(period)) / units[1]
 
     def terms(period):
-        """(v+ - rebound) times q1, which leaves no poles where a flight of that period cannot be aimed, in two parts."""
+        """Return (v+ - rebound) times q1, in two parts. The factor q1 removes the poles, at periods for which a flight cannot be aimed."""
         q0, v0, q1, v1 = ends(period)
         r = follower.restitution
         return (height - q0) * (1.0 + r * v1), q1 * (r * v0 - (1.0 + r) * slope * math.tau / period)
 
     values = sum(terms(periods))
-    # Where every period solves the equation, as for a follower at rest on a dwell, no speed is singled out.
+    # If every period solves the equation, as for a follower at rest on a dwell, no speed is singled out.
     if np.max(np.abs(values)) <= NOISE * np.max(np.abs(terms(periods))):
         return
     for i in np.flatnonzero((values[:-1] < 0.0) != (values[1:] < 0.0)):
@@ -185,7 +185,7 @@ def corner_impact(follower, cam, study):
         raise CannotCheck("at study.rpm_min the follower swings or settles too often in a revolution to be integrated")
     periods = np.geomspace(60.0 / rpm_max, 60.0 / rpm_min, int(tries))
     candidates = [(corner, guess) for corner in cam.corners() for guess in guesses(follower, cam, corner, periods)]
-    # The slowest counts.
+    # The slowest one is taken.
     for corner, guess in sorted(candidates, key=lambda candidate: -candidate[1][1]):
         impact = CornerImpact(follower, cam, corner, guess)
         if impact.admissible():
@@ -198,14 +198,14 @@ def corner_impact(follower, cam, study):
 
 
 class OneSidedMap:
-    """One revolution over a cam with one circle continued past the corner, as deviations from x* and T*."""
+    """One revolution over a cam with one circle continued past the corner, in deviations from x* and T*."""
 
     def __init__(self, impact, circle):
         self.impact, self.circle = impact, circle
         omega, u, v = math.tau / impact.period, impact.closing_speed, abs(impact.arrives)
         jump = abs(impact.after.law(impact.angle)[2] - impact.before.law(impact.angle)[2])
-        # Half of a neighbour keeps the next corner out, a quarter of the way to the last ray keeps the law well analytic; up
-        # to u/(omega jump) the approach stays above the step that a continued law ends with.
+        # Half of the way to a neighbour excludes the next corner, and a quarter of the way to the last ray keeps the law well
+        # analytic. Up to u/(omega jump) the approach stays above the step at the end of a continued law.
         self.reach = min(REACH, 0.5 * impact.room, 0.25 * circle.last_ray(impact.angle), u / (omega * jump))
         if not self.reach > 1e-4:
             raise CannotCheck(f"the cam's law cannot be continued past the corner at {impact.angle} rad")
@@ -213,7 +213,8 @@ class OneSidedMap:
         self.scales = self.reach * np.array([u / omega, u / math.pi, 2.0 * u / (omega * (u + v))])
 
     def revolution(self, perturbation):
-        """(perturbation that survives rounding, where the revolution ends), both as deviations."""
+        """Return (perturbation that survives rounding, end of the revolution), both as deviations. The third number of the end is the
+        height of the follower above the corner when it passes."""
         impact, follower = self.impact, self.impact.follower
         start, period = impact.start + perturbation[:2], impact.period + perturbation[2]
         omega, units = math.tau / period, impact.units(period)
@@ -233,18 +234,18 @@ class OneSidedMap:
         if departure.status == 1:
             raise CannotCheck("a perturbed revolution hits the cam twice")
         survives = np.array([*(start - impact.start), period - impact.period])
-        # How far the follower was above the corner when it passed, at t = 0: it closes in by closing_speed in each second to t.
+        # Height of the follower above the corner at t = 0: it closes at closing_speed until t.
         return survives, np.array([*(departure.y[:, -1] - impact.start), t * impact.closing_speed])
 
     def fit(self, width):
-        """The 2 x 3 matrix [A | B] above the row (e, f), its standard errors from the residual, and the condition number of the design."""
+        """Return the 2 x 3 matrix [A | B] above the row (e, f), its standard errors from the residual, and the design's condition number."""
         scales = width * self.scales
         # One Chebyshev node more than the degree, in each direction, determines the polynomial.
         nodes = np.cos(np.pi * (np.arange(DEGREE + 1) + 0.5) / (DEGREE + 1))
         samples = [self.revolution(scales * z) for z in product(nodes, repeat=3)]
         z = np.array([perturbation for perturbation, _ in samples]) / scales
         ends = np.array([end for _, end in samples])
-        # All monomials up to the degree, so that the map's curvature does not go into the linear ones.
+        # All monomials up to the degree, so that the map's curvature does not enter the linear ones.
         exponents = sorted((e for e in product(range(DEGREE + 1), repeat=3) if sum(e) <= DEGREE), key=sum)
         design = np.column_stack([np.prod(z**e, axis=1) for e in exponents])
         values, _, _, singular = linalg.lstsq(design, ends)
@@ -255,7 +256,7 @@ class OneSidedMap:
         return *per_unit, float(singular[0] / singular[-1])
 
     def estimate(self):
-        """The narrower fit, its standard errors with the bias that the wider one shows, and the condition number."""
+        """Return the narrower fit, its standard errors including the bias that the wider fit shows, and the condition number."""
         wide, _, _ = self.fit(WIDTHS[0])
         values, errors, condition = self.fit(WIDTHS[1])
         bias = (wide - values) / ((WIDTHS[0] / WIDTHS[1]) ** DEGREE - 1.0)
@@ -292,7 +293,7 @@ def check(model):
         "standard_error": {side: entries(errors) for side, (_, errors, _) in maps.items()},
         "condition_number": max(condition for _, _, condition in maps.values()),
         "eigenvalues": {side: eigenvalues(values) for side, (values, _, _) in maps.items()},
-        # Both fits have it; c'' does not enter.
+        # The border is in both fits, since c'' does not enter.
         "border": ((maps["minus"][0][2] + maps["plus"][0][2]) / 2).tolist(),
         "tolerances": {"rtol": RTOL, "atol": ATOL, "method": METHOD},
         "limits": LIMITS,

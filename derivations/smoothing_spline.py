@@ -1,6 +1,7 @@
-"""Periodic quintic smoothing splines of small tables by splines.py, to 40 digits, with what the rows leave of freedom.
+"""Periodic quintic smoothing splines of small tables by splines.py, written to 16 digits, with their degrees of freedom.
 
-The freedom is the trace of what makes lifts of the spline of lifts of the rows: what each row alone puts where it is.
+The freedom is the trace of the matrix that maps the lifts of the rows to the lifts of the spline: the sum of each row's effect on the
+spline at that row.
 """
 
 import numpy as np
@@ -13,16 +14,16 @@ DIGITS = 16
 ROWS = 30
 # Weights with angles in radians: near a circle, between, and near the rows.
 WEIGHTS = ["3e3", "1e6", "1e9"]
-# Where the splines are compared: between rows and at them.
+# Angles, in degrees, at which the splines are compared.
 PLACES = [mpf(11) * k + mpf(k) / 7 for k in range(32)]
 
 
 def spline(angles, lifts, weight, corner=None, dwell=None):
-    """The residuals, what the rows leave of freedom, and lift, slope and curvature at PLACES."""
+    """Return the residuals, the degrees of freedom, and lift, slope and curvature at PLACES."""
     radians = [mp.radians(angle) for angle in angles]
     corners = [] if corner is None else [radians[corner]]
     dwells = [tuple(radians[end] for end in dwell)] if dwell else []
-    # A row inside of a dwell is no knot.
+    # A row inside a dwell is no knot.
     free = [angle for angle in radians if not any(first < angle < last for first, last in dwells)]
     basis = splines.Splines(splines.QUINTIC, splines.knots(free, corners), [first for first, _ in dwells])
     solved, rows = basis.near(radians, weight)
@@ -38,20 +39,20 @@ def spline(angles, lifts, weight, corner=None, dwell=None):
 
 
 def rows():
-    """Uneven angles, and a lift rounded to a hundredth."""
+    """Return uneven angles, and lifts rounded to a hundredth."""
     angles = [mpf(12) * k + mpf(6) / 5 * (mpf(k * k % 7) / 2 - mpf(3) / 2) + 2 for k in range(ROWS)]
     lift = [5 - 4 * mp.cos(mp.radians(angle)) + mp.cos(mp.radians(2 * angle - 30)) for angle in angles]
     return angles, [mpf(int(mp.nint(100 * value))) / 100 for value in lift]
 
 
 def resting(angle, first, last):
-    """A rise to 5 up to `first`, rest there up to `last`, and a return up to 360, rounded to a hundredth."""
+    """Return the lift of a rise to 5 up to `first`, a rest up to `last`, and a return up to 360, rounded to a hundredth."""
     part = angle / first if angle < first else min(mpf(1), (360 - angle) / (360 - last))
     return mpf(int(mp.nint(500 * (10 * part**3 - 15 * part**4 + 6 * part**5)))) / 100
 
 
 def scipys():
-    """The largest difference of a B-spline and its third derivative from scipy's, over a turn."""
+    """Return the largest difference of some B-splines and their third derivatives from SciPy's."""
     angles, _ = rows()
     basis = splines.Splines(splines.QUINTIC, [mp.radians(angle) for angle in angles])
     worst = 0.0
@@ -67,7 +68,7 @@ def scipys():
 
 
 def document():
-    """Splines of one table: plain ones, one with a corner, one with a dwell."""
+    """Return splines over the same angles: plain ones, one with a corner, one with a dwell."""
     angles, _ = rows()
     cases = [{"weight": weight} for weight in WEIGHTS]
     cases += [{"weight": "1e6", "corner": 11}, {"weight": "1e6", "dwell": [13, 17]}]

@@ -1,16 +1,17 @@
 """Periodic splines through the rows of a table, or near them, by B-splines whose pieces are polynomials from the start.
 
-A B-spline of degree d on knots t is one of degree 0 taken up by the recursion of Cox and de Boor, piece by piece,
+A B-spline of degree d on knots t follows from those of degree 0 by the recursion of Cox and de Boor, piece by piece,
 
     B_{j,d} = (x - t_j)/(t_{j+d} - t_j) B_{j,d-1} + (t_{j+d+1} - x)/(t_{j+d+1} - t_{j+1}) B_{j+1,d-1},
 
-so that derivatives and integrals are those of polynomials. A spline is a sum of them, and the least of
+so that derivatives and integrals are those of polynomials. A spline is a sum of B-splines. The minimum of
 
     integral of c'''^2 + weight sum over rows of (c(row) - lift)^2
 
-is one symmetric system for the numbers in that sum. Where three knots are in one, lift, slope and curvature are continuous, and the
-least has the third and fourth derivative so as well, unless rows are between the knots; at a corner four are, and only lift and slope
-are continuous. On a piece all B-splines sum to 1, so that the curve stays where the numbers of all that are not 0 there are one.
+is one symmetric system for the factors in that sum. Where three knots coincide, lift, slope and curvature are continuous. The minimum
+then has continuous third and fourth derivatives as well, unless rows lie between the knots. At a corner four knots coincide, and only
+lift and slope are continuous. On a piece all B-splines sum to 1, so that the curve is constant where all B-splines that are not 0
+have one factor.
 """
 
 from bisect import bisect_right
@@ -21,7 +22,7 @@ QUINTIC = 5
 
 
 def times(one, two):
-    """The product of two polynomials."""
+    """Return the product of two polynomials."""
     product = [mpf(0)] * (len(one) + len(two) - 1)
     for i, a in enumerate(one):
         for j, b in enumerate(two):
@@ -30,14 +31,14 @@ def times(one, two):
 
 
 def derived(powers, order):
-    """A derivative of a polynomial."""
+    """Return a derivative of a polynomial."""
     for _ in range(order):
         powers = [k * power for k, power in enumerate(powers)][1:]
     return powers
 
 
 class Splines:
-    """All splines of a degree on the knots of a turn, repeated ones among them; each is told by one number for a column."""
+    """All splines of a degree on the knots of a turn, which may coincide. One number for each column gives a spline."""
 
     def __init__(self, degree, knots, dwells=()):
         self.degree, self.knots = degree, knots
@@ -56,21 +57,21 @@ class Splines:
         return self.knots[inside] + turns * 2 * mp.pi
 
     def over(self, piece):
-        """The B-splines that are not 0 on a piece."""
+        """Return the indices of the B-splines that are not 0 on a piece."""
         return range(piece - self.degree, piece + 1)
 
     def place(self, angle):
-        """The piece that holds an angle of a turn; before the first knot it is the last one."""
+        """Return the piece that holds an angle of a turn. Before the first knot it is the last piece."""
         return self.pieces[bisect_right(self.starts, angle) - 1]
 
     def polynomials(self, piece):
-        """Each column that counts on a piece, with its polynomial in the angle from the start of the piece."""
+        """Return the columns that are not 0 on a piece, each with its polynomial in the angle from the start of the piece."""
         start, found = self.at(piece), {piece: [mpf(1)]}
         for degree in range(1, self.degree + 1):
             taken_up = {}
             for index in range(piece - degree, piece + 1):
                 total = [mpf(0)] * (degree + 1)
-                # x - t_j rises from its left knot, t_{j+d+1} - x falls to its right one.
+                # x - t_j rises from its left knot, and t_{j+d+1} - x falls to its right one.
                 for below, knot, sign in ((index, index, 1), (index + 1, index + degree + 1, -1)):
                     width = self.at(below + degree) - self.at(below)
                     if width and below in found:
@@ -85,14 +86,14 @@ class Splines:
         return columns
 
     def values(self, angle, order=0):
-        """A derivative at an angle of a turn, of each column that counts there."""
+        """Return a derivative, at an angle of a turn, of each column that is not 0 there."""
         piece = self.place(angle)
         x = angle - self.at(piece)
         x += 2 * mp.pi if x < 0 else 0
         return {column: mp.polyval(derived(powers, order)[::-1], x) for column, powers in self.basis[piece].items()}
 
     def bending(self):
-        """The integral of the product of the third derivatives of every two columns, row by row."""
+        """Return the integral of the product of the third derivatives of every two columns, row by row."""
         form = [{} for _ in range(self.count)]
         for piece in self.pieces:
             width = self.at(piece + 1) - self.at(piece)
@@ -105,7 +106,8 @@ class Splines:
         return form
 
     def near(self, angles, weight):
-        """The system for the least of the integral and the weighted sum, for as many columns of lifts as are asked for later."""
+        """Return the solved system for the minimum of the integral and the weighted sum, and the rows. Lifts are given later, any
+        number of times. If the weight is None, only the sum is minimised."""
         system = self.bending() if weight is not None else [{} for _ in range(self.count)]
         rows = [self.values(angle) for angle in angles]
         for row in rows:
@@ -113,16 +115,16 @@ class Splines:
         return Solved(system), rows
 
     def through(self, angles, lifts):
-        """The numbers of the spline that has these lifts where as many knots are as rows: the least squares are 0."""
+        """Return the numbers of the spline through these lifts, if there are as many knots as rows: then the least squares are 0."""
         return self.fitted(angles, lifts, None)
 
     def fitted(self, angles, lifts, weight):
-        """The numbers of the spline of a weight near these lifts."""
+        """Return the numbers of the spline of a weight near these lifts."""
         solved, rows = self.near(angles, weight)
         return solved.solve(seen(rows, lifts, 1 if weight is None else weight, self.count))
 
     def powers(self, numbers):
-        """The pieces of one spline: [(angle where each starts, powers of the angle from there)]."""
+        """Yield the pieces of one spline: (angle where the piece starts, powers of the angle from there)."""
         for piece, start in zip(self.pieces, self.starts):
             total = [mpf(0)] * (self.degree + 1)
             for column, powers in self.basis[piece].items():
@@ -131,14 +133,14 @@ class Splines:
 
 
 def add(system, row, weight):
-    """weight times the product of every two entries of a row."""
+    """Add weight times the product of every two entries of a row to a system."""
     for one, left in row.items():
         for two, right in row.items():
             system[one][two] = system[one].get(two, mpf(0)) + weight * left * right
 
 
 def seen(rows, lifts, weight, count):
-    """weight times the transposed rows times lifts."""
+    """Return weight times the transposed rows times the lifts."""
     right = [mpf(0)] * count
     for row, lift in zip(rows, lifts):
         for column, value in row.items():
@@ -147,7 +149,7 @@ def seen(rows, lifts, weight, count):
 
 
 class Solved:
-    """A symmetric positive system, eliminated once; most of its entries are 0 and stay so."""
+    """Symmetric positive system, eliminated once. Most of its entries are 0 and stay 0."""
 
     def __init__(self, system):
         self.pivots, self.below = [], []
@@ -172,5 +174,5 @@ class Solved:
 
 
 def knots(angles, corners):
-    """Knots of a quintic, three at each of these angles, and four where it is a corner."""
+    """Return the knots of a quintic, three at each of these angles, and four at a corner."""
     return [angle for angle in sorted(set(angles)) for _ in range(4 if angle in corners else 3)]

@@ -1,7 +1,7 @@
-"""What runs end on over twenty speeds: seed, continue, match by a plain loop over the baseline, beside `speeds`.
+"""Attractors at twenty speeds: seed, continue and match by a plain loop over the baseline, beside `speeds`.
 
-The loop is the one that global continuation makes over any integrator: at each speed some starts by chance, and where the
-attractors of the speed before ended; runs of a fixed length; what their last revolutions look like; alike is one attractor.
+Global continuation makes this loop over any integrator. At each speed, some starts are random, and others are where the attractors of
+the speed before ended. Runs have a fixed length, and their last revolutions are compared. Runs that are alike are one attractor.
 """
 
 import collections
@@ -13,15 +13,15 @@ import time
 
 SPEEDS = [660.0 + 5.0 * k for k in range(20)]
 STARTS = 50
-# Revolutions of a run, those of its end that are looked at, and the longest period among them.
+# Revolutions of a run, revolutions at its end that are compared, and the longest period among them.
 LENGTH, LOOKED_AT, LONGEST = 800, 64, 16
-# Angles closer than this, rad, are one; a velocity below this, m/s, rests.
+# Angles closer than this, rad, are the same. A relative velocity below this, m/s, is a rest.
 ALIKE, RESTS = 1e-4, 1e-5
 IRREGULAR = "does not repeat"
 
 
 def lift(circles, theta):
-    """c and dc/dtheta in doubles."""
+    """Return c and dc/dtheta in doubles."""
     circle = [one for one in circles if one[0] <= theta][-1]
     _, distance, direction, radius = circle
     sin, cos = math.sin(theta - direction), math.cos(theta - direction)
@@ -30,7 +30,7 @@ def lift(circles, theta):
 
 
 def on_cam(circles, rpm, restitution, chance):
-    """A start by chance: on the cam anywhere, up to the velocity that impacts keep up."""
+    """Return a random start on the cam, with a relative velocity up to what impacts keep up."""
     steepest = max(abs(lift(circles, math.tau * k / 720)[1]) for k in range(720))
     omega, theta = rpm * math.tau / 60, math.tau * chance.random()
     height, slope = lift(circles, theta)
@@ -39,7 +39,7 @@ def on_cam(circles, rpm, restitution, chance):
 
 
 def look(impacts, cam_velocity):
-    """What the last revolutions of a run are: (revolutions, impacts), or IRREGULAR."""
+    """Return (revolutions, impacts) of the last revolutions of a run, or IRREGULAR."""
     begin = (LENGTH - LOOKED_AT) * math.tau
     turns = collections.defaultdict(list)
     for turned, angle, _, after in impacts:
@@ -59,7 +59,7 @@ def alike(one, other):
 
 
 def by_loop(program, model, circles, restitution):
-    """For each speed the attractors with how many of the starts end on each, and the time that took."""
+    """Return the attractors at each speed, with the number of starts that end on each, and the time that it took."""
     chance, before, found = random.Random(1), {}, {}
     began = time.perf_counter()
     for rpm in SPEEDS:
@@ -77,7 +77,7 @@ def by_loop(program, model, circles, restitution):
 
 
 def by_speeds(program, model):
-    """The same from `speeds`; what rests, or does not repeat, is IRREGULAR there, too."""
+    """Return the same from `speeds`. A motion that rests, or does not repeat, is IRREGULAR there as well."""
     began = time.perf_counter()
     words = ["speeds", str(model), "--rpm", f"{SPEEDS[0]}:{SPEEDS[-1]}", "--step", "5", "--starts", str(STARTS), "--json"]
     done = subprocess.run([str(program), *words], capture_output=True, text=True, check=True)
@@ -99,7 +99,7 @@ def words(counts):
 
 
 def table(loop, program, model, circles, restitution):
-    """Head and rows; a speed at which both find the same attractors is one of a number."""
+    """Return head and rows. Speeds at which both find the same single attractor are only counted."""
     (there, slow), (here, fast) = by_loop(loop, model, circles, restitution), by_speeds(program, model)
     rows = [["time", f"{slow:.1f} s", f"{fast:.1f} s"]]
     same = [rpm for rpm in SPEEDS if set(there[rpm]) == set(here[rpm])]

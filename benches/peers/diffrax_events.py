@@ -1,6 +1,6 @@
 """Diffrax: an adaptive Runge-Kutta method compiled by JAX, with the gap as its event and Newton's method for the event's root.
 
-The circle is an argument of the compiled function, so that one compilation serves all flights; across corners the circle follows
+The circle is an argument of the compiled function, so that one compilation serves all flights. Across corners, the circle follows
 from the angle. Times and states are doubles.
 """
 
@@ -14,13 +14,13 @@ import optimistix
 
 import problem as common
 
-# Its documentation starts with Tsit5 and these tolerances; and the eighth-order method with tolerances that its steps still meet.
+# The options with which its documentation starts; and the eighth-order method with tolerances that its steps still meet.
 OPTIONS = {"default": (diffrax.Tsit5, 1e-6, 1e-9), "tightest": (diffrax.Dopri8, 1e-12, 1e-14)}
 MOST_STEPS = 100_000
 
 
 class Peer:
-    # From 0 the gap does not change its sign.
+    # A gap that starts at exactly 0 does not change its sign.
     above = 1e-15
 
     def __init__(self, problem, tolerance):
@@ -51,7 +51,7 @@ class Peer:
 
         self.numbers = {id(arc): index for index, arc in enumerate(problem.arcs)} | {id(None): -1}
         self.flight = fly
-        # Compiled outside the time that counts.
+        # Compile before the time that is measured.
         self.fly(0.0, problem.state, 1e-6, problem.arcs[0])
 
     def fly(self, t, state, end, arc):

@@ -1,19 +1,19 @@
 """heyoka.py: a Taylor integrator compiled for the follower over one circle, with the gap as its terminal event.
 
-The event's equation must be analytic over a step, so that corners cannot be integrated across: the circle is given by
-parameters, and the run is restarted where it changes. The cooldown after an event is left as the library deduces it.
+The event's equation must be analytic over a step, so that flights cannot be integrated across corners. The circle is given by
+parameters, and the run is restarted where the circle changes. The cooldown after an event is the library's own.
 """
 
 import heyoka as hy
 
 import problem as common
 
-# Its default is machine precision already.
+# The default is already machine precision.
 OPTIONS = {"default": {}, "tightest": {"high_accuracy": True}}
 
 
 class Peer:
-    # The cooldown passes over the root where it starts.
+    # The cooldown skips the root at the start of a flight.
     above = 0.0
 
     def __init__(self, problem, tolerance):

@@ -1,14 +1,14 @@
-"""What every peer is given and what it hands back: the follower, the cam, and the loop around its flights.
+"""The problem that every peer is given: the follower, the cam, and the loop around its flights.
 
-A peer is a class with a constructor `Peer(problem, tolerance)`, a height `above` the cam, m, where flights start after an
-impact (0, or an ulp or two where a gap of exactly 0 is not understood), and a method
+A peer is a class with a constructor `Peer(problem, tolerance)`. Its `above` is the height above the cam, m, at which flights start
+after an impact: 0, or an ulp or two if the peer does not accept a gap of exactly 0. It has a method
 
     fly(t, state, end, arc) -> (t, state, hit)
 
-that integrates the free flight from `t` to `end` at the latest, s since the start of the run, and stops where the gap
-between follower and cam turns negative. With an `arc` the cam is that circle alone (restarted at corners, as a careful user
-does); with None it is the whole cam (integrated across corners, as a user would at first). `main` reads a task from stdin
-and writes the results to stdout; the peer is built outside the time that counts.
+The method integrates the free flight from `t` to `end` at the latest, s since the start of the run, and stops where the gap between
+follower and cam turns negative. With an `arc` the cam is that circle alone: the run is restarted at corners, as by a careful user.
+With None it is the whole cam: flights are integrated across corners, as a user would do at first. `main` reads a task from stdin and
+writes the results to stdout. The peer is built outside the time that is measured.
 """
 
 import json
@@ -17,18 +17,18 @@ import sys
 import time
 from bisect import bisect_right
 
-# A flight that is further below the cam than this has passed through it, m.
+# A flight that is deeper than this below the cam has passed through it, m.
 THROUGH = 1e-9
-# Impacts in a row at one instant after which a run does not advance any more.
+# Impacts in a row at one instant after which a run counts as standing still.
 STANDSTILL = 1000
-# Impacts that are handed back at most; the rest is counted.
+# Most impacts that are returned; the rest is only counted.
 KEPT = 10_000
-# Points at which a flight is looked at afterwards, in closed form, for having passed through the cam.
+# Points at which a flight is checked afterwards, in closed form, for having passed through the cam.
 LOOKS = 100
 
 
 class Arc:
-    """A circle of the cam's outline about (distance, direction): `c = kappa cos phi + sqrt(rho^2 - kappa^2 sin^2 phi)`."""
+    """Circle of the cam's outline about (distance, direction): `c = kappa cos phi + sqrt(rho^2 - kappa^2 sin^2 phi)`."""
 
     def __init__(self, distance, direction, radius):
         self.distance, self.direction, self.radius = distance, direction, radius
@@ -45,7 +45,7 @@ class Arc:
 
 
 class Problem:
-    """An undamped follower over a turning cam, from a start."""
+    """Undamped follower over a turning cam, from a start."""
 
     def __init__(self, task, start):
         self.omega0_squared, self.equilibrium, self.restitution, self.omega = (
@@ -63,7 +63,7 @@ class Problem:
         return self.arcs[bisect_right(self.starts, theta % math.tau) - 1]
 
     def gap(self, t, q, arc=None):
-        """Height of the follower above the cam, m: the event function."""
+        """Return the height of the follower above the cam, m: the event function."""
         theta = self.angle(t)
         return q - (arc or self.arc_at(theta)).lift(theta)
 
@@ -71,7 +71,7 @@ class Problem:
         return -self.omega0_squared * (q - self.equilibrium)
 
     def stretches(self):
-        """(arc, time when it ends) for one arc after the other, from the start of the run on."""
+        """Yield (arc, time when it ends) for one arc after the other, from the start of the run on."""
         index = bisect_right(self.starts, self.start_angle) - 1
         for turn in range(sys.maxsize):
             for k in range(index if turn == 0 else 0, len(self.arcs)):
@@ -79,7 +79,7 @@ class Problem:
                 yield self.arcs[k], (ends - self.start_angle) / self.omega
 
     def passed_through(self, t, state, end):
-        """The first look at which a flight, in closed form, is below the cam: (t, depth), or None."""
+        """Return (t, depth) of the first sample at which a flight, in closed form, is below the cam; None if there is none."""
         omega0, (q, v) = math.sqrt(self.omega0_squared), state
         for k in range(1, LOOKS):
             s = (end - t) * k / LOOKS
@@ -91,7 +91,7 @@ class Problem:
 
 
 def run(problem, peer, restart, look, seconds):
-    """One run: flights and Newton's impacts, to the end of the turn or as far as the peer gets."""
+    """Run flights and Newton's impacts to the end of the turn, or as far as the peer gets, and return the results."""
     impacts, count, standing, t, state = [], 0, 0, 0.0, list(problem.state)
     stretches = problem.stretches() if restart else iter([(None, problem.end)])
     arc, ends = next(stretches)

@@ -1,8 +1,8 @@
-"""The runs that every peer is measured against: events of the closed form at fifty digits, computed afresh each time.
+"""The runs that every peer is measured against: events of the closed form at fifty digits, computed anew each time.
 
-It shares no code with what it judges. A gap is scanned on each circle of the cam in steps of a degree or less; where it has a
-minimum between two points, that is found first, so that no contact hides there; a change of sign is then refined by
-bisection and the secant rule until nothing moves. Numbers of the model are taken as the doubles that every program reads.
+The reference shares no code with the peers. A gap is scanned on each circle of the cam in steps of a degree or less. A minimum
+between two points is found first, so that no contact is missed there. A change of sign is then refined by bisection and the secant
+rule until nothing changes. The numbers of the model are the doubles that every program reads.
 """
 
 import math
@@ -17,7 +17,7 @@ STEP = math.radians(1.0)
 
 @dataclass
 class Circle:
-    """Seen from the cam's axis: c = kappa cos phi + sqrt(rho^2 - kappa^2 sin^2 phi), phi = theta - direction."""
+    """Circle seen from the cam's axis: c = kappa cos phi + sqrt(rho^2 - kappa^2 sin^2 phi), phi = theta - direction."""
 
     start: mp.mpf
     distance: mp.mpf
@@ -25,7 +25,7 @@ class Circle:
     radius: mp.mpf
 
     def law(self, theta):
-        """c and dc/dtheta."""
+        """Return c and dc/dtheta."""
         sin, cos = mp.sin(theta - self.direction), mp.cos(theta - self.direction)
         kappa = self.distance
         root = mp.sqrt(self.radius**2 - (kappa * sin) ** 2)
@@ -51,7 +51,7 @@ class Reference:
     def outline(number):
         base, flank, nose = (number[f"{name}_radius"] for name in ("base", "flank", "nose"))
         rise, top = (mp.radians(number[name]) for name in ("flank_start_deg", "nose_end_deg"))
-        # Tangency: the flank's centre opposite R, the nose's on the ray of Q and |O1 O2| = rho1 - rho2.
+        # Tangency: the flank's centre is opposite R, the nose's is on the ray of Q, and |O1 O2| = rho1 - rho2.
         out, apart, span = flank - base, flank - nose, top - rise
         reach = mp.sqrt(apart**2 - (out * mp.sin(span)) ** 2) - out * mp.cos(span)
         # P lies on the line through both centres; in axes with R at angle 0 the flank's centre is (-out, 0).
@@ -70,7 +70,7 @@ class Reference:
 
     @property
     def corner(self):
-        """P, where the flank meets the nose."""
+        """Angle of P, where the flank meets the nose."""
         return self.circles[2].start
 
     def circle_at(self, theta):
@@ -82,7 +82,7 @@ class Reference:
         return position, state[1] * cos - self.omega0 * offset * sin
 
     def first_contact(self, theta, state, circle, span):
-        """Time of the first contact with `circle` within `span`, s, or None."""
+        """Return the time of the first contact with `circle` within `span`, s, or None."""
 
         def gap(t):
             (q, v), (lift, slope) = self.flight(state, t), circle.law(theta + self.omega * t)
@@ -97,7 +97,7 @@ class Reference:
                 lowest = refine(lambda t: gap(t)[1], low, high)
                 if gap(lowest)[0] < 0:
                     return refine(lambda t: gap(t)[0], low, lowest)
-            # Off the cam at the start of a flight the gap is 0 and opens: it closes only after its maximum.
+            # At the start of a flight from the cam the gap is 0 and grows. It closes only after its maximum.
             if at_high[0] < 0:
                 if low == 0 and at_low[1] > 0:
                     low = refine(lambda t: gap(t)[1], low, high)
@@ -106,7 +106,7 @@ class Reference:
         return None
 
     def run(self, theta, state, turn, most=10**9):
-        """Impacts as (turned, cam angle, v-, v+) until the cam has turned by `turn` or `most` have happened."""
+        """Return impacts as (turned, cam angle, v-, v+) until the cam has turned by `turn` or `most` impacts have happened."""
         theta, state, turned, impacts = mp.mpf(theta), tuple(map(mp.mpf, state)), mp.mpf(0), []
         index = self.circles.index(self.circle_at(theta))
         while turned < turn and len(impacts) < most:
@@ -128,7 +128,7 @@ class Reference:
         return impacts
 
     def graze(self, touch, back, offset):
-        """The start, `back` rad before, of a flight that is `offset` above the cam at `touch` and has its velocity there."""
+        """Return the start, `back` rad before, of a flight that is `offset` above the cam at `touch` and has the cam's velocity there."""
         touch = mp.mpf(touch)
         lift, slope = self.circle_at(touch).law(touch)
         theta = touch - mp.mpf(back)
@@ -136,12 +136,12 @@ class Reference:
 
 
 def refine(function, low, high):
-    """The root between two signs: bisection and the secant rule in turn, until nothing moves."""
+    """Return the root between two signs: bisection and the secant rule in turn, until nothing changes."""
     at_low, at_high = function(low), function(high)
     tolerance = mp.mpf(10) ** (-DIGITS + 8) * high
     while high - low > tolerance:
         for middle in (high - at_high * (high - low) / (at_high - at_low), (low + high) / 2):
-            # A step aside, so that both ends close in.
+            # A step to either side, so that both ends close in.
             for probe in (middle, middle + tolerance / 4, middle - tolerance / 4):
                 if not low < probe < high:
                     continue

@@ -1,9 +1,9 @@
-"""The same cam by every peer, on this machine, in one go: time beside accuracy.
+"""Time and accuracy of every peer on the same cam, measured together on this machine.
 
   python run.py [--quick] [--only NAME] [--question time|grazes|chattering|attractors] [--markdown FILE]
 
-Prints one table per question, in Markdown, with the machine and the versions above them; `--markdown` writes the same to a
-file. What is asked, and how each peer is started, is in README.md.
+Prints one table per question, in Markdown, with the machine and the versions above them; `--markdown` writes the same to a file.
+README.md says what each question is and how each peer is started.
 """
 
 import argparse
@@ -29,7 +29,7 @@ ROOT = HERE.parents[1]
 MODEL = ROOT / "models/osorio-2008.toml"
 PROGRAM = ROOT / "target/release/corner-impact"
 
-# Name, command, tolerance, restarted at corners (None: has neither).
+# Name, variant, command, tolerance, and True if restarted at corners (None for both: the peer has neither).
 PEERS = [
     ("diffrax", "default, across", [sys.executable, "diffrax_events.py"], "default", False),
     ("diffrax", "default, restarted", [sys.executable, "diffrax_events.py"], "default", True),
@@ -52,16 +52,16 @@ PEERS = [
     ("scan and bisect", "256 steps a revolution", [str(ROOT / "target/release/baseline")], None, None),
     ("corner-impact", "", [str(PROGRAM)], None, None),
 ]
-# The paper's x* on the cam's coordinates, to the digits that every program is given.
+# The paper's x* in the cam's coordinates, to the digits that every program is given.
 START = 5.397, 0.0
 ROUNDS = 5
 REVOLUTIONS, CHAOTIC_REVOLUTIONS = 100, 300
-# A run is lost, in chaos, once an impact is off by this much, rad.
+# A chaotic run is lost once an impact is off by this much, rad.
 LOST = 1e-3
 # Where and how deep flights dip into the cam: tangent to the nose, from several starts, so that no grid is lucky.
 TOUCHES, BACKS = (2.70, 2.74, 2.78), (0.25, 0.29, 0.33, 0.37, 0.41, 0.45, 0.49, 0.53)
 DEPTHS = range(2, 15)
-# Longest that one run may take, s, and a process for all of its runs.
+# Longest time for one run, s, and for a process with all of its runs.
 SECONDS, PROCESS_SECONDS = 30.0, 180.0
 NOT_THERE = "not there"
 
@@ -71,7 +71,7 @@ def model():
 
 
 class Answerless(Exception):
-    """A peer gave no answer; why."""
+    """A peer gave no answer. The message says why."""
 
 
 def task_for(reference, rpm, starts, turn, **options):
@@ -83,7 +83,7 @@ def task_for(reference, rpm, starts, turn, **options):
 
 
 def ask(peer, task):
-    """The results of a peer, one for each start."""
+    """Return the results of a peer, one for each start. Raise Answerless if it gives none."""
     name, _, command, tolerance, restart = peer
     if not Path(command[0]).is_absolute():
         command = [str(HERE / command[0])]
@@ -102,11 +102,11 @@ def ask(peer, task):
 
 
 def simulate(task, start):
-    """The project's own program by its command line; the wall time is that of the simulation, from its summary."""
+    """Return the results of the project's own program, run by its command line. The wall time is that of the simulation, from its summary."""
     angle, q, v = start
     common = [str(PROGRAM), "simulate", str(MODEL), "--rpm", repr(task["rpm"])]
     common += ["--start-angle", repr(angle), "--state", f"{q!r},{v!r}"]
-    # A run of part of a revolution is asked for its first impact only.
+    # A run of less than a revolution is asked for its first impact only.
     revolutions = task["turn"] / math.tau
     length = ["--revolutions", str(round(revolutions))] if revolutions >= 1.0 else ["--impacts", "1"]
     with tempfile.TemporaryDirectory() as folder:
@@ -137,7 +137,7 @@ def simulate(task, start):
 
 
 def phase_errors(impacts, reference):
-    """|phase error| of each impact, rad, until one is missing or another one has come between."""
+    """Return |phase error| of each impact, rad. It is infinite where an impact is missing or another one has come between."""
     errors = []
     for (turned, angle, *_), (wanted_turned, wanted_angle, *_) in zip(impacts, reference):
         error = abs(float(mp.fmod(mp.mpf(angle) - wanted_angle + mp.pi, 2 * mp.pi) - mp.pi))
@@ -149,14 +149,14 @@ def phase_errors(impacts, reference):
 
 
 def speed_and_accuracy(peers, quick):
-    """Time a revolution at 700 rpm with the phase error at the end, and how long chaos at 670 rpm is followed."""
+    """Measure the time of a revolution at 700 rpm with the phase error at the end, and how long chaos at 670 rpm is followed."""
     turn, long_turn = (math.tau * (10 if quick else revolutions) for revolutions in (REVOLUTIONS, CHAOTIC_REVOLUTIONS))
     calm, wild = Reference(model(), 700), Reference(model(), 670)
     start = float(calm.corner + mp.pi), *START
     steady, chaos = calm.run(start[0], start[1:], turn), wild.run(start[0], start[1:], long_turn)
     times, results = {peer: [] for peer in peers}, {}
     task = task_for(calm, 700.0, [start], turn)
-    # Round after round, so that a slow spell of the machine falls on all.
+    # Round after round, so that a slow spell of the machine affects all peers.
     for _ in range(1 if quick else ROUNDS):
         for peer in peers:
             try:
@@ -201,11 +201,12 @@ def milliseconds(seconds):
 
 
 def grazes(peers, quick):
-    """The shallowest dip below the cam that is told from a flight as far above it, at all starts and all greater depths."""
+    """Find the shallowest dip below the cam that is found from all starts, with all deeper ones. Also count hits of flights that pass
+    above."""
     reference = Reference(model(), 700)
     backs = BACKS[::4] if quick else BACKS
     places = [(touch, back) for touch in TOUCHES for back in backs]
-    # Far enough for the widest dip, and not so far that a flight comes back.
+    # Far enough for the widest dip, and not so far that a flight returns.
     turn = max(backs) + 0.15
 
     def start(place, offset):
@@ -239,20 +240,20 @@ def grazes(peers, quick):
 
 
 def near(result, back):
-    """Whether there is an impact near the graze."""
+    """Return True if there is an impact near the graze."""
     return any(abs(turned - back) < 0.15 for turned, *_ in result["impacts"])
 
 
 def shallowest(missed):
-    """The depth before the first one that was missed."""
+    """Return the depth before the first one that was missed."""
     first = min(missed, default=max(DEPTHS) + 1)
     return f"1e-{first - 1} m" if first > min(DEPTHS) else f"misses 1e-{first} m"
 
 
 def chattering(peers, quick):
-    """One revolution at 183 rpm from a flight that ends in impacts without number, sticking and release."""
+    """Run one revolution at 183 rpm from a flight that ends in infinitely many impacts, sticking and release."""
     reference = Reference(model(), 183)
-    # Released at P, where the cam's acceleration jumps, and looked at 0.3 rad later.
+    # The follower is released at P, where the cam's acceleration jumps. The start is 0.3 rad later.
     theta = reference.corner + mp.mpf("0.3")
     lift, slope = reference.circle_at(reference.corner).law(reference.corner)
     start = theta, *reference.flight((lift, reference.omega * slope), mp.mpf("0.3") / reference.omega)
@@ -279,7 +280,7 @@ def chattering(peers, quick):
 
 
 def global_answer(peers, quick):
-    """What runs end on over twenty speeds, and how many starts on each."""
+    """Find the attractors at twenty speeds, and how many starts end on each."""
     loop = ROOT / "target/release/baseline"
     reference = Reference(model(), 700)
     circles = task_for(reference, 700.0, [], 0.0)["problem"]["arcs"]
@@ -295,7 +296,7 @@ QUESTIONS = {
 
 
 def machine():
-    """What the numbers were measured on, without naming the machine."""
+    """Return the kind of machine and the versions with which the numbers were measured, without naming the machine."""
     cpu = next(line.split(":")[1].strip() for line in Path("/proc/cpuinfo").read_text().splitlines() if "model name" in line)
     cores = sum(line.startswith("processor") for line in Path("/proc/cpuinfo").read_text().splitlines())
     release = platform.freedesktop_os_release()["PRETTY_NAME"]

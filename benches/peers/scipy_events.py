@@ -1,4 +1,4 @@
-"""SciPy: `solve_ivp` with a terminal event with a direction and dense output, restarted after every impact."""
+"""SciPy: `solve_ivp` with a directed terminal event and dense output, restarted after every impact."""
 
 import sys
 
@@ -6,12 +6,12 @@ from scipy.integrate import solve_ivp
 
 import problem as common
 
-# The documentation's defaults; and the eighth-order method at the smallest rtol that it does not replace, 100 eps.
+# The documentation's defaults; and the eighth-order method at the smallest rtol that SciPy does not replace, 100 eps.
 OPTIONS = {"default": {}, "tightest": {"method": "DOP853", "rtol": 2.221e-14, "atol": 1e-15}}
 
 
 class Peer:
-    # At exactly 0 the root that it finds for a hop of one step is the hop's start.
+    # With a gap of exactly 0, the root that it finds for a hop of one step is the start of the hop.
     above = sys.float_info.epsilon
 
     def __init__(self, problem, tolerance):

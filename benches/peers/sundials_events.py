@@ -4,18 +4,18 @@ from sksundae.cvode import CVODE
 
 import problem as common
 
-# The documentation's defaults (BDF, rtol 1e-5, atol 1e-6, 500 steps); and its method for problems that are not stiff at the
-# smallest tolerances at which it still steps.
+# The documentation's defaults (BDF, rtol 1e-5, atol 1e-6, 500 steps); and the method for problems that are not stiff, at the smallest
+# tolerances at which it still steps.
 OPTIONS = {
     "default": {},
     "tightest": {"method": "Adams", "rtol": 1e-14, "atol": 1e-15, "max_num_steps": 1_000_000},
 }
-# What the result calls a stop at a root; its list of events keeps those of the solver's earlier flights.
+# Status of a stop at a root. The result's list of events also has those of earlier flights.
 ROOT_FOUND = 2
 
 
 class Peer:
-    # A root where it starts is passed over, as its documentation says.
+    # A root at the start of a flight is skipped, as the documentation says.
     above = 0.0
 
     def __init__(self, problem, tolerance):

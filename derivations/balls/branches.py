@@ -1,21 +1,21 @@
 """The number and the kinds of the orbits of one impact in one revolution, at every speed of a range.
 
-With c, c' and f(c) at the impact's angle and p, s, s' after the period T, Newton's law gives the velocity after the impact, and the
-flight with that velocity ends on the cam where F is 0:
+Let c, c' and f(c) be taken at the angle of the impact, and p, s, s' after the period T. Newton's law gives the velocity v after the
+impact. The flight with this velocity ends on the cam where F is 0:
 
     (1 + r s') v = (1 + r) c' omega - r s f,      F = (1 + r) omega s c' - N f,      N = r s^2 - (1 + r s') p.
 
-The angle enters by the direction of (c', f) alone, which turns with W = c'' f + w0^2 c'^2. So on an *arc*, a part of the cam on which
-neither W nor f changes sign, there is at most one such orbit at any speed, and one just where F has different signs at its ends.
-What is left to decide is where a speed has F = 0 at an end of an arc, a *fold* (W = 0) or a *corner impact*; where the flight of the
-orbit *grazes* the cam (g = g' = 0); and where its kind changes. With M the derivative of the impact map and u = v - c' omega,
+The angle enters only by the direction of (c', f), which turns with W = c'' f + w0^2 c'^2. An *arc* is a part of the cam on which
+neither W nor f changes sign. On an arc there is at most one such orbit at any speed, and exactly one if F has different signs at the
+ends of the arc. An orbit can begin or end where F = 0 at an end of an arc: at a *fold* (W = 0) or at a *corner impact*. It can also
+end at a *graze*, where its flight touches the cam (g = g' = 0). With M the derivative of the impact map and u = v - c' omega,
 
-    det M = r^2 e^(-2 zeta T),    det(I - M) = -(omega r/u) dF/dtheta,    det(I + M) = 2 (1 + det M) - det(I - M),
+    det M = r^2 e^(-2 zeta T),    det(I - M) = -(omega r/u) dF/dtheta,    det(I + M) = 2 (1 + det M) - det(I - M).
 
-so that the kind changes at an end of the arc, or where H = 2 (1 + det M) u + omega r dF/dtheta is 0: a *flip*.
+So the kind of an orbit changes at an end of the arc, or at a *flip*, where H = 2 (1 + det M) u + omega r dF/dtheta is 0.
 
-Ranges of speeds are halved until there is nothing to decide, or one event: its equations have one root in the range by Krawczyk's
-operator, and what there is at either end of the range is there up to the event.
+Ranges of speeds are halved until a range has nothing to decide, or one event. Krawczyk's operator proves that the equations of the
+event have one root in the range. The orbits at either end of the range then exist up to the event.
 """
 
 from dataclasses import dataclass
@@ -27,28 +27,28 @@ from .motion import Flight, Start
 from .numbers import Excluded, Refused, Undecided, between, hull, overlap, within
 from .roots import all_roots, closed_in, krawczyk
 
-# Ranges of speeds are not halved below this width, rpm; below the other one, events are looked for in them.
+# Width of a range of speeds, rpm, below which it is not halved; and the width at or below which events are looked for in it.
 SMALLEST, NARROW = 2.0**-14, 1.0
-# Ranges of speeds that are looked at for one arc, and parts of the whole one that are not halved further for an arc that is not
-# clear; what is left of them then is undecided. Fewer bits than these decide little.
+# Most ranges of speeds that are examined for one arc. An arc that is not clear is not halved beyond this number of parts of the whole
+# range. The rest is then undecided. Fewer bits than FEWEST_BITS decide little.
 MOST, UNCLEAR, FEWEST_BITS = 2000, 64, 53
-# Parts of a flight at which it is looked at for being inside of the cam.
+# Fractions of a flight at which the gap is checked for being negative.
 LOOKS = tuple(part / 16 for part in (1, 3, 5, 7, 8, 9, 11, 13, 15))
-# How often an arc is halved to show that none of it holds an impact, and to find where it may.
+# Most halvings of an arc to show that no part of it holds an impact, and to narrow the place of an impact.
 SHARES, PLACES = 6, 50
-# To how many parts of itself the ends of a ball of angles are found.
+# The ends of a ball of angles are found to 1/NEAR of its width.
 NEAR = 8
-# Moments of a flight among which the lowest is looked for.
+# Number of intervals of a flight among which the lowest gap is looked for.
 MOMENTS = 256
-# What becomes of an orbit where its kind is not decided, and where nothing is.
+# Kind of an orbit whose kind is not decided, and of a range in which nothing is decided.
 ORBIT, UNDECIDED = "orbit", "undecided"
-# Krawczyk's operator is tried on boxes so much wider than what holds the root.
+# Factor by which a box about a root is widened before Krawczyk's operator is tried on it.
 WIDER = 1.25
 
 
 @dataclass(frozen=True)
 class End:
-    """Where two arcs meet: the angle, and what happens to an orbit whose impact comes here; None where nothing does."""
+    """End of an arc: its angle, and the event that happens to an orbit whose impact comes here (None if no event)."""
 
     angle: arb
     event: str
@@ -56,7 +56,7 @@ class End:
 
 @dataclass(frozen=True)
 class Arc:
-    """A part of the cam with its law; `is_clear` where it is proved that neither W nor f changes sign on it."""
+    """Part of the cam with its law. `is_clear` is True if it is proved that neither W nor f changes sign on the arc."""
 
     low: End
     high: End
@@ -66,7 +66,7 @@ class Arc:
 
 @dataclass(frozen=True)
 class Event:
-    """At one speed the orbit of an arc appears, vanishes or changes its kind."""
+    """Speed at which the orbit of an arc appears, vanishes or changes its kind, with the period, s, and the angle of the impact, rad."""
 
     kind: str
     period: arb
@@ -74,27 +74,27 @@ class Event:
     end: End = None
 
     def is_same(self, other, turn):
-        """Whether both are what happens at one end of two arcs, perhaps a turn apart."""
+        """Return True if both events happen at the same end of two arcs, perhaps a turn apart."""
         ends = self.end is not None and other is not None and other.end is not None
         return ends and any((self.end.angle + turns * turn).overlaps(other.end.angle) for turns in (-1, 0, 1))
 
 
 @dataclass(frozen=True)
 class Orbit:
-    """F, u and H of a dual angle and period."""
+    """F (`gap`), u (`leaves`) and H (`flips`) at a dual angle and period."""
 
     gap: Dual
     leaves: Dual
     flips: Dual
 
     def flip(self):
-        """What is 0 at a flip."""
+        """Return F and H, which both vanish at a flip."""
         return [self.gap, self.flips]
 
 
 @dataclass(frozen=True)
 class Stretch:
-    """From one speed to the next, rpm: the kinds of all orbits there, and the event that it begins with."""
+    """Range of speeds, rpm, with the kinds of all orbits in it and the event at which it begins."""
 
     low: arb
     high: arb
@@ -103,7 +103,7 @@ class Stretch:
 
 
 class Branches:
-    """The orbits of one impact of a machine, by the arcs of its cam."""
+    """Orbits of one impact of a machine, arc by arc of its cam."""
 
     def __init__(self, machine):
         self.machine, self.turn = machine, machine.cam.turn
@@ -115,7 +115,7 @@ class Branches:
         self.arcs = [arc for section in self._sections() for arc in self._arcs(*section)]
 
     def _sections(self):
-        """(start, end, law) of the parts of the cam inside of which c'' does not jump."""
+        """Yield (start, end, law) for each part of the cam inside which c'' does not jump."""
         cam = self.machine.cam
         jumps = [corner for corner in cam.corners if corner.smooth <= 2]
         if any(corner.smooth < 2 for corner in jumps):
@@ -131,12 +131,13 @@ class Branches:
             yield low, high, law
 
     def _arcs(self, low, high, law):
-        """The arcs of a section, cut where W is 0."""
+        """Yield the arcs of a section, which is cut where W or f is 0. A section whose roots are not all proved is one arc that is
+        not clear."""
         follower = self.machine.follower
         _, slope, curvature, _ = law.derivatives(between(low.angle, high.angle))
         if slope == 0 and curvature == 0:
-            # A dwell: the follower comes back to a height from which it fell with less velocity, if any, than it left with, and
-            # r v- = -v+ says that it does with more.
+            # A dwell has no such orbit. At the same height the follower returns no faster than it left, and slower with damping. But
+            # v+ = -r v- asks for a return at v+/r, and there is a loss: r < 1, or damping.
             return
 
         def turned(unknowns):
@@ -152,7 +153,7 @@ class Branches:
             roots, rest = all_roots(equations, box, lambda balls: False)
             is_clear = is_clear and not rest
             for (angle,) in (closed_in(equations, root) for root in roots):
-                # Two boxes may hold the same root, and one that cannot be told from an end counts as part of it.
+                # Two boxes may hold the same root. A root that overlaps an end of the section is merged with that end.
                 if angle.overlaps(low.angle):
                     low = End(hull([angle, low.angle]), low.event)
                 elif angle.overlaps(high.angle):
@@ -164,14 +165,15 @@ class Branches:
             yield Arc(one, other, law, is_clear)
 
     def over(self, low, high):
-        """What becomes of the orbits from one speed, rpm, to another, as stretches by rising speed, none left out."""
+        """Return the orbits from one speed, rpm, to another as stretches by rising speed, without gaps. Raise Refused if the bits are
+        too few."""
         if ctx.prec < FEWEST_BITS:
             raise Refused(f"bits = {ctx.prec}: a range of speeds needs at least {FEWEST_BITS}")
         courses = [self._course(arc, low, high) for arc in self.arcs]
         cuts = []
         for start, _, event in sorted((turn for course in courses for turn in course), key=lambda turn: float(turn[0])):
             if cuts and start.overlaps(cuts[-1][0]):
-                # An end of two arcs is one event, and undecided ranges may begin together.
+                # The common end of two arcs gives one event. Undecided ranges may begin at the same speed.
                 if event is not None and not event.is_same(cuts[-1][1], self.turn):
                     raise Undecided("two events are at one speed, to as many digits as there are")
                 continue
@@ -188,14 +190,14 @@ class Branches:
         return stretches
 
     def _course(self, arc, low, high):
-        """[(speed from which on, rpm, what becomes of the orbit of an arc, event there if there is one)], by rising speed."""
+        """Return [(first speed, rpm, kind of the orbit of an arc from there on or None, event there or None)] by rising speed."""
         found, parts = [], [(low, high)]
 
         def add(start, kind, event=None):
             if event is not None or not found or found[-1][1] != kind:
                 found.append((start, kind, event))
 
-        # An arc on which there may be several orbits can at best be shown to hold none.
+        # If an arc may hold several orbits, the best that can be shown is that it holds none.
         left, smallest = MOST, SMALLEST if arc.is_clear else (high - low) / UNCLEAR
         while parts:
             low, high = parts.pop()
@@ -216,7 +218,8 @@ class Branches:
         return found
 
     def _part(self, arc, low, high, is_last=False):
-        """(what is there before, event, what is there after) of a range with one event, or (what is there, None, the same)."""
+        """Return (kind before, event, kind after) of a range with one event, or (kind, None, kind) of a range without. A kind is None
+        if there is no orbit. Raise Undecided if neither is proved."""
         period = 60 / between(low, high)
         signs = [self._sign(arc.law, end.angle, period) if arc.is_clear else 0 for end in (arc.low, arc.high)]
         if signs[0] * signs[1] > 0:
@@ -249,7 +252,7 @@ class Branches:
             if 0 in signs or not is_narrow:
                 raise Undecided(str(reason)) from reason
             events.append(self._graze(arc.law, flight, place, period))
-        # F rises along the arc where its sign at the upper end is 1, or at the lower one -1.
+        # F rises along the arc if its sign is 1 at the upper end or -1 at the lower end.
         rises = signs[1] - signs[0] > 0
         kind = "saddle" if rises else None
         if kind is None:
@@ -273,7 +276,7 @@ class Branches:
         return before, events[0], after
 
     def _orbit(self, law, angle, period):
-        """F and H and u of a dual angle and period."""
+        """Return F, u and H at a dual angle and period."""
         follower = self.machine.follower
         c, c1, c2, c3 = law.derivatives(angle.value)
         lift, slope, curvature = (angle.through(*pair) for pair in ((c, c1), (c1, c2), (c2, c3)))
@@ -293,27 +296,29 @@ class Branches:
         return Orbit(gap, leaves, 2 * (1 + determinant) * leaves + speed * r * by_angle)
 
     def _narrowed(self, law, angle, period, over, name):
-        """A number over a box, by the mean value form too; `over` is it with its derivatives over the box."""
+        """Return the number `name` of an orbit over a box, narrowed by the mean value form. `over` is this number with its
+        derivatives over the box."""
         middle = angle.mid(), period.mid()
         at = getattr(self._orbit(law, *(Dual(one, []) for one in middle)), name).value
         form = at + sum((slope * (ball - m) for slope, ball, m in zip(over.slopes, (angle, period), middle)), arb(0))
         return overlap(over.value, form)
 
     def _sign(self, law, angle, period):
-        """The sign of F at an angle and a ball of periods; 0 where it is not proved."""
+        """Return the sign of F at an angle over a ball of periods; 0 if it is not proved."""
         over = self._orbit(law, *Dual.varied([arb(angle), period])).gap
         gap = self._narrowed(law, arb(angle), period, over, "gap")
         return 1 if gap > 0 else -1 if gap < 0 else 0
 
     def _place(self, arc, period, signs):
-        """A ball of angles that holds the impacts of an arc, as narrow as the ball of periods lets it be."""
+        """Return a ball of angles that holds the impacts on an arc, about as narrow as the ball of periods allows."""
         if signs == [0, 0]:
             return between(arc.low.angle, arc.high.angle)
-        # Between the last angle where F has the sign of one end and the first where it has that of the other.
+        # The impacts lie between the last angle where F has the sign of the lower end and the first angle where F has the sign of the
+        # upper end.
         signs = [signs[0] or -signs[1], signs[1] or -signs[0]]
         place = [arc.low.angle, arc.high.angle]
         known = [float(arc.low.angle.upper()), float(arc.high.angle.lower())]
-        # How far beyond what is known it may still be found.
+        # Angles up to which each sign may still extend.
         beyond = known[::-1]
         for _ in range(PLACES):
             for side in range(2):
@@ -327,7 +332,8 @@ class Branches:
         return between(*place)
 
     def _is_nowhere(self, law, angle, period, shares):
-        """Whether from none of a ball of angles an orbit leaves the cam and stays outside of it on its way."""
+        """Return True if it is proved that no orbit with its impact in a ball of angles leaves the cam and stays above it. The ball
+        is halved up to `shares` times."""
         balls = [angle, period]
         over, middle = self._looked_at(law, *Dual.varied(balls)), self._looked_at(law, *(Dual(one.mid(), []) for one in balls))
         for one, at in zip(over, middle):
@@ -339,7 +345,7 @@ class Branches:
         return shares > 0 and all(self._is_nowhere(law, half, period, shares - 1) for half in halves)
 
     def _looked_at(self, law, angle, period):
-        """u, and the gap at some moments of the flight."""
+        """Yield u, and then the gap at some moments of the flight, as duals."""
         follower, cam, speed = self.machine.follower, self.machine.cam, self.turn / period
         leaves = self._orbit(law, angle, period).leaves
         yield leaves
@@ -350,7 +356,8 @@ class Branches:
             yield reached - lift(cam, angle + time * speed)[0]
 
     def _graze(self, law, flight, angle, period):
-        """The event in which the flight of an orbit touches the cam: it is clear of it but for a time over which the gap is convex."""
+        """Return the event at which the flight of an orbit touches the cam. The flight is proved to be clear of the cam, except
+        during a time in which the gap is convex."""
         whole, centre = float(period.mid()), flight.centre
         gaps = [float(centre.gap(arb(whole * k / MOMENTS))) for k in range(MOMENTS + 1)]
         lowest = [k for k in range(1, MOMENTS) if gaps[k] < gaps[k - 1] and gaps[k] <= gaps[k + 1]]
@@ -379,7 +386,8 @@ class Branches:
         return Event("graze", found, at)
 
     def _root(self, equations, balls):
-        """The one root of equations in a box, the second of which, or the only one, is the period."""
+        """Return the only root of equations in a box, in which the second unknown, or the only one, is the period. Raise Undecided if
+        the root is not proved to be the only one, or not in the range of speeds."""
         wide = [ball.mid() + arb(0, ball.rad() * WIDER) for ball in balls]
         image = krawczyk(equations, wide)
         if image is None or not all(within(one, whole) for one, whole in zip(image, wide)):

@@ -1,4 +1,4 @@
-"""The cam: which law holds at a ball of angles, and where two laws meet."""
+"""The cam: the law that holds at a ball of angles, and the corners at which two laws meet."""
 
 from bisect import bisect_right
 from dataclasses import dataclass
@@ -9,17 +9,17 @@ from flint import arb, ctx
 from .numbers import Refused, Undecided, between, hull, overlap
 from .profiles import pieces_of
 
-# Starts of pieces are looked up in doubles: what lies nearer than this to a start is compared in balls.
+# Starts of pieces are looked up in doubles. An angle that is nearer than this to a start, rad, is compared in balls.
 NEAR = 1e-9
-# Parts of a turn that are looked at at once for the lowest lift, and bits of it that rounding may take: few first.
+# Most parts of a turn that are examined at once for the lowest lift. Bits of the lift that rounding may take, fewest first.
 MOST_PARTS, ROUNDED = 1000, (3, 6, 12, 24)
 
 
 @dataclass(frozen=True)
 class Corner:
-    """Where one piece ends and another begins.
+    """Angle at which one piece ends and the next begins.
 
-    `smooth` counts the derivatives, the lift being the first, that agree because of how the law is made.
+    `smooth` counts the derivatives that agree because of how the law is made. The lift counts as the first.
     """
 
     angle: arb
@@ -28,44 +28,44 @@ class Corner:
     smooth: int
 
     def sides(self):
-        """(c, c', c'') of the law before and of the law after."""
+        """Return (c, c', c'') of the law before and of the law after."""
         return self.before.derivatives(self.angle)[:3], self.after.derivatives(self.angle)[:3]
 
     def jumps(self):
-        """Law after less law before: of c, c' and c''."""
+        """Return the jumps of c, c' and c'': law after minus law before."""
         return tuple(after - before for before, after in zip(*self.sides()))
 
     def bends(self):
-        """Whether c'' is proved to jump."""
+        """Return True if c'' is proved to jump."""
         return bool(abs(self.jumps()[2]) > 0)
 
 
 class Cam:
-    """The [cam] table, 2 pi periodic; angles may be any number, of as many revolutions as it takes."""
+    """The [cam] table, with period 2 pi. Angles may lie in any revolution."""
 
     def __init__(self, table):
         self.turn = 2 * arb.pi()
-        # For every piece, how many derivatives agree where it begins.
+        # Number of derivatives that agree at the start of each piece; None if no two laws meet there.
         self.starts, self.laws, self.smooth = zip(*pieces_of(table))
         self.rounded = [float(start) for start in self.starts]
         self.corners = [self._corner(index, agree) for index, agree in enumerate(self.smooth) if agree is not None]
 
     def _corner(self, index, smooth):
-        # The law of the last piece goes on to a revolution on, where the first one's corner is.
+        # The last piece meets the first one a revolution later, so its law is turned back by a revolution.
         before = Turned(self.laws[-1], -self.turn) if index == 0 else self.laws[index - 1]
         if smooth == 0:
             raise Refused(f"cam: the lift jumps at {self.starts[index].str(8)} rad")
         return Corner(self.starts[index], before, self.laws[index], smooth)
 
     def _piece(self, index):
-        """Start, end and law of piece `index`, counted on through the revolutions, and the angle of its revolution."""
+        """Return start, end and law of piece `index`, counted on through the revolutions, and the angle of its revolution."""
         turns, inside = divmod(index, len(self.laws))
         later, following = divmod(index + 1, len(self.laws))
         shift = turns * self.turn
         return self.starts[inside] + shift, self.starts[following] + later * self.turn, self.laws[inside], shift
 
     def _indices(self, low, high):
-        """Pieces that may meet [low, high], doubles."""
+        """Return the indices of the pieces that may meet [low, high], in doubles."""
         count = len(self.laws)
 
         def index(angle):
@@ -75,8 +75,8 @@ class Cam:
         return range(index(low - NEAR), index(high + NEAR) + 1)
 
     def parts(self, angle):
-        """[(law, part of the ball on it, less whole revolutions)], for every piece that the ball may meet; and whether c and
-        c' are continuous over the ball for certain."""
+        """Return [(law, part of the ball on it, less whole revolutions)] for every piece that the ball may meet, and True if c and c'
+        are proved continuous over the ball."""
         parts, smooth = [], True
         for index in self._indices(float(angle.lower()), float(angle.upper())):
             start, end, law, shift = self._piece(index)
@@ -90,7 +90,7 @@ class Cam:
         return parts, smooth
 
     def piece_of(self, angle):
-        """The piece that holds all of the ball, in the revolution that it is in; Undecided where the ball may meet a corner."""
+        """Return the piece that holds the whole ball, turned to the ball's revolution. Raise Undecided if the ball may meet a corner."""
         for index in self._indices(float(angle.lower()), float(angle.upper())):
             start, end, law, shift = self._piece(index)
             piece = Piece(start, end, Turned(law, shift))
@@ -99,7 +99,7 @@ class Cam:
         raise Undecided(f"it is not proved on which piece of the cam the angle {angle.str(8)} lies")
 
     def lowest(self):
-        """A ball that holds the lowest lift, as narrow as rounding lets it be."""
+        """Return a ball that holds the lowest lift, about as narrow as rounding allows. Raise Undecided if none is found."""
         found = (self._lowest(arb(2) ** (bits - ctx.prec)) for bits in ROUNDED)
         lowest = next((one for one in found if one is not None), None)
         if lowest is None:
@@ -107,8 +107,9 @@ class Cam:
         return lowest
 
     def _lowest(self, smallest):
-        """The same to such a part of the lift's size: parts of a turn are halved until they leave no more open; None where that takes too many."""
-        # Parts by their ends, which are points, each with the piece that it may meet.
+        """Return the lowest lift as a ball, to about `smallest` times the size of the lift. Parts of a turn are halved until none of
+        them can improve the bounds. Return None if that takes too many parts."""
+        # Each part has its piece and its two ends, which are points.
         parts = [(piece, piece[0].lower(), piece[1].upper()) for piece in map(self._piece, range(len(self.laws)))]
         some = [law.derivatives(angle)[0] for start, end, law, _ in map(self._piece, range(len(self.laws))) for angle in (start, (start + end) / 2)]
         size, most, least = hull(some).abs_upper(), min(one.upper() for one in some), []
@@ -117,7 +118,7 @@ class Cam:
             for (start, end, law, _), low, high in parts:
                 over, middle = between(low, high), ((low + high) / 2).mid()
                 (lift, *_, third), (at, slope, curvature, _) = law.derivatives(over), law.derivatives(middle)
-                # By Taylor's formula, or as it comes: the lift may be as flat as a dwell at either end of a rise.
+                # Taylor's formula or direct evaluation, whichever is better: the lift may be as flat as a dwell at either end of a rise.
                 off = over - middle
                 form = at + off * (slope + off / 2 * (curvature + off / 3 * third))
                 seen.append((middle, lift.lower().max(form.lower())))
@@ -135,7 +136,8 @@ class Cam:
         return between(min(least), most)
 
     def sections(self, turns):
-        """The parts of so many turns of the cam, each without a jump of its velocity inside, as pieces whose laws go on past their ends."""
+        """Return the parts of `turns` turns of the cam between jumps of its velocity. Each is a piece whose law is continued past its
+        ends."""
         count = len(self.laws)
         jumps = [index for index, smooth in enumerate(self.smooth) if smooth is not None and smooth < 2]
         if not jumps:
@@ -144,8 +146,9 @@ class Cam:
         return [Section(self, first, after).piece() for first, after in zip(ends, ends[1:])]
 
     def seen(self, angle):
-        """(c, c', c'', c''') over the ball, the hull of all pieces that it may meet, each over its part; and whether c and c' are
-        continuous over it for certain, so that Taylor's formula holds with the hull of c''."""
+        """Return (c, c', c'', c''') over the ball, and True if c and c' are proved continuous over it. The derivatives are the hull
+        over all pieces that the ball may meet, each over its part. If c and c' are continuous, Taylor's formula holds with the hull
+        of c''."""
         parts, smooth = self.parts(angle)
         each = [law.derivatives(part) for law, part in parts]
         return each[0] if len(each) == 1 else tuple(hull(order) for order in zip(*each)), smooth
@@ -155,36 +158,36 @@ class Cam:
         return self.seen(angle)[0]
 
     def is_smooth(self, angle):
-        """Whether c and c' are continuous over the ball for certain."""
+        """Return True if c and c' are proved continuous over the ball."""
         return self.parts(angle)[1]
 
 
 @dataclass(frozen=True)
 class Piece:
-    """A law with the angles between which it holds, rad, of one revolution."""
+    """Law with the angles between which it holds, rad, in one revolution."""
 
     start: arb
     end: arb
     law: object
 
     def holds(self, angle):
-        """Whether all of a ball is proved to lie between its ends."""
+        """Return True if the whole ball is proved to lie between the ends."""
         return bool(angle > self.start and angle < self.end)
 
 
 class Section:
-    """The law of the pieces from one to the one before another, counted on through the revolutions: c and c' are continuous where these
-    meet, and the first and the last of them go on past their ends."""
+    """Law of consecutive pieces, from index `first` up to but without `after`, counted on through the revolutions. c and c' are
+    continuous between them, and the first and the last piece are continued past their ends."""
 
     def __init__(self, cam, first, after):
         self.pieces = [cam._piece(index) for index in range(first, after)]
 
     def piece(self):
-        """The section with its ends."""
+        """Return the section as a piece with its ends."""
         return Piece(self.pieces[0][0], self.pieces[-1][1], self)
 
     def derivatives(self, angle):
-        """(c, c', c'', c''') over the ball, the hull of all pieces that it may meet, each over its part."""
+        """(c, c', c'', c''') over the ball: the hull over all pieces that it may meet, each over its part."""
         each = []
         for index, (start, end, law, shift) in enumerate(self.pieces):
             low = start if index > 0 else start.min(angle.lower())
@@ -196,7 +199,7 @@ class Section:
 
 
 class Turned:
-    """A law some revolutions on."""
+    """Law turned on by whole revolutions."""
 
     def __init__(self, law, shift):
         self.law, self.shift = law, shift

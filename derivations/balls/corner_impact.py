@@ -1,10 +1,10 @@
 """A periodic orbit with an impact on a corner of the cam, proved to exist, and its map on either side of the corner.
 
-    flight k   c_k + s v_k + p f(c_k) = c_(k+1)                                       it comes down where the next impact is
+    flight k   c_k + s v_k + p f(c_k) = c_(k+1)                                       it ends at the next impact
     impact     v_(k+1) = (1 + r) c'_(k+1) - r (s' v_k + s f(c_k))                     Newton's law
 
-with p, s after (theta_(k+1) - theta_k) T/(2 pi), and theta_0 the corner: as many equations as there are unknowns, T, v_0 and the
-angle and velocity after every other impact.
+Here p and s are taken after the time (theta_(k+1) - theta_k) T/(2 pi), and theta_0 is the corner. The unknowns are T, v_0, and the
+angle and the velocity after every other impact: as many as there are equations.
 """
 
 import json
@@ -21,13 +21,13 @@ from .motion import Flight, Start
 from .numbers import Refused, Undecided, overlap, sign
 
 DERIVED = Path(__file__).resolve().parent.parent.parent / "golden" / "derived" / "corner_map.json"
-# An angle that is told in doubles names the corner that it is this near to, rad.
+# An angle in doubles names the corner that lies within this distance, rad.
 ROUNDED = 1e-6
 
 
 @dataclass(frozen=True)
 class Impact:
-    """Where an impact is, rad, the law that holds there and the velocities, m/s: after it, of the cam, relative to it after."""
+    """Impact: its angle, rad, the law there, and velocities, m/s: after it, of the cam, and after it relative to the cam."""
 
     angle: arb
     law: object
@@ -38,7 +38,7 @@ class Impact:
 
 @dataclass(frozen=True)
 class OneSided:
-    """The law before a corner as it is at the corner, with lift and slope of the law after it: they differ by what decimals are off."""
+    """Law before a corner as it is at the corner, but with lift and slope of the law after it. These differ only by the error of decimals."""
 
     before: object
     after: object
@@ -49,9 +49,9 @@ class OneSided:
 
 
 class CornerImpact:
-    """The orbit. `candidate` is in doubles: the corner's angle, the period, and of each impact from the corner's on the angle
-    turned until the next and the velocity after, or nothing of them where there is one. They are what is tried, and nothing is
-    believed of them."""
+    """Periodic orbit with an impact on a corner. `candidate` is in doubles: the corner's angle, the period, and, for each impact from
+    the corner's on, the angle turned until the next impact and the velocity after it. An orbit of one impact needs no list of
+    impacts. These numbers are only a guess: the proof does not trust them."""
 
     def __init__(self, machine, candidate):
         self.machine, self.revolutions = machine, candidate["revolutions"]
@@ -72,14 +72,15 @@ class CornerImpact:
         return corner
 
     def _only_flight(self, period):
-        """The flight from the corner back to it, in doubles: c + s v + p f(c) = c."""
+        """Return the flight from the corner back to it, in doubles: c + s v + p f(c) = c."""
         follower = self.machine.follower
         p, s, _ = follower.response(self.revolutions * arb(period))
         leaves = float(-p * follower.force(self.corner.sides()[0][0]) / s)
         return {"turn_rad": self.revolutions * float(self.machine.cam.turn), "velocity_after_m_s": leaves}
 
     def _solve(self, candidate):
-        """T and the impacts, by Krawczyk's operator."""
+        """Solve for T and the impacts by Krawczyk's operator. Raise Refused if the root is not on the pieces of the cam for which it
+        was sought."""
         cam = self.machine.cam
         flights = candidate.get("impacts") or [self._only_flight(candidate["period_s"])]
         turns = [impact["turn_rad"] for impact in flights]
@@ -110,7 +111,8 @@ class CornerImpact:
         self.angles = angles + [end]
 
     def closing(self, laws, period, angles, velocities):
-        """What is 0 where every flight ends at the next impact with the velocity that this leaves with, in duals."""
+        """Return residuals, in duals, of the equations of the orbit. All are 0 if every flight ends at the next impact, and Newton's
+        law gives the velocity after it."""
         follower, rate = self.machine.follower, self.machine.cam.turn / period
         lifts = [lift(law, angle) for law, angle in zip(laws, angles)]
         angles = angles + [angles[0] + self.revolutions * self.machine.cam.turn]
@@ -124,7 +126,7 @@ class CornerImpact:
         return found
 
     def _prove_flights(self):
-        """Each flight leaves the cam, is clear of it and comes down, and the impact that ends it is a blow."""
+        """Prove that each flight leaves the cam, stays clear of it, and ends in an impact that is no graze."""
         self.velocities_before = []
         for k, impact in enumerate(self.impacts):
             if not impact.relative_velocity > 0:
@@ -136,11 +138,11 @@ class CornerImpact:
             flight = Flight(self.machine, Start(impact.angle, impact.relative_velocity, self.speed), impact.law)
             flight.first_contact(float(time) * 2, time)
             self.velocities_before.append(flight.state(time)[1])
-        # Before impact k + 1; that before the corner's is the last flight's.
+        # Reorder from flights to impacts: the last flight ends at the corner's impact, which comes first.
         self.velocities_before = self.velocities_before[-1:] + self.velocities_before[:-1]
 
     def _choose_section(self):
-        """The section in the middle of the longest flight, and the state there."""
+        """Put the section in the middle of the longest flight, and compute the state there."""
         turns = [float(after - before) for before, after in zip(self.angles, self.angles[1:])]
         self.longest = max(range(len(turns)), key=lambda k: turns[k])
         before, after = self.angles[self.longest], self.angles[self.longest + 1]
@@ -152,20 +154,20 @@ class CornerImpact:
         self.state = [self.position - follower.origin, self.velocity]
 
     def course(self):
-        """The impacts in order from the section on, each with its number."""
+        """Return the numbers of the impacts, in order from the section on."""
         count = len(self.impacts)
         return [((self.longest + 1 + later) % count) for later in range(count)]
 
     def impact_law(self, number, side):
-        """The law at an impact; at the corner, that of the side."""
+        """Return the law at an impact; at the corner, the law of `side`."""
         if number > 0:
             return self.impacts[number].law
         return OneSided(self.corner.before, self.corner.after) if side == "before" else self.corner.after
 
     def implicit(self, side):
-        """2 x 3 [A | B], and (e, f), by dual numbers: the time of each impact is differentiated implicitly.
+        """Return [A | B], 2 x 3, and (e, f), by dual numbers. The time of each impact is differentiated implicitly.
 
-        `side` is "before" or "after": with the law of the cam before the corner or after it, continued past it.
+        `side` is "before" or "after": the law of the cam before or after the corner is used, continued past the corner.
         """
         follower, turn = self.machine.follower, self.machine.cam.turn
         position, velocity, period = Dual.varied([self.position, self.velocity, self.period])
@@ -175,14 +177,14 @@ class CornerImpact:
             turns = 0 if number > self.longest else self.revolutions
             here = impact.angle + turns * turn
             if number == 0:
-                # At the corner's phase, as if there were no impact.
+                # State at the phase of the corner if there were no impact.
                 arrived = follower.fly(response(follower, (here - angle) / rate), position, velocity)
                 border = arrived[0].slopes
             time = period.constant((here - angle.value) / rate.value)
             for _ in range(2):
-                # First with the time held fixed: from what the gap is off by follows how the time varies; then with it.
+                # The first pass holds the time fixed. The gap's derivatives then give the derivatives of the time for the second pass.
                 reached, before = follower.fly(response(follower, time), position, velocity)
-                # Values are known; what is carried along would know them less and less.
+                # The values are known. Values that are carried along would widen at each impact.
                 c, c1 = lift(law, Dual(impact.angle, (angle + time * rate).slopes))
                 gap = reached - c
                 closing = before.value - c1.value * rate.value
@@ -194,7 +196,8 @@ class CornerImpact:
         return arb_mat([one.slopes for one in ends]), border
 
     def closed_form(self, side):
-        """[A | B] another way: of one impact by the expressions of golden/derived, of several by the product of explicit matrices."""
+        """Return [A | B] in another way. For one impact in one revolution, the expressions of golden/derived are evaluated. For other
+        orbits, explicit matrices are multiplied."""
         return self._derived(side) if len(self.impacts) == 1 and self.revolutions == 1 else self._product(side)
 
     def _derived(self, side):
@@ -218,7 +221,8 @@ class CornerImpact:
         return arb_mat([[value[name] for name in row] for row in (("A11", "A12", "B1"), ("A21", "A22", "B2"))])
 
     def _product(self, side):
-        """xi -> Phi xi + (v, a) t/T dT in flight, xi -> S xi - (0, (1 + r) c'/T) dT at an impact, once around."""
+        """Return [A | B] as a product of matrices once around. In flight xi -> Phi xi + (v, a) t/T dT, and at an impact xi -> S xi -
+        (0, (1 + r) c'/T) dT."""
         follower, turn = self.machine.follower, self.machine.cam.turn
         deviation = arb_mat([[1, 0, 0], [0, 1, 0]])
         angle, state = self.section, (self.position, self.velocity)
@@ -245,7 +249,8 @@ class CornerImpact:
         return flown(deviation, state, (self.section + self.revolutions * turn - angle) / self.speed)
 
     def side_map(self, side):
-        """[A | B] of a side and (e, f): what two routes share, which must meet in every entry."""
+        """Return [A | B] of a side and (e, f). Each entry is the intersection of the results of two routes; raise Refused if they do
+        not meet."""
         (one, border), other = self.implicit(side), self.closed_form(side)
         both = [[overlap(one[row, column], other[row, column]) for column in range(3)] for row in range(2)]
         if None in both[0] + both[1]:
@@ -258,9 +263,9 @@ def _column(position, velocity):
 
 
 def eigenvalues(a):
-    """(real part, imaginary part) of both eigenvalues of a 2 x 2 matrix, the larger first; Undecided where they may be double."""
+    """Return (real part, imaginary part) of both eigenvalues of a 2 x 2 matrix, the larger first. Raise Undecided if they may be equal."""
     half = (a[0, 0] + a[1, 1]) / 2
-    # ((a - d)/2)^2 + b c, under the root. A product, since the power of a ball about 0 comes out as no number.
+    # Discriminant: ((a - d)/2)^2 + b c. The square is written as a product, since the power of a ball about 0 is not a number.
     apart = (a[0, 0] - a[1, 1]) / 2
     under = apart * apart + a[0, 1] * a[1, 0]
     root_of = abs(under).sqrt()

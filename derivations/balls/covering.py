@@ -1,16 +1,16 @@
-"""Covering relations and cones of the impact map: boxes of impacts that it stretches across each other.
+"""Covering relations and cones of the impact map: boxes of impacts that the map stretches across each other.
 
-An h-set is N = centre + x unstable + y stable, x and y in ranges. A strip S, a part of it over all of y, is carried by n impacts
-k revolutions on. It covers N where
+An h-set is N = centre + x unstable + y stable, with x and y in ranges. A strip S is a part of N over its whole range of y. The map
+f^n carries S through n impacts, which take k revolutions. S covers N if
 
-    f^n(S) nowhere meets x in N's range with y outside of N's,
-    the left edge of S goes beyond one side of N and the right edge beyond the other,
+    f^n(S) has no point with x in the range of N and y outside the range of N,
+    the left edge of S goes beyond one side of N and the right edge beyond the other.
 
-and keeps the cones |dy| <= L |dx|, stretching what is in them, where with Df^n = [[a, b], [c, d]] in x and y
+S keeps the cones |dy| <= L |dx|, and stretches the vectors in them, if with Df^n = [[a, b], [c, d]] in x and y
 
     a has one sign on all of S,   |c| + L |d| <= L (|a| - L |b|),   |a| - L |b| > 1.
 
-The matrices with these two for a sign of a are a convex set, so that they need hold on no more than each box of S.
+For each sign of a, the matrices with the last two properties are a convex set. So it is enough to prove them on each box of S.
 """
 
 from dataclasses import dataclass
@@ -20,7 +20,7 @@ from flint import arb, arb_mat, fmpq
 from .motion import Flight, Start, impact
 from .numbers import Refused, Undecided, between, decimal, within
 
-# How often a box is halved before what it is to show counts as not proved.
+# Number of halvings of a box after which its condition counts as not proved.
 HALVINGS = 40
 
 
@@ -40,7 +40,7 @@ def _range(entry, name):
 
 @dataclass(frozen=True)
 class Strip:
-    """A part of N over all of its height, and after how many impacts and revolutions it is back."""
+    """Part of N over its whole range of y, with the number of impacts and of revolutions until it returns."""
 
     x: tuple
     impacts: int
@@ -48,7 +48,7 @@ class Strip:
 
 
 class HSet:
-    """N and its strips as a data file has them: rationals, in degrees of cam angle and in m/s after an impact, relative to the cam."""
+    """N and its strips from a data file. The numbers are rational, in degrees of cam angle and in m/s relative to the cam after an impact."""
 
     def __init__(self, entry):
         self.rpm, self.x, self.y = (_range(entry, name) for name in ("rpm", "x", "y"))
@@ -68,7 +68,8 @@ class HSet:
         self._stands()
 
     def _stands(self):
-        """Refused unless what a theorem asks of N and its strips before anything moves holds; rationals decide all of it."""
+        """Check what the theorem requires of N and its strips before any motion. Raise Refused otherwise. Rational numbers decide all
+        of it."""
         corners = [[o + x * a + y * b for o, a, b in zip(self.centre, self.unstable, self.stable)] for x in self.x for y in self.y]
         if not min(velocity for _, velocity in corners) > 0:
             raise Refused("N contains impacts after which the follower does not leave the cam")
@@ -85,8 +86,9 @@ class HSet:
             raise Refused("two strips of N meet")
 
     def entropy(self):
-        """The entropy of a revolution of the full shift on the strips, a ball: log of lambda, the sum of lambda^-k being 1."""
-        # At 1 the sum is the number of strips, at that number at most 1; between them it falls.
+        """Return a lower bound, as a ball, of the entropy per revolution of the full shift on the strips. The entropy is log(lambda),
+        where the sum of lambda^-k over the strips is 1 and k counts the revolutions of a strip."""
+        # The sum falls from the number of strips at lambda = 1 to at most 1 where lambda is that number.
         low, high = fmpq(1), fmpq(len(self.strips))
         while high - low > fmpq(1, 2**30):
             middle = (low + high) / 2
@@ -98,10 +100,10 @@ class HSet:
 
 
 class Journey:
-    """The starts of a box of x and y, at the speeds of an h-set, followed from impact to impact.
+    """The starts in a box of x and y, at the speeds of an h-set, followed from impact to impact.
 
-    Each start is at `middle` + `matrix` (dx, dy, domega) + `rest`: a point, the derivative over all of the box, and what the
-    middle is uncertain by. So the box is not packed into a box of angle and velocity at each impact.
+    Each start is `middle` + `matrix` (dx, dy, domega) + `rest`: a point, the derivative over the whole box, and the uncertainty of
+    the middle. So the box is not wrapped into a box of angle and velocity at each impact.
     """
 
     def __init__(self, machine, h_set, box):
@@ -114,22 +116,22 @@ class Journey:
         turned = h_set.turned
         self.matrix = arb_mat([[turned[row, 0], turned[row, 1], 0] for row in range(2)])
         self._put(at, arb_mat(2, 1))
-        # How far the box reaches by x, by y and by the speed, as seen in N, at its widest.
+        # Widest extent so far of the box by x, by y and by the speed, in coordinates of N.
         self.reach = [arb(0), arb(0), arb(0)]
 
     def _put(self, at, rest):
-        """The middle becomes a point: what it is uncertain by joins the rest."""
+        """Make the middle a point: its uncertainty joins the rest."""
         self.middle = [at[row, 0].mid() for row in range(2)]
         self.rest = rest + arb_mat([[arb(0, at[row, 0].rad())] for row in range(2)])
 
     def go(self, horizon, known=None):
-        """To the next impact. `known` are times that the first contacts are known to lie within; where they are shown to hold one
-        contact of each flight nearby, too, the formulas speak of the first."""
+        """Go to the next impact. `known` are times that hold the first contact of each flight. If they are also proved to hold only
+        one contact of every flight in the ball, this contact is the first."""
         for axis in range(3):
             column = self.h_set.back * arb_mat([[self.matrix[row, axis] * self.offsets[axis, 0]] for row in range(2)])
             self.reach[axis] = max(self.reach[axis], *(column[row, 0].abs_upper() for row in range(2)))
         off = self.matrix * self.offsets + self.rest
-        # The ball's middle is `middle` itself, from which the image of the middle is computed.
+        # The ball is centred on `middle` itself, from which the image of the middle is computed.
         state = [arb(middle, off[row, 0].abs_upper()) for row, middle in enumerate(self.middle)]
         flight = Flight(self.machine, Start(*state, self.speed))
         time = None if known is None else flight.contact_near(known)
@@ -142,7 +144,8 @@ class Journey:
         self._put(arb_mat([[there.centre.angle], [there.centre.velocity]]), by_state * self.rest)
 
     def seen(self, revolutions):
-        """In x and y of N, some revolutions on: the image of the middle, of the box, and the derivative by x and y."""
+        """Return the image of the middle, the image of the box, and the derivative by x, y and the speed, all in coordinates of N.
+        Angles are turned back by `revolutions`."""
         turns = arb_mat([[2 * arb.pi() * revolutions], [arb(0)]])
         back, at = self.h_set.back, arb_mat([[middle] for middle in self.middle])
         middle = back * (at + self.rest - turns - self.h_set.middle)
@@ -152,17 +155,17 @@ class Journey:
 
 
 class Proof:
-    """Of one strip of an h-set: that it covers N, and that it keeps the cones if there are any."""
+    """Proof for one strip of an h-set: it covers N and, if there are cones, keeps them."""
 
     def __init__(self, machine, h_set, strip):
         self.machine, self.h_set, self.strip = machine, h_set, strip
         self.growth, self.signs, self.boxes = None, set(), 0
         self.x, self.y = between(*h_set.x), between(*h_set.y)
-        # No flight of a strip that is back after k revolutions takes more than k, and one for the widths of N.
+        # A strip that returns after k revolutions has no flight of more than k + 1. The extra one allows for the width of N.
         self.horizon = (strip.revolutions + 1) * 60 / float(h_set.rpm[0])
 
     def prove(self):
-        """Refused, or Undecided, with a sentence that says what fails where."""
+        """Prove the strip. Raise Refused, or Undecided, with a sentence that says what fails and where."""
         sides = [set(self._pieces((edge, edge), self._beyond)) for edge in self.strip.x]
         if not (len(sides[0]) == len(sides[1]) == 1 and sides[0] != sides[1]):
             raise Refused(f"{self._name()}: the images of its edges do not lie beyond different sides of N")
@@ -177,13 +180,13 @@ class Proof:
         return f"the strip of {self.strip.impacts} impacts"
 
     def _pieces(self, x, judge):
-        """What `judge` says of each box of the strip, which are halved until it says something; it says None or why not."""
+        """Yield the result of `judge` for each box of the strip. A box for which `judge` raises Refused is halved; Violated is passed on."""
         waiting = [((x, self.h_set.y, self.h_set.rpm), (), HALVINGS)]
         while waiting:
             box, known, left = waiting.pop()
             journey = Journey(self.machine, self.h_set, box)
             try:
-                # A part of a box has its contacts where the box has them.
+                # The contacts of a part of a box lie within those of the box.
                 for index in range(self.strip.impacts):
                     journey.go(self.horizon, known[index] if index < len(known) else None)
                 yield judge(*journey.seen(self.strip.revolutions))
@@ -200,7 +203,7 @@ class Proof:
                 waiting.append(((*box[:axis], half, *box[axis + 1 :]), tuple(journey.times), left - 1))
 
     def _beyond(self, middle, whole, _):
-        """Beyond which side of N all of the image is."""
+        """Return the side of N, "left" or "right", beyond which the whole image lies. Raise Violated or Undecided if it does not."""
         if whole[0] < self.x.lower():
             return "left"
         if whole[0] > self.x.upper():
@@ -210,7 +213,8 @@ class Proof:
         raise Undecided("an edge is not proved to go beyond N")
 
     def _covers(self, middle, whole, matrix):
-        """The least growth in the cones; None without cones."""
+        """Return the least growth in the cones, or None if there are no cones. Raise Violated or Undecided if the conditions are not
+        proved."""
         if whole[0].overlaps(self.x) and not within(whole[1], self.y):
             if within(middle[0], self.x) and not middle[1].overlaps(self.y):
                 raise Violated(f"{self._name()}: its image leaves N at x = {middle[0].str(6)}, y = {middle[1].str(6)}")
@@ -229,4 +233,4 @@ class Proof:
 
 
 class Violated(Refused):
-    """What was to be proved is proved not to be so."""
+    """The opposite of what was to be proved is proved."""

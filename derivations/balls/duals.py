@@ -1,10 +1,10 @@
-"""Dual numbers over balls: a value and its derivatives by a few numbers, carried along by the rules of calculus."""
+"""Dual numbers over balls: a value and its derivatives by a few variables, carried along by the rules of calculus."""
 
 from flint import arb
 
 
 class Dual:
-    """A ball of values, with a ball of derivatives by each of the numbers that are varied."""
+    """Ball of values, with a ball of derivatives by each variable."""
 
     __slots__ = ("value", "slopes")
 
@@ -13,15 +13,15 @@ class Dual:
 
     @classmethod
     def varied(cls, values):
-        """Numbers that are varied themselves: each has derivative 1 by itself."""
+        """Return the variables themselves as duals: each has derivative 1 by itself."""
         return [cls(value, [arb(int(one == other)) for other in range(len(values))]) for one, value in enumerate(values)]
 
     def constant(self, value):
-        """A number that depends on nothing varied."""
+        """Return a number that depends on no variable."""
         return Dual(value, [arb(0)] * len(self.slopes))
 
     def through(self, value, rate):
-        """f of this number, from the value of f and its derivative."""
+        """Return f of this number, from the value of f and its derivative there."""
         return Dual(value, [rate * slope for slope in self.slopes])
 
     def __add__(self, other):
@@ -55,13 +55,13 @@ class Dual:
 
 
 def response(follower, time):
-    """(p, s, s') of the follower after a dual time: p' = s, s'' = -w0^2 s - 2 zeta s'."""
+    """Return (p, s, s') of the follower after a dual time: p' = s, s'' = -w0^2 s - 2 zeta s'."""
     p, s, s1 = follower.response(time.value)
     s2 = -follower.omega0_squared * s - 2 * follower.zeta * s1
     return time.through(p, s), time.through(s, s1), time.through(s1, s2)
 
 
 def lift(law, angle):
-    """(c, dc/dtheta) of a law at a dual angle."""
+    """Return (c, dc/dtheta) of a law at a dual angle."""
     c, c1, c2, _ = law.derivatives(angle.value)
     return angle.through(c, c1), angle.through(c1, c2)

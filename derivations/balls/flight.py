@@ -1,6 +1,6 @@
-"""Free flight in balls: m q'' + b q' + k (q - rest) = -m g, for every damping alike.
+"""Free flight in balls, for any damping: m q'' + b q' + k (q - rest) = -m g.
 
-    p'' + 2 zeta p' + w0^2 p = 1, p(0) = p'(0) = 0, s = p':  what is left of a unit step and of a unit impulse after a time.
+    p'' + 2 zeta p' + w0^2 p = 1, p(0) = p'(0) = 0, s = p':  the responses p to a unit step and s to a unit impulse after a time.
 """
 
 from flint import arb
@@ -11,9 +11,9 @@ FIELDS = ("mass", "damping", "stiffness", "gravity", "restitution")
 
 
 class Follower:
-    """The [follower] table: its numbers as the rationals that their decimals are, so that its kind of damping is decided.
+    """The [follower] table. Its numbers are the exact rationals of its decimals, so that the kind of damping is decided.
 
-    `lowest` gives the lowest lift of the cam, where a spring with a preload presses with it: k (lowest - rest) = preload.
+    `lowest` returns the lowest lift of the cam, at which the spring presses with its preload: k (lowest - rest) = preload.
     """
 
     def __init__(self, table, lowest):
@@ -32,18 +32,18 @@ class Follower:
                 raise Refused("follower.preload needs a spring")
             rest = lowest() - arb(rest / stiffness)
         zeta, omega0_squared = damping / (2 * mass), stiffness / mass
-        # Under critical damping above 0, beyond it below.
+        # Positive below critical damping, negative above it.
         discriminant = omega0_squared - zeta * zeta
         self.oscillates, self.is_critical = discriminant > 0, discriminant == 0
         self.has_spring = stiffness > 0
         self.zeta, self.omega0_squared, self.gravity = arb(zeta), arb(omega0_squared), arb(gravity)
         self.rate = arb(abs(discriminant)).sqrt()
         self.rest, self.restitution = arb(rest), arb(restitution)
-        # The paper's x is measured from the spring's equilibrium, or from where a spring without stiffness is slack.
+        # The paper's x is measured from the spring's equilibrium. Without stiffness it is measured from the rest position.
         self.origin = arb(rest - gravity / omega0_squared if stiffness > 0 else rest)
 
     def response(self, time):
-        """(p, s, s') after a ball of times."""
+        """Return (p, s, s') after a ball of times."""
         zeta, rate = self.zeta, self.rate
         if self.is_critical:
             # s = t e^{-zeta t}, s' = (1 - zeta t) e^{-zeta t}
@@ -72,19 +72,19 @@ class Follower:
         return p, s, s1
 
     def force(self, position):
-        """The acceleration at a position and no velocity: -w0^2 (q - rest) - g."""
+        """Return the acceleration at a position with no velocity: -w0^2 (q - rest) - g."""
         return -self.omega0_squared * (position - self.rest) - self.gravity
 
     def fly(self, response, position, velocity):
-        """(q, v) after the time of a response: q = q0 + s v0 + p f0, v = s' v0 + s f0."""
+        """Return (q, v) after the time of a response: q = q0 + s v0 + p f0, v = s' v0 + s f0."""
         p, s, s1 = response
         force = self.force(position)
         return position + s * velocity + p * force, s1 * velocity + s * force
 
     def acceleration(self, position, velocity):
-        """q'' = f(q) - 2 zeta v."""
+        """Return q'' = f(q) - 2 zeta v."""
         return self.force(position) - 2 * self.zeta * velocity
 
     def rebound(self, cam_velocity, velocity):
-        """Newton's impact: v+ = (1 + r) c' - r v-."""
+        """Return the velocity after an impact, by Newton's law: v+ = (1 + r) c' - r v-."""
         return (1 + self.restitution) * cam_velocity - self.restitution * velocity

@@ -6,22 +6,22 @@ from .duals import Dual
 from .numbers import Refused, Undecided, within
 
 NEWTON = 8
-# Parts of its size by which a root may be off from where it was looked for.
+# Largest distance of a root from its guess, relative to the size of the unknown.
 NEAR = 1e-6
-# Bits that rounding may take, and how often the box about the root is made eight times as wide.
+# Bits that rounding may take, and how often the box about the root is widened by a factor of eight.
 ROUNDING, WIDENINGS = 16, 8
-# Parts of the unknowns' size within which the root is tried to be shown to be alone.
+# Boxes, relative to the sizes of the unknowns, in which the root is tried to be proved the only one; widest first.
 ALONE = (1e-1, 3e-2, 1e-2, 3e-3, 1e-3, 1e-4, 1e-5, 1e-6)
 
 
 def _evaluated(equations, point):
-    """Values, n x 1, and Jacobian, n x n, over a box."""
+    """Return the values, n x 1, and the Jacobian, n x n, over a box."""
     found = equations(Dual.varied(point))
     return arb_mat([[one.value] for one in found]), arb_mat([one.slopes for one in found])
 
 
 def inverse(jacobian):
-    """About the inverse of a matrix of balls; Undecided where there may be none."""
+    """Return an approximate inverse of a matrix of balls. Raise Undecided if there may be none."""
     try:
         return jacobian.mid().inv()
     except ZeroDivisionError as error:
@@ -29,7 +29,7 @@ def inverse(jacobian):
 
 
 def _operator(equations, centre, value, near, radii):
-    """The box about a centre, and what Krawczyk's operator makes of it: c - Y F(c) + (1 - Y F'(X)) (X - c)."""
+    """Return the box about a centre and its image under Krawczyk's operator: c - Y F(c) + (1 - Y F'(X)) (X - c)."""
     box = [one + arb(0, radius) for one, radius in zip(centre, radii)]
     jacobian = _evaluated(equations, box)[1]
     offsets = arb_mat([[arb(0, radius)] for radius in radii])
@@ -39,11 +39,11 @@ def _operator(equations, centre, value, near, radii):
 
 
 def root(equations, guess, names):
-    """Balls that hold one root of the equations, one for each unknown; and the widest part of its size, of those tried, within which
-    the equations have no other.
+    """Return one ball for each unknown, which together hold exactly one root of the equations, and the widest box of ALONE in which
+    the equations have no other root (0.0 if none is proved).
 
-    `equations` makes a list of duals of one; the guess is doubles. Refused where no root is near the guess, or where the
-    balls are too wide for a proof.
+    `equations` maps a list of duals to a list of duals, and `guess` is in doubles. Raise Refused if no root is near the guess, and
+    Undecided if the balls are too wide for a proof.
     """
     centre = [arb(value) for value in guess]
     sizes = [abs(value) if value != 0 else arb(1) for value in centre]
@@ -65,7 +65,8 @@ def root(equations, guess, names):
     radii = [size * arb(2) ** (ROUNDING - ctx.prec) for size in sizes]
 
     def proved(radii):
-        """The operator's image of a box that it sends into its inside: there is one root in the box, and it is in the image."""
+        """Return the image of a box if the operator sends the box into its interior, else None. Then the box holds one root, inside
+        the image."""
         box, image = _operator(equations, centre, value, near, radii)
         return image if all(within(one, whole) for one, whole in zip(image, box)) else None
 

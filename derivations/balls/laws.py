@@ -4,7 +4,7 @@ from flint import arb
 
 
 class Circle:
-    """A circle about polar (distance kappa, direction), seen from the axis: c = kappa cos(phi) + sqrt(rho^2 - kappa^2 sin^2(phi))."""
+    """Circle about the polar point (distance kappa, direction), seen from the axis: c = kappa cos(phi) + sqrt(rho^2 - kappa^2 sin^2(phi))."""
 
     def __init__(self, distance, direction, radius):
         self.distance, self.direction, self.radius = distance, direction, radius
@@ -23,9 +23,9 @@ class Circle:
 
 
 class OffsetCircle:
-    """A circle about polar (distance kappa, direction), met by a line at an offset e to the left of the axis.
+    """Circle about the polar point (distance kappa, direction), met by a line at an offset e to the left of the axis.
 
-    c = kappa cos(phi) + sqrt(rho^2 - (kappa sin(phi) + e)^2)
+        c = kappa cos(phi) + sqrt(rho^2 - (kappa sin(phi) + e)^2)
     """
 
     def __init__(self, distance, direction, radius, offset):
@@ -66,7 +66,7 @@ class Waves:
 
 
 class Levered:
-    """A law behind a lever: every lift times its ratio."""
+    """Law behind a lever: every lift is multiplied by the lever's ratio."""
 
     def __init__(self, law, ratio):
         self.law, self.ratio = law, ratio

@@ -1,12 +1,12 @@
 """One flight over the cam, from a ball of starts: its gap, its first contact, the impact map and its derivative.
 
-A start is (theta, u, omega): the follower leaves the cam at the angle theta with the velocity u relative to it while the cam
-turns at omega. The gap after a time t is
+A start is (theta, u, omega): the follower leaves the cam at the angle theta with the velocity u relative to it, while the cam turns
+at omega. The gap after a time t is
 
     g(t; theta, u, omega) = q(t) - c(theta + omega t),   q(0) = c(theta), q'(0) = c'(theta) omega + u,
 
-so that g(0) = 0 and g'(0) = u. Everywhere it is enclosed by the mean value form in the start, about the ball's centre, and by
-Taylor's formula of second order in t, about the middle of the times.
+so that g(0) = 0 and g'(0) = u. The gap is enclosed by the mean value form in the start, about the ball's centre, and by Taylor's
+formula of second order in t, about the middle of the times.
 """
 
 from dataclasses import dataclass
@@ -17,15 +17,15 @@ from .cam import Cam
 from .flight import Follower
 from .numbers import Excluded, Refused, Undecided, between, overlap
 
-# Steps of a proof that no contact comes before: the first part of a revolution that is tried, and how often it is halved.
+# Steps of the proof that no contact comes earlier: the first step, as a part of a revolution, and how often it is halved.
 FIRST_STEP = 1 / 16
 HALVINGS = 24
-# Steps of Newton's method: each doubles the digits, and no precision that is used has 2^12.
+# Most steps of Newton's method. Each step doubles the digits.
 NEWTON = 12
 
 
 class Machine:
-    """A follower on a cam."""
+    """Follower on a cam."""
 
     def __init__(self, document):
         for name in ("follower", "cam"):
@@ -37,7 +37,7 @@ class Machine:
 
 @dataclass(frozen=True)
 class Start:
-    """Balls of starts: cam angle, rad, velocity relative to the cam, m/s, cam speed, rad/s."""
+    """Ball of starts: cam angle, rad, velocity relative to the cam, m/s, and cam speed, rad/s."""
 
     angle: arb
     velocity: arb
@@ -47,16 +47,16 @@ class Start:
         return iter((self.angle, self.velocity, self.speed))
 
     def centre(self):
-        """The start in the middle."""
+        """Return the start at the centre of the ball."""
         return Start(*(number.mid() for number in self))
 
     def offsets(self):
-        """How far a start of the ball may be from the one in the middle."""
+        """Return the offsets of the starts in the ball from its centre, as balls."""
         return [number - number.mid() for number in self]
 
 
 class Flight:
-    """The flights from a ball of starts; `law` says on which piece all of them start, else the cam tells."""
+    """Flights from a ball of starts. `law` is the law of the piece on which all of them start; by default the cam gives the law."""
 
     def __init__(self, machine, start, law=None):
         self.machine, self.start, self.law = machine, start, law
@@ -72,23 +72,23 @@ class Flight:
         self.centre = self if self.is_point else Flight(machine, start.centre(), law)
 
     def angle(self, time):
-        """theta + omega t."""
+        """Return the cam angle, theta + omega t."""
         return self.start.angle + self.start.speed * time
 
     def state(self, time):
-        """(q, v) at a ball of times, as wide as it comes."""
+        """Return (q, v) at a ball of times, by direct evaluation."""
         return self.machine.follower.fly(self.machine.follower.response(time), self.position, self.velocity)
 
     def _kinematics(self, time):
-        """What every enclosure needs at a ball of times: response, state, (c, c', c'') under the follower, and whether Taylor's
-        formula holds."""
+        """Return the numbers that every enclosure needs at a ball of times: response, state, (c, c', c'', c''') under the follower,
+        and True if Taylor's formula holds."""
         follower = self.machine.follower
         response = follower.response(time)
         lifts, smooth = self.machine.cam.seen(self.angle(time))
         return response, follower.fly(response, self.position, self.velocity), lifts, smooth and self.starts_smoothly
 
     def gap_by_start(self, time, seen=None):
-        """(g_theta, g_u, g_omega) over the ball."""
+        """Return (g_theta, g_u, g_omega) over the ball."""
         (p, s, _), _, (_, slope, _, _), _ = seen or self._kinematics(time)
         omega0_squared, speed = self.machine.follower.omega0_squared, self.start.speed
         # q_theta = (1 - w0^2 p) c'(theta) + s c''(theta) omega, q_u = s, q_omega = s c'(theta)
@@ -96,7 +96,7 @@ class Flight:
         return of_angle, s, s * self.slope - slope * time
 
     def rate_by_start(self, time, seen=None):
-        """(g'_theta, g'_u, g'_omega) over the ball, ' by time."""
+        """Return (g'_theta, g'_u, g'_omega) over the ball, where ' is by time."""
         (_, s, s1), _, (_, slope, curvature, _), _ = seen or self._kinematics(time)
         omega0_squared, speed = self.machine.follower.omega0_squared, self.start.speed
         # v_theta = -w0^2 s c'(theta) + s' c''(theta) omega, v_u = s', v_omega = s' c'(theta)
@@ -104,17 +104,17 @@ class Flight:
         return of_angle, s1, s1 * self.slope - slope - curvature * speed * time
 
     def _rate_rate(self, seen):
-        """g'' = q'' - c'' omega^2 over the ball."""
+        """Return g'' = q'' - c'' omega^2 over the ball."""
         _, (position, velocity), (_, _, curvature, _), _ = seen
         return self.machine.follower.acceleration(position, velocity) - curvature * self.start.speed**2
 
     def _at(self, time, seen=None):
-        """(g, g') as they come out, without any form that keeps them narrow."""
+        """Return (g, g') by direct evaluation, without a form that narrows them."""
         _, (position, velocity), (lift, slope, _, _), _ = seen or self._kinematics(time)
         return position - lift, velocity - slope * self.start.speed
 
     def gap(self, time):
-        """g over a ball of times and all starts."""
+        """Return g over a ball of times and all starts."""
         seen, middle = self._kinematics(time), time.mid()
         if not seen[-1]:
             return self._at(time, seen)[0]
@@ -124,7 +124,7 @@ class Flight:
         return gap if self.is_point else gap + _along(self.gap_by_start(time, seen), self.offsets)
 
     def gap_rate(self, time):
-        """g' over a ball of times and all starts."""
+        """Return g' over a ball of times and all starts."""
         seen, middle = self._kinematics(time), time.mid()
         if not seen[-1]:
             return self._at(time, seen)[1]
@@ -132,9 +132,11 @@ class Flight:
         return rate if self.is_point else rate + _along(self.rate_by_start(time, seen), self.offsets)
 
     def contact_near(self, time, known=False):
-        """A ball that holds a contact of each flight, one and no other within `time`, by interval Newton; None if not proved.
+        """Return a ball that holds a contact of each flight, the only one within `time`, by interval Newton; None if that is not
+        proved.
 
-        Nor is it where the lift or its slope may jump under the ball. With `known`, that there is one within `time` is proved before.
+        The result is None also if the lift or its slope may jump under the ball. With `known`, each flight is known to have a contact
+        within `time`.
         """
         if not (self.starts_smoothly and self.machine.cam.is_smooth(self.angle(time))):
             return None
@@ -142,7 +144,7 @@ class Flight:
             rate, middle = self.gap_rate(time), time.mid()
             if not rate < 0:
                 return None
-            # All of N(T) = m - g(m)/g'(T) in T: each start has one contact in T, and it lies in N(T).
+            # If N(T) = m - g(m)/g'(T) lies in T, each start has one contact in T, and this contact lies in N(T).
             step = middle - self.gap(middle) / rate
             known = known or time.contains(step)
             step = overlap(time, step) if known else None
@@ -152,8 +154,8 @@ class Flight:
         return time
 
     def lowest(self, time):
-        """A ball of times in which each flight is lowest over `time`, by interval Newton; None if it is not proved that the gap falls
-        where that begins, rises where it ends, and has g'' > 0 in between."""
+        """Return a ball of times in which each flight is lowest over `time`, by interval Newton. Return None unless it is proved that
+        the gap falls at the beginning of `time`, rises at its end, and has g'' > 0 in between."""
         seen = self._kinematics(time)
         if not (seen[-1] and self._rate_rate(seen) > 0 and self.gap_rate(time.lower()) < 0 < self.gap_rate(time.upper())):
             return None
@@ -166,11 +168,12 @@ class Flight:
         return time
 
     def first_contact(self, horizon, contact=None, skipped=None, clear=None):
-        """The time of the first contact of each flight, proved to be the first: 0 < g before it, g' < 0 at it.
+        """Return the time of the first contact of each flight, proved to be the first: g > 0 before it, and g' < 0 at it.
 
-        Looked for up to `horizon`, s; or it is `contact`, a ball of which it is known that g is 0 in it. Refused where the
-        flight touches, or where a proof would take steps too short. Nothing is said of the time from one end of `skipped` to the other;
-        up to `clear` it is known to be above the cam.
+        The contact is sought up to `horizon`, s. If `contact` is given, it is a ball in which g is known to be 0. Times between the
+        ends of `skipped` are not examined. Up to `clear` the follower is known to be above the cam. Raise Refused if the flight may
+        touch the cam, or if the steps of the proof become too short. Raise Excluded if the flight is proved to meet the cam
+        elsewhere.
         """
         revolution = 2 * arb.pi() / self.start.speed.mid()
         shortest = float(revolution.mid()) * FIRST_STEP / 2**HALVINGS
@@ -202,7 +205,7 @@ class Flight:
         raise Refused(f"no contact within {horizon:.6g} s")
 
     def _launched(self, revolution, shortest):
-        """A time up to which g' > 0, so that g > 0 but for t = 0."""
+        """Return a time up to which g' > 0, so that g > 0 except at t = 0."""
         if not self.start.velocity > 0:
             raise Undecided("the follower is not proved to leave the cam")
         step = float(revolution.mid()) * FIRST_STEP
@@ -213,15 +216,15 @@ class Flight:
         return step
 
     def _closed(self, low, high):
-        """About when the flight from the centre comes down, by halving: a guess."""
+        """Return a guess of the time at which the flight from the centre lands, by halving."""
         for _ in range(50):
             middle = (low + high) / 2
             low, high = (middle, high) if self._at(arb(middle))[0] > 0 else (low, middle)
         return (low + high) / 2
 
     def _contact_about(self, landing):
-        """The contact near a guess, proved to be one."""
-        # As wide as the starts make it, and more than the guess is off by.
+        """Return the contact near a guess, proved to be one. Raise Undecided if it is not proved."""
+        # The ball is as wide as the starts make it, plus more than the error of the guess.
         rate = self.centre._at(arb(landing))[1]
         if not rate < 0:
             raise Undecided(f"the flight is not proved to land about {landing:.6g} s after it began: it may touch")
@@ -239,8 +242,8 @@ def _along(gradient, offsets):
 
 @dataclass(frozen=True)
 class Impact:
-    """What the impact map makes of a ball of starts: the next start, of all and of the middle one, its derivative, and the
-    flight's time."""
+    """Image of a ball of starts under the impact map: the next starts, the next start of the centre, the derivative, and the flight's
+    time."""
 
     start: Start
     centre: Start
@@ -249,14 +252,14 @@ class Impact:
 
 
 def derivative(flight, time):
-    """d(theta', u')/d(theta, u, omega), 2x3, over all starts whose contact is within `time`; c'' is the hull across corners."""
+    """Return d(theta', u')/d(theta, u, omega), 2 x 3, over all starts whose contact is within `time`. Across corners, c'' is the hull."""
     machine, (_, _, speed) = flight.machine, flight.start
     seen = flight._kinematics(time)
     (_, s, s1), (position, velocity), (_, slope, curvature, _), _ = seen
     follower = machine.follower
     rate, acceleration = velocity - slope * speed, follower.acceleration(position, velocity)
     at_start = flight.slope, flight.curvature * speed
-    # q0 and v0 by (theta, u, omega).
+    # Derivatives of (q0, v0) by theta, u and omega.
     starts = ((at_start[0], at_start[1]), (arb(0), arb(1)), (arb(0), flight.slope))
     rows = [[], []]
     for index, (gap_by, (q_by, v_by)) in enumerate(zip(flight.gap_by_start(time, seen), starts)):
@@ -271,17 +274,18 @@ def derivative(flight, time):
 
 
 def impact_map(machine, start, horizon):
-    """f: (theta, u, omega) to (theta', u') after the first contact, proved to be the first of every start in the ball.
+    """Return the image of a ball under f: (theta, u, omega) to (theta', u') after the first contact, proved to be the first of every
+    start.
 
-    The image is that of the centre and the derivative times the ball. Where c'' jumps under the ball, f is Lipschitz with the
-    derivative's hull, and the mean value form holds all the same.
+    The image is the image of the centre plus the derivative times the offsets. Where c'' jumps under the ball, f is Lipschitz with
+    the hull of its derivatives, so that the mean value form still holds.
     """
     flight = Flight(machine, start)
     return impact(flight, flight.first_contact(horizon))
 
 
 def impact(flight, time):
-    """The impact map, where `time` is proved to hold one contact of each flight, and that is its first."""
+    """Return the image of the flights under the impact map. `time` must be proved to hold one contact of each flight, its first."""
     jacobian, centre, follower = derivative(flight, time), flight.centre, flight.machine.follower
     at_centre = centre.contact_near(time, known=True) or time
     angle, (_, velocity), speed = centre.angle(at_centre), centre.state(at_centre), centre.start.speed

@@ -1,10 +1,10 @@
-"""The orbits beside a corner impact: how far from it each side's fixed point is proved to follow it.
+"""Orbits beside a corner impact: the range about it in which the fixed point of each side is proved to exist.
 
-With the law of one side of the corner, continued past it, and the corner's impact at any angle theta, the equations of the orbit are
-F(w; theta) = 0, w the period and the velocities and the other angles of the impacts. Krawczyk's operator over a ball of angles about
-the corner shows that each theta has one root w in a box, and dw/dtheta = -(dF/dw)^-1 dF/dtheta has a ball over the box. Where dT/dtheta
-has one sign, there is one fixed point for every period about T*. It is one of the machine for the angles on the side of the law, if
-every flight is clear of the cam, and for those on the other side none.
+Let theta be the angle of the impact at the corner, and take the law of one side of the corner, continued past it. The equations of
+the orbit are F(w; theta) = 0, where w is the period and the velocities and the other angles of the impacts. Krawczyk's operator over
+a ball of angles about the corner shows that each theta has one root w in a box. Then dw/dtheta = -(dF/dw)^-1 dF/dtheta is enclosed
+over the box. If dT/dtheta has one sign, there is one fixed point for every period about T*. If every flight is clear of the cam, this
+fixed point is an orbit of the machine for the angles on the side of the law, and not for the angles on the other side.
 """
 
 from dataclasses import dataclass
@@ -16,16 +16,17 @@ from .krawczyk import inverse
 from .motion import Flight, Start
 from .numbers import Refused, Undecided, between, sign, within
 
-# Angles from the corner up to which the fixed points are tried to be followed, rad.
+# Distances from the corner, rad, within which the fixed points are sought, the widest first.
 REACHES = tuple(mantissa * 10.0**-exponent for exponent in range(1, 12) for mantissa in (5, 2, 1))
-# Boxes are so much wider than the derivative at the corner would have them.
+# Factor by which boxes are wider than the derivative at the corner suggests.
 WIDER = 1.5
 
 
 @dataclass(frozen=True)
 class Followed:
-    """For every period within `period` of T*, s, a side has one fixed point with its impact within `reach` of the corner, rad, and
-    that lies within `state` of x*; it is one of the machine for the periods on one side of T*, "slower" or "faster"."""
+    """Range in which a side has one fixed point: every period within `period` of T*, s. The impact of the fixed point lies within
+    `reach` of the corner, rad, and its state within `state` of x*. The fixed point is an orbit of the machine for the periods on one
+    side of T*, "slower" or "faster"."""
 
     period: float
     reach: float
@@ -34,7 +35,7 @@ class Followed:
 
 
 def followed(orbit, side):
-    """How far the fixed point of a side, "before" or "after", is followed; None where that is nowhere."""
+    """Return the widest range in which the fixed point of a side, "before" or "after", is proved to exist; None if there is none."""
     for reach in REACHES:
         try:
             return _within(orbit, side, reach)
@@ -51,7 +52,7 @@ def _within(orbit, side, reach):
     angles = orbit.corner.angle + arb(0, reach)
 
     def over(places, angle):
-        """F, dF/dw and dF/dtheta."""
+        """Return F, dF/dw and dF/dtheta."""
         *w, theta = Dual.varied([*places, angle])
         found = orbit.closing(laws, w[0], [theta, *w[2::2]], [w[1], *w[3::2]])
         return tuple(arb_mat(rows) for rows in zip(*(([one.value], one.slopes[:count], one.slopes[count:]) for one in found)))
@@ -70,7 +71,7 @@ def _within(orbit, side, reach):
         raise Undecided("the fixed point is not proved to be alone")
     rates = -(near * jacobian).solve(near * by_angle)
     later = sign(rates[0, 0], "the period by the impact's angle") * (-1 if side == "before" else 1)
-    # From the corner to where the law holds.
+    # From the corner to the end of the ball on the side where the law holds.
     shift = between(0, arb(-reach if side == "before" else reach))
     _prove_flights(orbit, laws, orbit.corner.angle + shift, [one + rates[row, 0] * shift for row, one in enumerate(at)])
     *w, theta = Dual.varied([*box, angles])
@@ -79,17 +80,17 @@ def _within(orbit, side, reach):
     flown = response(machine.follower, (orbit.section - angle) * w[0] / machine.cam.turn)
     state = machine.follower.fly(flown, lift(laws[leaving], angle)[0], velocity)
     moved = [sum((slope * rates[row, 0] for row, slope in enumerate(one.slopes[:count])), one.slopes[count]) for one in state]
-    # Two digits, rounded towards what is proved: by 5 % at most.
+    # Two digits, rounded to the safe side: the period down, the state up.
     period = float(f"{float(abs(rates[0, 0]).lower() * reach) * 0.95:.1e}")
     states = [float(f"{float(abs(one).upper() * reach) * 1.06:.1e}") for one in moved]
     return Followed(period, reach, states, "slower" if later > 0 else "faster")
 
 
 def _prove_flights(orbit, laws, angle, w):
-    """Each flight leaves the cam, is clear of it and comes down, from balls of impacts on the sides where their laws hold."""
+    """Prove that each flight leaves the cam, stays clear of it and lands, from balls of impacts on the sides where their laws hold."""
     cam, speed = orbit.machine.cam, orbit.machine.cam.turn / w[0]
     angles, velocities = [angle, *w[2::2], angle + orbit.revolutions * cam.turn], [w[1], *w[3::2]]
-    # The first one's piece goes from the corner to beyond the end of the ball that is farther from it.
+    # The piece of the first impact reaches from the corner to beyond the end of the ball that is farther from the corner.
     far = angle.lower() if _piece(laws[0]) is _piece(orbit.corner.before) else angle.upper()
     stays = _piece(cam.piece_of(arb(far)).law) is _piece(laws[0])
     if not (stays and all(piece.holds(other) for piece, other in zip(orbit.pieces, angles[1:]))):
@@ -101,7 +102,7 @@ def _prove_flights(orbit, laws, angle, w):
 
 
 def _piece(law):
-    """The law of a piece of the cam, whatever revolution it is turned to."""
+    """Return the innermost law of a piece of the cam, without its turn or its lever."""
     while hasattr(law, "law"):
         law = law.law
     return law

@@ -1,29 +1,30 @@
-"""Decimals as a model file writes them, balls as text that certainly holds them, and signs that are proved."""
+"""Decimals of a model file as rationals, balls as text that certainly holds them, and proved signs."""
 
 from fractions import Fraction
 
 from flint import arb, ctx, fmpq
 
-# A double has no exponent beyond this; more digits than that would only take memory.
+# Largest exponent that is read. Doubles have none beyond it, and larger numbers would only take memory.
 LARGEST_EXPONENT = 400
-# log10(2), rounded down: more digits than that no ball of so many bits has.
+# Decimal digits per bit of a ball: log10(2), rounded down.
 BITS_TO_DIGITS = 0.30102
 
 
 class Refused(Exception):
-    """What was to be proved is not so, or is no model: the sentence says what was found."""
+    """A statement that is not proved, or an input that is no valid model. The message says what was found."""
 
 
 class Excluded(Refused):
-    """It is proved not to be so."""
+    """The statement is proved to be false."""
 
 
 class Undecided(Refused):
-    """The balls are too wide to tell."""
+    """The balls are too wide to decide the statement."""
 
 
 def decimal(value):
-    """A decimal, as text or as an integer, as the rational number that it is; text may go on with " * a/b", a quotient of whole numbers."""
+    """Return a decimal, given as text or as an integer, as an exact rational. Text may end with " * a/b", a quotient of whole
+    numbers. Raise Refused for anything else."""
     if isinstance(value, bool) or not isinstance(value, (str, int)):
         raise Refused(f"{value!r} is not a number")
     written, _, factor = str(value).partition("*")
@@ -38,8 +39,8 @@ def decimal(value):
 
 
 def ball(number):
-    """A ball as {"mid", "rad"}, decimals: whatever the ball holds lies within rad of mid, and mid has no more digits than are proved,
-    each right but for one unit of the last."""
+    """Return a ball as {"mid", "rad"}, in decimals. Every number of the ball lies within rad of mid. `mid` has no more digits than
+    are proved, each right up to one unit of the last."""
     if not number.is_finite():
         raise Undecided("a ball is unbounded")
     mid, _, rad = number.str(int(ctx.prec * BITS_TO_DIGITS)).strip("[]").partition("+/-")
@@ -47,7 +48,7 @@ def ball(number):
 
 
 def hull(balls):
-    """The smallest ball, or nearly, that holds all of them."""
+    """Return the smallest ball, or nearly, that holds all of the balls."""
     balls = iter(balls)
     whole = next(balls)
     for one in balls:
@@ -56,22 +57,22 @@ def hull(balls):
 
 
 def between(low, high):
-    """The ball of all numbers from one number or ball to another."""
+    """Return the ball of all numbers from one number or ball to another."""
     return arb(low).union(arb(high))
 
 
 def overlap(one, other):
-    """A ball that holds what two balls share; None where it is proved that they share nothing."""
+    """Return a ball that holds the common part of two balls; None if it is proved that there is none."""
     return one.intersection(other) if one.overlaps(other) else None
 
 
 def within(inner, outer):
-    """Whether it is proved that one ball lies in the inside of another."""
+    """Return True if one ball is proved to lie in the interior of another."""
     return bool(inner.lower() > outer.lower() and inner.upper() < outer.upper())
 
 
 def sign(number, what):
-    """1 or -1, proved; Undecided where the ball holds 0."""
+    """Return the proved sign, 1 or -1. Raise Undecided if the ball holds 0."""
     if number > 0:
         return 1
     if number < 0:

@@ -1,15 +1,15 @@
 """All periodic orbits of one and of two impacts in one revolution, at one speed, each with its kind.
 
-An orbit is the angles of its impacts: Newton's law at every impact is linear in the velocities v after them and gives these, whatever
-the times between the impacts, and what is left is that every flight ends on the cam,
+The angles of its impacts determine an orbit. Newton's law at the impacts is linear in the velocities v after them, and gives these
+for any times between the impacts. It remains that every flight ends on the cam:
 
     v_next = (1 + r) c'_next - r (s' v + s f(c)),   E = c + s v + p f(c) - c_next = 0.
 
-Every pair of angles is excluded, or near a root that is proved to be alone, and of every root it is decided whether its flights are
-clear of the cam. Impacts of a pair that are nearer to one another than SHORT are excluded otherwise: see `_short`.
+Every pair of angles is excluded, or lies near a root that is proved to be the only one there. For every root it is decided whether
+its flights are clear of the cam. Two impacts nearer to each other than SHORT are excluded in another way: see `_short`.
 
-The mean value form and Krawczyk's operator need a continuous c'. Where c' jumps, each choice of sections of the cam between its jumps is
-looked through by itself, with the laws of the sections continued past their ends, and a root counts where it lies on its sections.
+The mean value form and Krawczyk's operator need a continuous c'. Where c' jumps, each choice of sections of the cam between its jumps
+is searched by itself, with the laws of the sections continued past their ends. A root counts if it lies on its sections.
 """
 
 from dataclasses import dataclass
@@ -21,20 +21,21 @@ from .motion import Flight, Start, derivative
 from .numbers import Excluded, Refused, Undecided, between, sign
 from .roots import all_roots, closed_in
 
-# Angle between two impacts below which they are told apart by the time that is left for the other flight, rad.
+# Angle between two impacts, rad, below which the time that is left for the other flight is used to exclude them.
 SHORT = 1 / 64
-# Parts of a flight at which a box of orbits is looked at for being inside of the cam.
+# Fractions of a flight at which a box of orbits is checked for being inside the cam.
 LOOKS = (1 / 16, 1 / 4, 1 / 2, 3 / 4, 15 / 16)
-# A double above a whole turn, so that the box to look through holds one, and how far that box goes beyond a section of the cam, rad.
+# A double above a full turn, so that the box that is searched holds a turn. Margin of that box beyond a section of the cam, rad.
 CIRCLE, EDGE = 2 * 3.1415926535897936, 2.0**-48
-# Parts of the whole circle that the short flights are not halved beyond.
+# Width of a range of angles, rad, below which it is not halved in the search for short flights.
 SMALLEST = 2.0**-24
 
 
 @dataclass(frozen=True)
 class Orbit:
-    """Impacts as (angle, velocity relative to the cam after it), the derivative of the impact map once around, and the kind:
-    stable, saddle (a multiplier above 1), flip (one below -1) or neutral (a pair on the unit circle, of a follower that loses nothing)."""
+    """Periodic orbit: its impacts as (angle, velocity relative to the cam after the impact), the derivative of the impact map once
+    around, and the kind. Kinds are stable, saddle (a multiplier above 1), flip (a multiplier below -1) and neutral (a pair on the
+    unit circle, for a follower without loss)."""
 
     impacts: list
     derivative: arb_mat
@@ -42,18 +43,18 @@ class Orbit:
 
 
 class Orbits:
-    """The orbits of a machine at a speed, rad/s."""
+    """Orbits of a machine at a speed, rad/s."""
 
     def __init__(self, machine, speed):
         self.machine, self.speed = machine, speed
         self.turn, self.period = machine.cam.turn, machine.cam.turn / speed
-        # Then every impact and every flight keeps areas: det M = 1.
+        # Without loss, every impact and every flight preserves area: det M = 1.
         self.lossless = machine.follower.restitution == 1 and machine.follower.zeta == 0
         if not self.machine.follower.restitution > 0:
             raise Refused("a follower without restitution does not leave the cam")
 
     def of(self, count):
-        """(orbits, places that are undecided) of `count` impacts, 1 or 2."""
+        """Return (orbits, undecided places) with `count` impacts, 1 or 2."""
         cam, orbits, undecided = self.machine.cam, [], [] if count == 1 else self._short()
         for first in cam.sections(1):
             for sections in [[first]] if count == 1 else [[first, second] for second in cam.sections(2)]:
@@ -62,16 +63,16 @@ class Orbits:
         return orbits, undecided
 
     def _on(self, sections):
-        """(orbits, places that are undecided) whose impacts are on these parts of the cam, one after the other."""
+        """Return (orbits, undecided places) whose impacts are on these sections of the cam, one after the other."""
         laws, first, last = [section.law for section in sections], sections[0], sections[-1]
-        # The doubles about a range of angles, so that the box to look through holds it.
+        # The box is in doubles and holds the range of angles.
         box, ranges = [(float(first.start) - EDGE, float(first.end) + EDGE)], [(first.start, first.end)]
         if len(sections) > 1:
-            # The shorter flight first: each pair once.
+            # The shorter flight comes first, so that each pair is searched once.
             box, ranges = [*box, (SHORT, CIRCLE / 2)], [*ranges, (SHORT, self.turn / 2)]
 
         def equations(unknowns):
-            """How far each flight ends from the cam."""
+            """Return the distance from the cam at which each flight ends."""
             return [ends for *_, ends in self._thrown(self._flights(unknowns), laws)]
 
         def excluded(balls):
@@ -80,7 +81,7 @@ class Orbits:
 
         found, undecided = all_roots(equations, box, excluded)
         orbits = []
-        # A box may hold a root that lies beyond the whole one: then it is there again a turn, or the other flight, on.
+        # A box may hold a root outside the whole range. This root is found again a turn, or one flight, later.
         kept = []
         for one in found:
             root = closed_in(equations, one)
@@ -99,16 +100,18 @@ class Orbits:
         return orbits, undecided
 
     def _flights(self, unknowns):
-        """(angle of its start, angle turned) of each flight, from the angle of the first impact and what is turned to the second."""
+        """Return (start angle, angle turned) of each flight, from the angle of the first impact and the angle turned until the second."""
         first, *others = unknowns
         if not others:
             return [(first, first.constant(self.turn))]
         return [(first, others[0]), (first + others[0], self.turn - others[0])]
 
     def _thrown(self, flights, laws):
-        """(lift, cam velocity, v+ of the flight that begins there, where that ends less the next lift) of each impact, duals.
+        """Return, for each impact, duals: (lift, cam velocity, v+ of the flight that begins there, end of this flight less the next
+        lift).
 
-        The impacts throw: v+ of the next is a - r s' v+ of this one, a = (1 + r) c' - r s f, so that once around v+ = all + part v+.
+        By Newton's law, v+ of the next impact is a - r s' v+ of this one, with a = (1 + r) c' - r s f. So once around v+ = whole +
+        part v+.
         """
         follower, speed, count = self.machine.follower, self.speed, len(flights)
         lifts = [lift(law, angle) for law, (angle, _) in zip(laws, flights)]
@@ -129,12 +132,12 @@ class Orbits:
         return found
 
     def _excluded(self, balls, laws):
-        """Whether every flight of a box leaves into the cam, comes from inside of it, or is inside of it on its way."""
+        """Return True if every orbit of a box is proved to have a flight that starts into the cam, or is inside the cam on its way."""
         cam, follower, centre = self.machine.cam, self.machine.follower, [ball.mid() for ball in balls]
         flights = self._flights(Dual.varied(balls))
         thrown, middle = self._thrown(flights, laws), self._thrown(self._flights(Dual.varied(centre)), laws)
         for k, (c, cam_velocity, leaves, _) in enumerate(thrown):
-            # By the mean value form: a difference of numbers that vary together.
+            # Mean value form, since this is a difference of numbers that vary together.
             relative, at_centre = leaves - cam_velocity, middle[k][2] - middle[k][1]
             form = at_centre.value + sum((slope * (ball - m) for slope, ball, m in zip(relative.slopes, balls, centre)), arb(0))
             if relative.value < 0 or form < 0:
@@ -149,17 +152,17 @@ class Orbits:
         return False
 
     def _short(self):
-        """Where two impacts nearer than SHORT may belong to an orbit, which is nowhere if all goes well.
+        """Return the places where two impacts nearer than SHORT may belong to an orbit. The list is empty if all goes well.
 
-        Of a flight of time t <= SHORT/omega with |g''| <= G, g its gap, both its velocities relative to the cam are at most G t/2:
-        the other flight leaves with 0 to r G t/2, takes T - t, and arrives with 0 to G t/(2 r). Most flights cannot.
+        Let g be the gap of a flight of time t <= SHORT/omega, with |g''| <= G. Both its velocities relative to the cam are at most G
+        t/2. So the other flight leaves with 0 to r G t/2, takes T - t, and arrives with 0 to G t/(2 r). Most flights cannot.
         """
         cam, parts, undecided = self.machine.cam, [(0.0, CIRCLE)], []
         while parts:
             low, high = parts.pop()
             if self._no_short(between(low, high)):
                 continue
-            # Between impacts on both sides of a jump of c' nothing is decided, however near they are.
+            # Impacts on both sides of a jump of c' stay undecided, however near they are.
             if high - low < (SMALLEST if cam.is_smooth(between(low, high + SHORT)) else SHORT / 16):
                 undecided.append([between(low, high), between(0, SHORT)])
                 continue
@@ -167,14 +170,14 @@ class Orbits:
         return undecided
 
     def _no_short(self, angle):
-        """Whether no orbit has an impact in a ball of angles and another one up to SHORT after it."""
+        """Return True if it is proved that no orbit has an impact in a ball of angles and another one up to SHORT after it."""
         follower, cam, speed = self.machine.follower, self.machine.cam, self.speed
         along, longest = angle + between(0, SHORT), arb(SHORT) / speed
         if not cam.is_smooth(along):
             return False
         lift_there, slope, curvature, _ = cam.derivatives(along)
         over = abs(follower.acceleration(lift_there, slope * speed) - curvature * speed**2).abs_upper() * 2
-        # While |g''| <= G, |g'| <= G t and |g| <= G t^2: with those it is below G, so that it stays so.
+        # While |g''| <= G, |g'| <= G t and |g| <= G t^2. These bounds give |g''| < G, so that the first bound stays true.
         near = lift_there + arb(0, over * longest * longest), slope * speed + arb(0, over * longest)
         if not abs(follower.acceleration(*near) - curvature * speed**2) < over:
             return False
@@ -187,7 +190,7 @@ class Orbits:
         return any(other.gap(self.period * part) < 0 for part in LOOKS)
 
     def _orbit(self, root, laws):
-        """The orbit of a root, its flights clear of the cam; Excluded where they are not."""
+        """Return the orbit of a root, its flights proved clear of the cam. Raise Excluded if they are not clear."""
         flights = self._flights([Dual(value, []) for value in root])
         impacts, around = [], arb_mat([[1, 0], [0, 1]])
         for (angle, turn), (_, cam_velocity, leaves, _) in zip(flights, self._thrown(flights, laws)):
@@ -204,18 +207,18 @@ class Orbits:
 
 
 def _inside(value, ends):
-    """Whether a number lies between two ends; None where that is not decided."""
+    """Return True if a number lies between two ends, False if it does not, and None if undecided."""
     low, high = ends
     return True if value > low and value < high else False if value < low or value > high else None
 
 
 def _holds(box, root):
-    """Whether a box that holds one root alone holds this one: then it is that one."""
+    """Return True if a box that holds only one root holds this root. Then both roots are the same."""
     return all(bool(whole.contains(one)) for whole, one in zip(box, root))
 
 
 def kind(around, lossless):
-    """What the derivative of a return map says of its fixed point, from the signs of 1 - tr + det, 1 + tr + det and 1 - det."""
+    """Return the kind of a fixed point, from the derivative of its return map: the signs of 1 - tr + det, 1 + tr + det and 1 - det."""
     trace, determinant = around[0, 0] + around[1, 1], 1 if lossless else around.det()
     if sign(1 - trace + determinant, "det(I - M)") < 0:
         return "saddle"

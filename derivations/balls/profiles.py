@@ -1,7 +1,7 @@
-"""The [cam] table of a model as pieces: [(angle where it starts, law, how many derivatives agree there)].
+"""The [cam] table of a model as pieces: [(angle where it starts, law, number of derivatives that agree there)].
 
-The decimals of the table are exact. The lift counts as a derivative, so that 2 says that lift and slope agree; it is said only
-of what follows from how the law is made. None: nothing meets there.
+The decimals of the table are exact. The lift counts as a derivative, so that 2 means that lift and slope agree. The number counts
+only derivatives that agree because of how the law is made. None means that no two laws meet there.
 """
 
 from math import floor
@@ -11,12 +11,12 @@ from flint import arb, arb_mat, arb_poly, fmpq
 from .laws import Circle, Levered, OffsetCircle, Waves
 from .numbers import Refused, Undecided, decimal
 
-# Larger systems than a measured cam has; their solution in balls takes minutes.
+# Most rows of a table. Measured cams have fewer, and larger systems take minutes to solve in balls.
 MOST_ROWS = 1000
 
 
 def pieces_of(table):
-    """The pieces of a [cam] table, by rising start in [0, 2 pi)."""
+    """Return the pieces of a [cam] table, by rising start in [0, 2 pi)."""
     law = table.get("law")
     if law not in LAWS:
         raise Refused(f"cam.law = {law!r}: must be one of {', '.join(LAWS)}")
@@ -44,19 +44,19 @@ def _radians(degrees):
 
 
 def arcs(table):
-    """Base, flank and nose circles that touch, mirrored about pi; touching, they agree in lift and slope."""
+    """Return the pieces of base, flank and nose circles that touch, mirrored about pi. Where circles touch, lift and slope agree."""
     fields = ("base_radius", "flank_radius", "nose_radius", "flank_start_deg", "nose_end_deg")
     base, flank, nose, start_deg, end_deg = (_number(table, name) for name in fields)
     if not (0 < base < flank and 0 < nose < flank and 0 < start_deg < end_deg <= 180):
         raise Refused("cam: the circles need 0 < base < flank, 0 < nose < flank and 0 < flank_start < nose_end <= 180 deg")
     start, end, turn = _radians(start_deg), _radians(end_deg), 2 * arb.pi()
     sin, cos = _radians(end_deg - start_deg).sin_cos()
-    # The flank's centre is opposite its first ray; |O1 O2| = flank - nose fixes the nose's centre on its last.
+    # The flank's centre lies opposite its first ray. |O1 O2| = flank - nose fixes the nose's centre on the flank's last ray.
     behind, apart = arb(flank - base), arb(flank - nose)
     ahead = ((apart - behind * sin) * (apart + behind * sin)).sqrt() - behind * cos
     if not ahead > 0:
         raise Refused("cam: the flank and the nose circle do not touch")
-    # Seen from axes with the flank's first ray as the first: O1 = (-behind, 0), O2 = ahead (cos, sin).
+    # In axes whose first axis is the flank's first ray: O1 = (-behind, 0), O2 = ahead (cos, sin).
     between = ahead * cos + behind, ahead * sin
     contact, tip, offset = table.get("contact", "point"), arb(0), arb(0)
     if isinstance(contact, dict):
@@ -66,10 +66,10 @@ def arcs(table):
     elif contact not in ("point", "flat"):
         raise Refused(f"cam.contact: {contact!r} is not a contact that the proofs cover")
     if contact == "flat":
-        # A face is on two circles along their common normal.
+        # A flat face touches both circles along their common normal.
         (x, y), early = between, [arb(0)] * 3
     else:
-        # The point, or the roller's centre, passes from one circle to the other there, its radius further out.
+        # The point, or the roller's centre, passes from one circle to the other there. The roller's centre is its radius further out.
         stretch = (flank + tip) / apart
         x, y = stretch * between[0] - behind, stretch * between[1]
         early = [(offset / radius).asin() for radius in (base + tip, (x * x + y * y).sqrt(), ahead + nose + tip)]
@@ -92,55 +92,58 @@ def arcs(table):
     pieces = [(up[0], rising), (up[1], near), (up[2], dwell(ahead + nose)), (down[2], far), (down[1], falling), (down[0], dwell(arb(base)))]
     if end_deg == 180:
         del pieces[2]
-    # With an offset the flank may begin before angle 0, or the last dwell behind a turn.
+    # With an offset the flank may begin before angle 0, or the last dwell after a full turn.
     pieces = [(angle - turn * floor(float(angle / turn)), law, 2) for angle, law in pieces]
     return sorted(pieces, key=lambda piece: float(piece[0]))
 
 
 def harmonic(table):
-    """c = offset + sum a_k cos(k theta + p_k), one law all round."""
+    """Return c = offset + sum a_k cos(k theta + p_k), one law for the whole turn."""
     pairs = zip(table.get("amplitudes", ()), table.get("phases_deg", ()), strict=True)
     waves = [(arb(decimal(a)), k, _radians(decimal(phase))) for k, (a, phase) in enumerate(pairs, start=1)]
     return [(arb(0), Waves(arb(0), [_number(table, "offset")], waves), None)]
 
 
 def rectified_sine(table):
-    """c = offset + amplitude |sin theta|: the lift agrees at 0 and pi, and the slope jumps."""
+    """Return c = offset + amplitude |sin theta|. The lift agrees at 0 and pi, and the slope jumps there."""
     offset, amplitude = _number(table, "offset"), arb(_number(table, "amplitude"))
     # sin u = cos(u - pi/2)
     hump = [(amplitude, 1, -arb.pi() / 2)]
     return [(start, Waves(start, [offset], hump), 1) for start in (arb(0), arb.pi())]
 
 
-# Up to which part of its terms what two polynomials miss each other by is what typing leaves, and in how many derivatives that goes.
+# Largest mismatch between two polynomials, relative to their terms, that counts as rounding of typed decimals; and the number of
+# derivatives in which it does.
 TYPED, JOINED = fmpq(1, 10**9), 4
 
 
 def polynomial(table):
-    """c = sum a_k (theta - start)^k, with what typing left between two of them taken out: they agree up to a corner."""
+    """Return c = sum a_k (theta - start)^k. The mismatch that typing left between two polynomials is taken out, so that they agree up
+    to a corner."""
     starts, laws, spans, missed, smooth = _typed(table)
 
     def along(first):
-        """What is added to each piece, from what is added to the first one, and at last to that one a revolution on."""
+        """Yield the correction of each piece, from the correction of the first one, and at last the correction of the first a
+        revolution later."""
         yield first
         for span, jumps in zip(spans, missed):
             first = first(arb_poly([span, 1])) - jumps
             yield first
 
-    # What is added to the first piece leaves its lift, and is of degree 4: each power adds to those below it a revolution on,
-    # where no term below the fourth may differ.
+    # The correction of the first piece keeps its lift and is of degree 4. A revolution later each power adds to those below it, and
+    # no term below the fourth may differ.
     *_, open_by = along(arb_poly([]))
     rises = [arb_poly([2 * arb.pi(), 1]) ** k for k in range(1, JOINED + 1)]
     powers = arb_mat([[rise[n] if n < k else 0 for k, rise in enumerate(rises, 1)] for n in range(JOINED)])
     first = powers.solve(arb_mat([[-open_by[n]] for n in range(JOINED)]))
     joined = [law + added for law, added in zip(laws, along(arb_poly([0, *first.entries()])))]
-    # Whether c'' jumps is for its balls to tell, as of a motion.
+    # The balls of c'' decide whether it jumps, as for a motion.
     agree = [min(count, 2) for count in (smooth[-1], *smooth[:-1])]
     return [(start, Waves(start, law.coeffs()), count) for start, law, count in zip(starts, joined, agree)]
 
 
 def missed_by(table):
-    """By how much pieces of a cam, as they are typed, miss each other at most where they meet, lift and slope; none but polynomials."""
+    """Return the largest mismatch of lift and of slope between the pieces of a cam as typed; 0 for laws other than polynomials."""
     if table.get("law") != "polynomial":
         return arb(0), arb(0)
     *_, missed, _ = _typed(table)
@@ -148,7 +151,7 @@ def missed_by(table):
 
 
 def _typed(table):
-    """Of the polynomials as they are typed: starts, laws, spans, and what each misses the next one by, as `_missed` has it."""
+    """Return starts, laws and spans of the polynomials as typed, and the mismatches and agreements with the next one, as from `_missed`."""
     starts = [_radians(_number(segment, "start_deg", "cam.segment")) for segment in table.get("segment", ())]
     laws = [arb_poly([decimal(a) for a in segment.get("coefficients", ())]) for segment in table.get("segment", ())]
     if not laws:
@@ -159,7 +162,8 @@ def _typed(table):
 
 
 def _missed(law, span, after):
-    """What a law misses the next one by that is to be taken out, about where that starts, and how many derivatives then agree there."""
+    """Return the mismatch between a law and the next one that is to be taken out, as a polynomial about the start of the next one,
+    and the number of derivatives that agree there afterwards."""
     before, sizes = (of(arb_poly([span, 1])) for of in (law, arb_poly([abs(a) for a in law])))
     jumps, smooth = [], JOINED
     for n in range(JOINED):
@@ -173,17 +177,17 @@ def _missed(law, span, after):
 
 
 def spline(table):
-    """The periodic spline through the rows, solved in balls: of degree 3 it agrees up to c'', of degree 5 up to c''''."""
+    """Return the periodic spline through the rows, solved in balls. Degree 3 agrees up to c'', and degree 5 up to c''''."""
     turn = fmpq(360)
     rows = [(decimal(row["angle_deg"]), decimal(row["lift"])) for row in table.get("rows", ())]
-    # In one turn, from 0 on.
+    # Angles in one turn, from 0 on.
     rows = sorted((angle - turn * (angle / turn).floor(), lift) for angle, lift in rows)
     degree = {"cubic": 3, "quintic": 5}.get(table.get("spline"))
     if degree is None or not 3 <= len(rows) <= MOST_ROWS:
         raise Refused(f"cam: the proofs cover a table only as a cubic or quintic spline of 3 to {MOST_ROWS} rows")
     count, size = len(rows), (degree - 1) // 2
     ends = rows[1:] + [(rows[0][0] + turn, rows[0][1])]
-    # Widths in units of the mean one; the unknowns of a row are its slope and, of degree 5, its curvature.
+    # Widths are in units of the mean width. The unknowns of a row are its slope and, for degree 5, its curvature.
     gaps = [(fmpq(count) * (b - a) / turn, v, w - v) for (a, v), (b, w) in zip(rows, ends)]
     matrix, right = arb_mat(size * count, size * count), arb_mat(size * count, 1)
     for index, (h, value, rise) in enumerate(gaps):
@@ -231,9 +235,10 @@ def spline(table):
 
 
 def program(table):
-    """Motions one after the other. Each starts and ends at rest, so that lift and slope agree; inside one, too.
+    """Return the motions one after the other. Each starts and ends at rest, so that lift and slope agree; they also agree inside a
+    motion.
 
-    The spans are taken as parts of their sum and the last rise as what closes the lift, as the model's reader takes them.
+    As in the reader of model files, spans are taken as parts of their sum, and the last rise closes the lift.
     """
     segments = table.get("segment", ())
     spans = [_number(segment, "span_deg", "cam.segment") for segment in segments]
@@ -255,17 +260,17 @@ def program(table):
 
 
 class Placed:
-    """A motion's place: where it starts and what it takes, rad, the lift that it starts at and what it adds."""
+    """Place of a motion: its start and its span, rad, the lift at the start, and the rise."""
 
     def __init__(self, start, span, lift, rise):
         self.start, self.span, self.lift, self.rise = start, span, lift, rise
 
     def pieces(self, motion):
-        """A motion, for a rise of 1 over a span of 1, is [(where it starts, about which x, coefficients, wave)]."""
+        """Return the pieces of a motion. For a rise of 1 over a span of 1, `motion` returns [(start, reference x, coefficients, wave)]."""
         return [(self.start + self.span * x, self.law(*law), 2) for x, *law in motion()]
 
     def law(self, about, coefficients, wave):
-        """s = sum a_k y^k + amplitude cos(frequency y + phase), y = x - about, stretched."""
+        """Return s = sum a_k y^k + amplitude cos(frequency y + phase), y = x - about, stretched to the place."""
         scaled = [self.rise * a / self.span**k for k, a in enumerate(coefficients)]
         waves = [(self.rise * amplitude, frequency / self.span, phase) for amplitude, frequency, phase in wave]
         return Waves(self.start + self.span * about, [self.lift + scaled[0]] + scaled[1:], waves)
@@ -274,7 +279,7 @@ class Placed:
 def _halves(*powers):
     """s = sum a_k x^k, k from 0, up to the middle, and 1 - s(1 - x) from there, about the end."""
     first = [arb(a) for a in powers]
-    # -(-1)^k a_k, as y = x - 1.
+    # -(-1)^k a_k, since y = x - 1.
     last = [1 - first[0]] + [-a if k % 2 == 0 else a for k, a in enumerate(first)][1:]
     return [(fmpq(0), fmpq(0), first, []), (fmpq(1, 2), fmpq(1), last, [])]
 

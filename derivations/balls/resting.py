@@ -1,15 +1,15 @@
-"""Motions that rest on the cam, followed from where it lets go of the follower until they rest again.
+"""Motions that rest on the cam, followed from the release of the follower until they rest again.
 
-On the cam the follower is pressed against it while
+A follower on the cam is pressed against it while
 
     a(theta) = f(c) - 2 zeta omega c' - omega^2 c''
 
-is below 0, and let go where a rises above 0. From there its motion is one alone, whatever came before. So where every one of these
-motions rests again, each motion that ever rests is periodic some time later.
+is below 0, and is released where a rises above 0. The motion after a release does not depend on what came before. So if every motion
+after a release rests again, each motion that ever rests is periodic some time later.
 
-A motion comes to rest by impacts without end. From an impact with a velocity u relative to the cam on, let the gap of all flights bend
-with -A <= g'' <= -a < 0. Then a flight rises by u^2/2a at most, takes 2u/a at most, and comes back with sqrt(A/a) u at most, of which the
-impact leaves r. With q = r sqrt(A/a) < 1 the impacts end within
+A motion comes to rest by an infinite sequence of impacts. After an impact with a velocity u relative to the cam, let the gap of all
+flights bend with -A <= g'' <= -a < 0. Then a flight rises by u^2/2a at most, takes 2u/a at most, and returns with sqrt(A/a) u at
+most. The impact leaves a fraction r of this velocity. With q = r sqrt(A/a) < 1 the impacts end within
 
     2u/a (1 + q + q^2 + ...) = 2u/(a (1 - q)).
 """
@@ -21,21 +21,22 @@ from flint import arb
 from .motion import Flight, Start, impact
 from .numbers import Refused, Undecided, between, hull
 
-# Parts of a piece of the cam at first, and how often one is halved where the sign of a is not decided in it.
+# Number of parts of a piece of the cam at first, and how often a part is halved while the sign of a in it is not decided.
 PARTS = 16
 HALVINGS = 40
-# Parts of the time until rest, in each of which the bend of the gap is enclosed.
+# Number of parts of the time until rest, in each of which the bend of the gap is enclosed.
 LOOKS = 4
-# Impacts after which a motion is given up, and turns of the cam that a flight may take.
 # Added to a velocity that may be 0, m/s, so that bounds by it are above 0.
 SLOWEST = 2.0**-64
+# Impacts after which a motion is given up, and most turns of the cam during a flight.
 MOST_IMPACTS = 2000
 MOST_TURNS = 30
 
 
 @dataclass(frozen=True)
 class Release:
-    """Where the cam lets go: the angle, rad, the law of the cam from there on, up to where a stays above 0, and whether it jumps there."""
+    """Release of the follower: the angle, rad, the law of the cam from there on, and the angle up to which a stays above 0. `jumps`
+    is True if the release is at the start of a piece, where a may jump."""
 
     angle: arb
     law: object
@@ -45,8 +46,8 @@ class Release:
 
 @dataclass(frozen=True)
 class Hop:
-    """What comes after a release: after so many impacts others follow without end, up to an angle, rad, at the latest; and which release
-    comes next, so many revolutions on."""
+    """Motion after a release: after `impacts` impacts an infinite sequence follows, which ends at the angle `rests`, rad, at the
+    latest. The next release is `to`, `revolutions` revolutions on."""
 
     impacts: int
     rests: arb
@@ -55,7 +56,7 @@ class Hop:
 
 
 class Resting:
-    """The motions of a machine at a speed, rad/s, that start where the cam lets go of the follower."""
+    """Motions of a machine at a speed, rad/s, that start at a release of the follower."""
 
     def __init__(self, machine, speed):
         self.machine, self.speed, self.turn = machine, speed, machine.cam.turn
@@ -65,7 +66,7 @@ class Resting:
         if not machine.follower.restitution < 1:
             raise Refused("no motion comes to rest without a loss at impacts")
         ends = [*cam.starts[1:], cam.starts[0] + self.turn]
-        # The stretches of a turn in which a has one sign: (start, end, law, sign).
+        # Stretches of a turn in which a has one sign: (start, end, law, sign).
         self.stretches = [one for piece in zip(cam.starts, ends, cam.laws) for one in self._signs(*piece)]
         before = [self.stretches[-1], *self.stretches]
         self.releases = [
@@ -75,14 +76,14 @@ class Resting:
         ]
 
     def _pressure(self, law, angle):
-        """(a, da/dtheta) over a ball of angles."""
+        """Return (a, da/dtheta) over a ball of angles."""
         lift, slope, curvature, third = law.derivatives(angle)
         follower, speed = self.machine.follower, self.speed
         a = follower.acceleration(lift, speed * slope) - speed**2 * curvature
         return a, -follower.omega0_squared * slope - 2 * follower.zeta * speed * curvature - speed**2 * third
 
     def _signs(self, start, end, law):
-        """The stretches of a piece of the cam, in order, those of one sign next to each other as one."""
+        """Return the stretches of a piece of the cam in which a has one sign, in order. Neighbours of one sign are joined."""
         cuts = [start, *(start + (end - start) * part / PARTS for part in range(1, PARTS)), end]
         whole, parts = [], [(low, high, 0) for low, high in zip(cuts, cuts[1:])]
         while parts:
@@ -90,7 +91,7 @@ class Resting:
             over, rate = self._pressure(law, between(low, high))
             ends = [self._pressure(law, angle)[0] for angle in (low, high)]
             signs = [1 if one > 0 else -1 if one < 0 else 0 for one in ends]
-            # Where a changes one way only, the signs at the ends are those of all of the stretch.
+            # If a is monotone and has one sign at both ends, it has this sign on the whole stretch.
             is_monotone = rate > 0 or rate < 0
             if over > 0 or over < 0 or (is_monotone and signs[0] == signs[1] != 0):
                 found = [(low, high, signs[0])]
@@ -110,7 +111,7 @@ class Resting:
         return [(low, high, law, sign) for low, high, sign in whole]
 
     def _root(self, law, low, high, rate):
-        """The one zero of a in a stretch in which it changes one way, by Newton's method on balls."""
+        """Return the only zero of a in a stretch in which a is monotone, by Newton's method on balls."""
         angle = between(low, high)
         while True:
             middle = angle.mid()
@@ -121,8 +122,8 @@ class Resting:
             angle, rate = narrower, self._pressure(law, narrower)[1]
 
     def hop(self, index):
-        """What comes after a release; None where there is no rest within the impacts that are looked at, Refused where the balls are
-        too wide to tell."""
+        """Return the motion after a release; None if it is not proved to rest within MOST_IMPACTS impacts. Raise Refused if the balls
+        are too wide to decide."""
         release = self.releases[index]
         start = Start(release.angle, arb(0), self.speed)
         flight = Flight(self.machine, start, release.law)
@@ -139,7 +140,7 @@ class Resting:
         return None
 
     def _lifted(self, flight, release):
-        """A time up to which the follower is proved to be above the cam after a release, at which g = g' = 0."""
+        """Return a time up to which the follower is proved to be above the cam after a release, where g = g' = 0."""
         follower, speed = self.machine.follower, self.speed
         step = (release.end - release.angle) / speed
         for _ in range(HALVINGS):
@@ -158,15 +159,15 @@ class Resting:
         raise Undecided("the follower is not proved to leave the cam where it lets go")
 
     def _rests(self, start):
-        """(angle at which it rests at the latest, angle of the release after that, which) after an impact; None if it is not proved
-        to come to rest before."""
+        """Return (latest angle at which the follower rests, angle of the next release, index of that release) after an impact. Return
+        None if rest before that release is not proved."""
         follower, cam, speed, velocity = self.machine.follower, self.machine.cam, self.speed, start.velocity.abs_upper() + SLOWEST
         place = self._pressed(start.angle)
         a = -self._contact(start.angle)
         if place is None or not a > 0:
             return None
         to, release = place
-        # What is taken for granted of the flights, twice of what it is for flights without end, and shown below.
+        # Bounds that are assumed of the flights and proved below: twice the values for a constant acceleration a.
         lasts, height, relative = (2 * bound for bound in (2 * velocity / (a * (1 - follower.restitution)), velocity**2 / (2 * a), velocity))
         end = (start.angle + speed * lasts).upper()
         if not end < release:
@@ -183,16 +184,17 @@ class Resting:
         return (end, release, to) if holds and 2 * velocity / (least * (1 - q)) < lasts else None
 
     def _contact(self, angle):
-        """a over a ball of angles, whatever the pieces of the cam in it."""
+        """Return a over a ball of angles, across the pieces of the cam in it."""
         lift, slope, curvature, _ = self.machine.cam.derivatives(angle)
         return self.machine.follower.acceleration(lift, self.speed * slope) - self.speed**2 * curvature
 
     def _pressed(self, angle):
-        """(which release, where) comes after an angle from which on the cam presses until then; None if it is not proved to."""
+        """Return (index of a release, its angle) after an angle from which on the cam presses until that release; None if that is not
+        proved."""
         turns = int(float(angle) // float(self.turn))
         for to, release in enumerate(self.releases):
             last = next(index for index, (start, *_) in enumerate(self.stretches) if start is release.angle)
-            # Back over the stretches that press; the first of a turn comes after the last of the turn before.
+            # Go back over the stretches that press. The first stretch of a turn comes after the last one of the turn before.
             first = last
             while self.stretches[first - 1][-1] < 0:
                 first -= 1

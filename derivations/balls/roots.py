@@ -1,23 +1,23 @@
-"""All roots of a system of equations in a box, by halving it: every part is excluded, or holds one root, or is left undecided."""
+"""All roots of a system of equations in a box, by halving: every part is excluded, or holds one root, or is left undecided."""
 
 from flint import arb, arb_mat
 
 from .duals import Dual
 from .numbers import Undecided, between, overlap, within
 
-# Parts of the whole box that are not halved any more.
+# Width of a part, relative to the whole box, below which it is not halved.
 SMALLEST = 2.0**-32
-# Parts that are looked at; what is left of the box then is undecided.
+# Most parts that are halved; the rest of the box is then undecided unless it is excluded or holds one root.
 MOST = 30_000
-# Krawczyk's operator is tried on boxes so much wider, so that a root at the edge of one is inside of another.
+# Factor by which boxes are widened for Krawczyk's operator, so that a root at the edge of a box is inside another.
 WIDER = 1.25
 
 
 def all_roots(equations, box, excluded):
-    """(boxes that hold one root each, parts that are undecided) of a box [(low, high), ...] in doubles.
+    """Return (boxes that hold one root each, parts that are undecided) of a box [(low, high), ...] in doubles.
 
-    `equations` makes a list of duals of one, `excluded` says of balls whether they certainly hold no root that is wanted. Every
-    root that is wanted lies in one of the boxes or of the parts; two boxes may hold the same one, and then it is in both.
+    `equations` maps a list of duals to a list of duals. `excluded` returns True for balls that are proved to hold no wanted root.
+    Every wanted root lies in one of the boxes or parts. Two boxes may hold the same root, which then lies in both.
     """
     sizes = [high - low for low, high in box]
     found, undecided, parts, looked_at = [], [], [list(box)], 0
@@ -32,7 +32,7 @@ def all_roots(equations, box, excluded):
             wide = [ball.mid() + arb(0, ball.rad() * WIDER) for ball in balls]
             image = krawczyk(equations, wide)
         except Undecided:
-            # The equations say nothing of so wide a part.
+            # The equations cannot be evaluated over so wide a part.
             image = None
         if image is not None:
             if all(within(one, whole) for one, whole in zip(image, wide)):
@@ -56,7 +56,7 @@ def _values(equations, centre):
 
 
 def _misses(equations, balls):
-    """Whether the mean value form, or the plain one, excludes 0 in one of the equations."""
+    """Return True if the mean value form, or direct evaluation, excludes 0 in one of the equations."""
     over = equations(Dual.varied(balls))
     centre = [ball.mid() for ball in balls]
     at_centre = _values(equations, centre)
@@ -68,7 +68,8 @@ def _misses(equations, balls):
 
 
 def krawczyk(equations, balls):
-    """What Krawczyk's operator makes of a box: every root in the box lies in it; None where the derivative has no inverse."""
+    """Return the image of a box under Krawczyk's operator, which holds every root in the box. Return None if the derivative has no
+    inverse or the image is not finite."""
     count = len(balls)
     over = equations(Dual.varied(balls))
     centre = [ball.mid() for ball in balls]
@@ -85,7 +86,7 @@ def krawczyk(equations, balls):
 
 
 def closed_in(equations, balls, times=200):
-    """The root that a box holds alone, in balls as narrow as the precision allows."""
+    """Return the only root in a box, in balls as narrow as the precision allows. Raise Undecided if it is lost in rounding."""
     for _ in range(times):
         image = krawczyk(equations, balls)
         both = [overlap(one, ball) for one, ball in zip(image, balls)] if image is not None else [None]

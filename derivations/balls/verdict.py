@@ -1,9 +1,9 @@
-"""What a border collision does, from balls: every condition with its value and proved sign, and Feigin's verdict.
+"""Feigin's verdict on a border collision, from balls: every condition with its value and its proved sign.
 
-The orbit's map is x -> A- x + B- dT where e x + f dT < 0 and A+ x + B+ dT elsewhere, up to terms of second order. Each side's map
-is analytic, with the cam's law of that side continued past the corner, so that the implicit function theorem gives each of them
-one fixed point near x* for every dT near 0 where det(I - A) is not 0; it is one of the machine just where it lies on its own
-side. With a sign of e x + f dT that does not vanish to first order, the verdict of the linear map is that of the machine.
+Up to terms of second order, the orbit's map is x -> A- x + B- dT where e x + f dT < 0, and A+ x + B+ dT elsewhere. Each side's map is
+analytic, with the cam's law of that side continued past the corner. If det(I - A) is not 0, the implicit function theorem gives each
+map one fixed point near x* for every dT near 0. This fixed point is an orbit of the machine exactly if it lies on its own side. If
+the sign of e x + f dT there does not vanish to first order, the verdict of the linear map is that of the machine.
 """
 
 from dataclasses import dataclass
@@ -18,7 +18,7 @@ SIDES = ("minus", "plus")
 
 @dataclass(frozen=True)
 class Condition:
-    """A number that must not be 0, and the sign that it is proved to have."""
+    """Number that must not be 0, with its proved sign."""
 
     name: str
     value: arb
@@ -26,7 +26,7 @@ class Condition:
 
 
 class Verdict:
-    """The maps of both sides, {side: 2 x 3 [A | B]}, and the border (e, f); Undecided where a sign is not."""
+    """Verdict from the maps of both sides, {side: 2 x 3 [A | B]}, and the border (e, f). Raise Undecided if a sign is not proved."""
 
     def __init__(self, maps, border):
         self.maps, self.border = maps, border
@@ -48,7 +48,7 @@ class Verdict:
         yield "det(I - A+ A-)", (one - self.a["plus"] * self.a["minus"]).det()
         e, f = self.border[:2], self.border[2]
         whole, (b1, b2) = one - self.a["minus"], self.b["minus"]
-        # e adj(I - A-) B- + f det(I - A-): over det(I - A), how far either side's fixed point is from the border at dT = 1.
+        # Divided by det(I - A) of a side, e adj(I - A-) B- + f det(I - A-) is the distance of its fixed point from the border at dT = 1.
         across = e[0] * (whole[1, 1] * b1 - whole[0, 1] * b2) + e[1] * (whole[0, 0] * b2 - whole[1, 0] * b1)
         yield "e adj(I - A-) B- + f det(I - A-)", across + f * whole.det()
         for side, mark in zip(SIDES, "-+"):
@@ -57,32 +57,34 @@ class Verdict:
             yield f"|second eigenvalue| - 1 of A{mark}", moduli[1] - 1
 
     def stable(self, side):
-        """Whether both eigenvalues of a side are proved to lie inside the unit circle; Undecided was raised where one is on it."""
+        """Return True if both eigenvalues of a side are proved to lie inside the unit circle. An undecided modulus has raised
+        Undecided before."""
         mark = "-" if side == "minus" else "+"
         return all(self.signs()[f"|{which} eigenvalue| - 1 of A{mark}"] < 0 for which in ("first", "second"))
 
     def signs(self):
-        """The sign of each condition, by its name."""
+        """Return the sign of each condition, by its name."""
         return {condition.name: condition.sign for condition in self.conditions}
 
     def _scenario(self):
-        """Of the real eigenvalues of both sides together, an odd number is above 1 just where det(I - A-) det(I - A+) < 0, and
-        below -1 just where det(I + A-) det(I + A+) < 0."""
+        """Return the verdict. The real eigenvalues of both sides decide it together. An odd number of them is above 1 exactly if
+        det(I - A-) det(I - A+) < 0. An odd number is below -1 exactly if det(I + A-) det(I + A+) < 0."""
         signs = self.signs()
         if signs["det(I - A-)"] * signs["det(I - A+)"] < 0:
             return "nonsmooth-fold"
         return "nonsmooth-flip" if self.period_two_orbit() else "persistence"
 
     def period_two_orbit(self):
-        """Return True if, next to omega*, an orbit of period two exists on one side of it; False if on none.
+        """Return True if an orbit of period two exists on one side of omega*; False if it exists on neither.
 
         The distances of its two points from the border are in the ratio det(I + A+) : det(I + A-). So they lie on different sides
-        exactly where these determinants have different signs."""
+        exactly where these determinants have different signs.
+        """
         signs = self.signs()
         return signs["det(I + A-)"] * signs["det(I + A+)"] < 0
 
     def exists_for(self, side):
-        """Where the fixed point of a side is one of the machine: "slower" (dT > 0) or "faster"."""
+        """Return on which side of T* the fixed point of a side is an orbit of the machine: "slower" (dT > 0) or "faster"."""
         signs, mark = self.signs(), "-" if side == "minus" else "+"
         towards = signs["e adj(I - A-) B- + f det(I - A-)"] * signs[f"det(I - A{mark})"]
         return "slower" if towards == (-1 if side == "minus" else 1) else "faster"

@@ -2,7 +2,7 @@
 
     python dask_here.py machine.toml c.zarr
 
-It needs `pip install 'corner-impact[charts]' distributed`. `Client("tcp://…")` instead uses a cluster that is there.
+Needs `pip install 'corner-impact[charts]' distributed`. To use an existing cluster, replace the client by `Client("tcp://…")`.
 """
 
 import sys

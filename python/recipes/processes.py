@@ -2,7 +2,7 @@
 
     python processes.py machine.toml c.zarr
 
-It needs `pip install 'corner-impact[charts]'`.
+Needs `pip install 'corner-impact[charts]'`.
 """
 
 import sys
@@ -18,7 +18,7 @@ from corner_impact.charts import fill
 def main(file: str, store: str, points: int = 1000, workers: int | None = None) -> None:
     axes = {"restitution": np.linspace(0.5, 0.95, points), "rpm": np.linspace(600, 760, points)}
     chart = Chart(Model.load(file), axes)
-    # Spawned, as a fork would copy the threads' locks of the process that it comes from.
+    # Workers are spawned, since a fork would copy locks that threads of this process hold.
     with ProcessPoolExecutor(workers, get_context("spawn")) as executor:
         for done, total in fill(chart, store, executor):
             print(f"{done} of {total} blocks", flush=True)

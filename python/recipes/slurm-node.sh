@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# A Slurm of one node on this machine, to try the recipes without a cluster: Debian's packages, neither systemd nor cgroups. As root, on
-# a machine that nobody else uses; `slurm-node.sh stop` ends it.
+# Starts a Slurm of one node on this machine, to try the recipes without a cluster. It uses Debian's packages, without systemd and cgroups.
+# Run it as root on a machine that nobody else uses; `slurm-node.sh stop` ends it.
 set -euo pipefail
 
 state=${SLURM_STATE:-/tmp/slurm-node}
@@ -41,7 +41,7 @@ SlurmdPidFile=$state/slurmd.pid
 NodeName=$node NodeAddr=127.0.0.1 CPUs=$(nproc) RealMemory=$(free --mega | awk '/^Mem/ { print int(0.8 * $2) }') State=UNKNOWN
 PartitionName=all Nodes=$node Default=YES MaxTime=INFINITE State=UP
 END
-# The same user runs all daemons; munge asks for that.
+# One user runs all daemons, as munge requires.
 chown root: /etc/munge/munge.key /run/munge /var/log/munge /var/lib/munge
 pgrep -x munged >/dev/null || munged --force
 pgrep -x slurmctld >/dev/null || slurmctld

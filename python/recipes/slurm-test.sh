@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Tries the recipes for Slurm on a node of this machine (see slurm-node.sh): a job array without Python, and Dask's workers as jobs, each
-# stopped in the middle and submitted again. What they fill must be what one process fills.
+# Tests the recipes for Slurm on a node of this machine (see slurm-node.sh): a job array without Python, and Dask's workers as jobs. Each
+# is stopped in the middle and submitted again. The store must then equal the one that a single process fills.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 recipes=$PWD/python/recipes

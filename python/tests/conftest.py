@@ -1,4 +1,4 @@
-"""What all tests use: the paper's model, and the command, whose output the package is held against."""
+"""Fixtures of all tests: the paper's model, and the command, with whose output the package is compared."""
 
 import signal
 import subprocess
@@ -15,7 +15,7 @@ MODELS = sorted((ROOT / "models").rglob("*.toml"))
 
 Command = Callable[..., str]
 
-# What a shell starts in the background ignores Ctrl-C, and so does what that starts: the tests would wait for ever.
+# A process that a shell starts in the background ignores Ctrl-C, and so do its children: the tests would wait for ever.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
@@ -26,7 +26,7 @@ def paper() -> Model:
 
 @pytest.fixture(scope="session")
 def command() -> Command:
-    """Runs the installed command with some words, and returns what it prints."""
+    """Return a function that runs the installed command with some words and returns what it prints."""
 
     def run(*words: str) -> str:
         line = [sys.executable, "-m", "corner_impact", *words]

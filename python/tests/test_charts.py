@@ -1,4 +1,4 @@
-"""Are charts the same by every engine, and does nothing that fails count as done?"""
+"""Are charts the same from every engine, and does a block that fails never count as done?"""
 
 import os
 import pickle
@@ -44,7 +44,7 @@ def test_every_engine_computes_the_same(chart: Chart, tmp_path: Path) -> None:
         assert filled(chart, tmp_path / "threads.zarr", threads) == alone
     with ProcessPoolExecutor(2, get_context("spawn")) as processes:
         assert filled(chart, tmp_path / "processes.zarr", processes) == alone
-    # The store reads as what is computed here: numbers, types, units, meanings and provenance.
+    # The store has what is computed here: numbers, types, units, meanings and provenance.
     there = xr.open_zarr(tmp_path / "alone.zarr", chunks=None).load()
     assert here.identical(there)
     assert Model.parse(there.attrs["model_toml"]) == chart.model
@@ -68,7 +68,7 @@ def test_dask_fills_a_store_and_outlives_a_worker(chart: Chart, tmp_path: Path) 
 
 
 class Gated(ThreadPoolExecutor):
-    """One thread that waits before each piece of work until it may go on."""
+    """Executor of one thread, which waits for a permit before each piece of work."""
 
     def __init__(self, permits: int) -> None:
         super().__init__(1)
@@ -89,7 +89,7 @@ def test_what_is_stopped_goes_on(chart: Chart, tmp_path: Path) -> None:
         assert [next(told) for _ in range(3)] == [(0, 9), (1, 9), (2, 9)]
         told.close()
         executor.gate.release(9)
-    # What had begun ends, what had not is not begun.
+    # A block that had begun is finished, and no other one begins.
     so_far = int(blocks_done(store).sum())
     assert so_far in (2, 3)
     assert next(fill(chart, store, chunks=CHUNKS)) == (so_far, 9)
@@ -97,7 +97,7 @@ def test_what_is_stopped_goes_on(chart: Chart, tmp_path: Path) -> None:
 
 
 def test_a_full_disk_counts_for_nothing(chart: Chart, tmp_path: Path) -> None:
-    """Files may not grow beyond some length, as on a full disk: 8 bytes a point do not go in, 1 byte a point does."""
+    """Limit the length of files, as on a full disk: arrays of 8 bytes a point exceed the limit, and arrays of 1 byte a point do not."""
     script = tmp_path / "full.py"
     script.write_text(
         "import pickle, resource, sys\n"
@@ -133,7 +133,7 @@ def test_what_cannot_be_is_refused(chart: Chart, tmp_path: Path) -> None:
 
 
 def test_a_table_s_rows_go_with_the_model(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A worker in another folder, which does not see the file of lifts, computes the same, into the same store."""
+    """Let a worker in another folder, which cannot find the file of lifts, compute the same chart into the same store."""
     (tmp_path / "elsewhere").mkdir()
     monkeypatch.chdir(tmp_path)
     model = Model.load(Path(__file__).parents[2] / "models/laws/table-cubic.toml")

@@ -1,4 +1,4 @@
-"""Are the points of a grid those of the command, in whatever parts, and is its store the same bytes?"""
+"""Are the points of a grid equal to the command's, in whatever parts they are computed, and is its store the same bytes?"""
 
 import pickle
 import resource
@@ -20,7 +20,7 @@ WORDS = ("--transient", "5", "--record", "2")
 
 
 def spaced(low: float, high: float, count: int) -> NDArray[np.float64]:
-    """Values as the command spaces them; those of numpy's linspace differ in the last digit."""
+    """Return values spaced as by the command. Those of numpy's linspace differ in the last digit."""
     return low + (high - low) * (np.arange(count) / (count - 1))
 
 
@@ -70,7 +70,7 @@ def test_parts_are_parts_of_the_whole(paper: Model, grid: Chart) -> None:
     names = list(reversed(grid.axes))
     turned = Chart(paper, {name: grid.axes[name] for name in names}, **LENGTHS).compute()
     assert same(turned, {name: values.T for name, values in whole.items()})
-    # Values in no order, and more than once.
+    # Values in any order, some of them repeated.
     some = np.array([7, 1, 1, 10])
     mixed = Chart(paper, {"follower.restitution": grid.axes["follower.restitution"], "rpm": grid.axes["rpm"][some]}, **LENGTHS)
     assert same(mixed.compute(), {name: values[:, some] for name, values in whole.items()})
@@ -131,14 +131,14 @@ def test_processes_fill_a_store_together(paper: Model, grid: Chart, tmp_path: Pa
         assert all(executor.map(grid.fill, [store] * 9, reversed(range(9)), [chunks] * 9))
     assert all(grid.fill(alone, block, chunks, threads=2) for block in range(9))
     assert files(store) == files(alone)
-    # What was cut off or lost is computed again, the same.
+    # A block that was cut off or lost is computed again, with the same bytes.
     whole = files(store)
     (store / "class/c/1/2").write_bytes(b"cut")
     (store / "growth_rate/c/0/0").unlink()
     assert [int(block) for block in np.flatnonzero(~blocks_done(store))] == [0, 5]
     assert [grid.fill(store, block, chunks) for block in (0, 4, 5)] == [True, False, True]
     assert files(store) == whole
-    # What the arrays hold is what is computed, with a checksum at its end.
+    # The arrays hold the computed values, with a checksum at the end of a block.
     block = np.frombuffer(whole["class/c/1/2"][:-4], dtype=np.int8).reshape(4, 5)
     assert np.array_equal(block[:4, :2], grid.compute((4, 8), (10, 12))["class"]) and (block[:, 2:] == -1).all()
     for other, wrong in [
@@ -163,7 +163,7 @@ def test_a_store_that_cannot_be_written_is_told(grid: Chart, tmp_path: Path) -> 
         blocks_done(tmp_path)
     store = tmp_path / "chart.zarr"
     grid.begin(store)
-    # A disk that takes no more of a file than this: the block is not done, nothing is left of it, and it is whole when there is room.
+    # With a limit on the length of files, the block is not done and nothing of it remains. Without the limit it is completed.
     limits = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (4096, limits[1]))
     try:

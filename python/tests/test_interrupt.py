@@ -1,4 +1,4 @@
-"""Does Ctrl-C end what takes long, and does other work go on meanwhile?"""
+"""Does Ctrl-C end long calls, and does other work continue meanwhile?"""
 
 import os
 import signal
@@ -53,7 +53,7 @@ def test_ctrl_c_ends_it(paper: Model, work: Any) -> None:
         timer.cancel()
         stop.set()
         counting.join()
-    # Undisturbed, each takes minutes; on a busy machine a second may be three.
+    # Without Ctrl-C each takes minutes. On a busy machine one second may become three.
     assert time.monotonic() - begun < 3.5
     assert turns > 10
 

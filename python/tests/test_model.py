@@ -1,4 +1,4 @@
-"""Is a model the same by whatever way it comes, and is what is wrong with one told with its place?"""
+"""Is a model the same from a file, a text and a dict, and does an error name its place?"""
 
 import pickle
 import tomllib
@@ -16,7 +16,7 @@ from corner_impact import Model, ModelError
 @pytest.mark.parametrize("path", MODELS, ids=lambda path: path.stem)
 def test_a_text_is_the_whole_model(path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     model = Model.load(path)
-    # A table's file is not looked for.
+    # The text does not need the file of a table.
     monkeypatch.chdir(tmp_path)
     again = Model.parse(model.text)
     assert again == model and hash(again) == hash(model) and again.text == model.text
@@ -34,7 +34,7 @@ def test_a_dict_is_a_file(path: Path) -> None:
     fields = tomllib.loads(path.read_text())
     model = Model.from_dict(fields)
     assert model == Model.load(path)
-    # In numpy's numbers and arrays, too.
+    # Numbers and arrays of numpy work as well.
     fields["follower"] = {name: np.float64(value) for name, value in fields["follower"].items()}
     assert Model.from_dict(fields) == model
 
@@ -77,10 +77,10 @@ def test_rows_of_a_table_stand_in_a_dict() -> None:
     file = path.with_name(tomllib.loads(path.read_text())["cam"]["file"])
     rows = np.loadtxt(file, delimiter=",", skiprows=1)
     assert Model.from_dict(table(rows)) == Model.from_dict(table(rows.tolist())) == Model.load(path)
-    # A last row that says the first one again is none of its own.
+    # A last row that repeats the first one is dropped.
     closed = np.vstack([rows, [360.0, rows[0, 1]]])
     assert Model.from_dict(table(closed)) == Model.load(path)
-    # Falling angles are the same cam, and a row that says the one before again is none of its own.
+    # Falling angles give the same cam, and a row that repeats the one before is dropped.
     assert Model.from_dict(table(rows[::-1])) == Model.load(path)
     assert Model.from_dict(table(np.vstack([rows[:9], rows[8:]]))) == Model.load(path)
     other = [[rows[8, 0], rows[8, 1] + 0.1]]
@@ -123,7 +123,7 @@ def test_complaints_have_a_place(paper: Model, tmp_path: Path) -> None:
     with pytest.raises(ModelError, match="not valid TOML") as raised:
         Model.parse("[follower\n", "that text")
     assert (raised.value.file, raised.value.line, raised.value.field) == ("that text", 1, None)
-    # What geometry forbids is told at once, and not when it is run.
+    # An impossible geometry is refused at once, not when the model is run.
     with pytest.raises(ModelError, match="cam"):
         paper.with_number("nose_radius", 7.0)
     with pytest.raises(ModelError, match="cannot be read"):

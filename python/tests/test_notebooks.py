@@ -1,4 +1,4 @@
-"""Do the notebooks run from top to bottom, and the recipes that need one machine?"""
+"""Do the notebooks run from top to bottom, and do the recipes for one machine run?"""
 
 import runpy
 import subprocess
@@ -17,7 +17,7 @@ def test_it_runs(notebook: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     matplotlib.use("agg")
     assert notebook.read_text().startswith("# ---\n# jupyter:\n")
     with warnings.catch_warnings():
-        # matplotlib says that nothing is shown.
+        # matplotlib warns that nothing is shown.
         warnings.filterwarnings("ignore", message="FigureCanvasAgg is non-interactive")
         runpy.run_path(str(notebook), run_name="__main__")
 

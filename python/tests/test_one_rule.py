@@ -1,4 +1,4 @@
-"""What a machine does from a start at a speed is the same word, and the same growth, for a chart, a survey and the command."""
+"""Do a chart, a survey and the command give the motion from one start the same class and the same growth?"""
 
 import json
 from typing import Any

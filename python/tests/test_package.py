@@ -1,4 +1,4 @@
-"""Do the examples of the documentation hold, and is the command there?"""
+"""Do the examples of the documentation hold, and is the command installed?"""
 
 import doctest
 import inspect

@@ -183,7 +183,7 @@ def test_a_missing_package_is_named_with_its_extra(
     monkeypatch.setitem(sys.modules, package, None)
     with pytest.raises(ImportError, match=rf"{package.partition('.')[0]} is missing: pip install 'corner-impact\[{extra}\]'"):
         use(paper.orbits(680), tmp_path / "file.nc")
-    # The rest needs none of them.
+    # Everything else works without these packages.
     assert paper.orbits(680).orbits[1].stable and json.dumps(paper.orbits(680))
 
 

@@ -1,4 +1,4 @@
-"""Are the columns those of the command, to the last bit, and is a run that fails among many one that is told?"""
+"""Are the columns equal to the command's, to the last bit, and is a run that fails among many reported?"""
 
 import csv
 import io
@@ -21,7 +21,7 @@ def table(text: str) -> dict[str, list[str]]:
 
 
 def assert_same(found: Columns, text: str) -> None:
-    """The columns of a table, by name and in its order; words stand for codes."""
+    """Assert that columns equal those of a table, by name and in its order. Words stand for codes."""
     expected = table(text)
     assert list(found) == list(expected)
     for name, cells in expected.items():
@@ -42,7 +42,7 @@ def test_events_are_those_of_the_command(paper: Model, command: Command, rpm: fl
         command(*words, "--start-angle", "-2", "--relative-velocity", "3"),
     )
     assert_same(paper.simulate(rpm, 40, position=9, velocity=np.float64(-4)), command(*words, "--state", "9,-4"))
-    # A transient is what comes before, not another run.
+    # A transient is the beginning of the same run.
     later, tail = paper.simulate(rpm, 10, transient=30), found["revolution"] >= 30
     assert all(np.allclose(later[name], found[name][tail], rtol=1e-6) for name in found)
 
@@ -89,7 +89,7 @@ def test_the_strobe_map_is_the_run(paper: Model) -> None:
     for threads in (2, None):
         other = paper.strobe_map(680, position, velocity, 3, cam_angle=5.76, threads=threads)
         assert all(np.array_equal(found[name], other[name]) for name in found)
-    # Column by column, the derivative is what a small step makes.
+    # Column by column, the derivative agrees with the effect of a small step.
     derived = paper.strobe_map(680, position, velocity, 3, cam_angle=5.76, jacobian=True)
     assert all(np.array_equal(found[name], derived[name]) for name in found)
     assert derived["jacobian"].shape == (40, 2, 2)
@@ -153,7 +153,7 @@ def test_speeds_are_a_range_or_any_sequence(paper: Model) -> None:
         found = paper.diagram(speeds, record=2)
         assert all(np.array_equal(found[name], spaced[name]) for name in spaced)
     assert paper.diagram(np.linspace(660, 750, 200), transient=3, record=1).rpm[[0, -1]].tolist() == [660, 750]
-    # Values in another order, and one alone.
+    # Values in another order, and a single value.
     assert np.unique(paper.diagram([710, 690], record=1).rpm).tolist() == [690, 710]
     assert paper.diagram(np.array([700.0]), record=2).rpm.tolist() == [700, 700]
     restitution = paper.diagram(700, over=("restitution", [0.8, 0.65]), record=1)
@@ -185,10 +185,10 @@ def test_the_impact_map_goes_from_impact_to_impact(paper: Model) -> None:
     np.testing.assert_allclose(found["cam_angle_rad"], angle[1:], rtol=1e-9)
     np.testing.assert_allclose(found["relative_velocity_m_s"], after[1:], rtol=1e-8)
     np.testing.assert_allclose(found["flight_s"], np.diff(events["time_s"]), rtol=1e-9)
-    # No impact follows where the follower stays on the cam, nor after what is no start.
+    # No impact follows if the follower stays on the cam, or after an invalid start.
     wrong = paper.impact_map(50, [0.0, 1.0, np.nan, 1.0], [0.0, -1.0, 1.0, np.nan])
     assert all(np.all(np.isnan(column)) for column in wrong.values())
-    # An angle is one modulo a turn.
+    # Angles are equal modulo a turn.
     turned = paper.impact_map(670, angle[:5] - 4 * np.pi, after[:5])
     np.testing.assert_allclose(turned["cam_angle_rad"], found["cam_angle_rad"][:5], rtol=1e-9)
 
@@ -279,7 +279,7 @@ def test_derivatives_of_the_cam_are_named_in_the_units_of_the_model(paper: Model
     told = Model.parse(paper.text + '\n[units]\nlength = "mm"\nangle = "deg"\n').cam(angle_deg=120)
     assert list(metres) == ["lift_m", "slope_m_rad", "curvature_m_rad2", "cam_angle_rad"]
     assert list(told) == ["lift_mm", "slope_mm_rad", "curvature_mm_rad2", "cam_angle_deg"]
-    # The same figures, of another length: the text of the model has them.
+    # The text of the model has the same figures in another unit of length.
     for one, other in zip(metres.values(), told.values()):
         assert float(other) == pytest.approx(120 if float(one) == metres.cam_angle_rad else float(one), rel=1e-14)
     assert told.to_pandas().attrs["units"]["curvature_mm_rad2"] == "mm/rad^2"

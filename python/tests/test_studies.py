@@ -1,4 +1,4 @@
-"""Are the documents those of the command?"""
+"""Are the documents equal to those of the command?"""
 
 import json
 import venv
@@ -66,7 +66,7 @@ from corner_impact import Model
 )
 def test_documents_are_those_of_the_command(paper: Model, command: Command, ask: Any, words: list[str]) -> None:
     found, expected = ask(paper), json.loads(command(*words, "--json"))
-    # How long it took is the one thing that differs.
+    # Only the time that it took differs.
     assert ("wall_s" in found) == ("wall_s" in expected)
     assert found.to_dict() | {"wall_s": 0} == expected | {"wall_s": 0} and json.loads(json.dumps(found)) == found
     assert found["schema"] == f"corner-impact/{words[0]}/1"
@@ -131,7 +131,7 @@ def test_a_missing_package_is_told(paper: Model, tmp_path: Path, monkeypatch: py
 
 def test_the_routes_run_in_this_interpreter(paper: Model, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("CORNER_IMPACT_PYTHON", raising=False)
-    # Not the one of a build of the command, nor that of the PATH.
+    # Neither the interpreter of a build of the command nor the one on the PATH is used.
     monkeypatch.setenv("PATH", "")
     found = paper.verify()
     assert found["agrees"] and {"symbolic", "scipy", "certificate"} <= set(found["routes"])

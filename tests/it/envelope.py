@@ -1,4 +1,7 @@
-"""Lifts of a follower on a cam of three circles, or on a contour, from points of it alone: the highest position in which no point is inside of the follower."""
+"""Lifts of a follower on a cam of three circles, or on a contour, from points of the cam alone.
+
+The lift is the lowest position of the follower in which no point of the cam is inside it.
+"""
 
 import json
 import sys
@@ -10,12 +13,12 @@ PER_CIRCLE = 100_000
 
 
 def contour(cam):
-    """Points of the cam, and the angle of its flank and nose at which they touch."""
+    """Return points of the cam, all round."""
     base, flank, nose = (cam[name] for name in ("base_radius", "flank_radius", "nose_radius"))
     start, end = np.radians([cam["flank_start_deg"], cam["nose_end_deg"]])
     ray = lambda angle: np.exp(1j * angle)
     flank_centre = (base - flank) * ray(start)
-    # The nose's centre is on the ray at `end`, and flank - nose from that of the flank: by bisection.
+    # The nose's centre is on the ray at `end`, at the distance flank - nose from the flank's centre. It is found by bisection.
     low, high = 0.0, 4.0 * flank
     for _ in range(200):
         middle = 0.5 * (low + high)
@@ -32,7 +35,7 @@ def contour(cam):
 
 
 def through(rows):
-    """Points of the periodic cubic spline of the radius through rows."""
+    """Return points of the periodic cubic spline of the radius through the rows."""
     angles, radii = np.array([[np.radians(row["angle_deg"]), row["lift"]] for row in rows]).T
     spline = CubicSpline(np.append(angles, angles[0] + 2.0 * np.pi), np.append(radii, radii[0]), bc_type="periodic")
     angles = np.linspace(0.0, 2.0 * np.pi, 8 * PER_CIRCLE, endpoint=False)
@@ -40,15 +43,15 @@ def through(rows):
 
 
 def lift(points, contact, angle):
-    """How far the points hold the follower from the axis, when the cam has turned by an angle."""
+    """Return the lift of the follower when the cam has turned by an angle."""
     turned = points * np.exp(-1j * angle)
     along, left = turned.real, turned.imag
     if contact == "flat":
         return along.max()
-    # A point is a very small roller.
+    # A point follower has neither a radius nor an offset.
     radius, offset = (contact["roller_radius"], contact["offset"]) if isinstance(contact, dict) else (0.0, 0.0)
     if radius == 0.0:
-        # Between the two neighbours on either side of the line, the farther way round.
+        # Interpolate between the two points nearest to the line of motion, on the follower's side of the axis.
         order = np.argsort(np.where(along > 0, np.abs(left), np.inf))[:2]
         one, two = turned[order]
         return one.real + (two.real - one.real) * one.imag / (one.imag - two.imag)

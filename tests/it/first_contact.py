@@ -1,8 +1,9 @@
-"""Flights judged in ball arithmetic of 200 bits, sixty digits, from the text of a model: the slow reference of the event loop.
+"""Flights checked in ball arithmetic of 200 bits, sixty digits, from the text of a model: the slow reference of the event loop.
 
-A line is a flight: {"model": text, "omega", "angle", "position", "velocity", "time", "hit": null or [v, a bound on its rounding],
-"room": how far rounding may move the gap, m, "early": and the time of an impact, s}. For each, what is wrong: nothing, if the
-follower is nowhere further than `room` below the cam before the end, and within `room` of it there, if it hits.
+Each line of stdin is a flight: {"model": text, "omega", "angle", "position", "velocity", "time", "hit", "room", "early"}. "hit" is
+null or [v, a bound on its rounding]. "room" is how far rounding may move the gap, m, and "early" how far it may move the time of an
+impact, s. For each flight a line says what is wrong, or "right", "undecided" or "no reference". A flight is right if the follower is
+never more than `room` below the cam before the end. If it hits, it must also be within `room` of the cam at the end.
 """
 
 import json
@@ -13,14 +14,14 @@ from flint import arb, ctx
 
 ctx.prec = 200
 PI = arb.pi()
-# The program counts a turn by the double next to it.
+# The program uses the double next to a full turn.
 TURN = arb(6.283185307179586)
-# A flight that keeps within its rounding of the cam is not decided by these.
+# Most parts of a piece of the cam that are examined. A flight that stays within rounding of the cam is undecided then.
 MOST_LOOKS = 5000
 
 
 def cam(law):
-    """Pieces of a turn: from where, rad, and lift and its first two derivatives over a ball of angles."""
+    """Return the pieces of a turn: (start, rad, function). The function returns lift and its first two derivatives over a ball of angles."""
     radians = lambda degrees: arb(degrees) * PI / 180
     if law["law"] == "harmonic":
         terms = [(k + 1, arb(a), radians(p)) for k, (a, p) in enumerate(zip(law["amplitudes"], law["phases_deg"]))]
@@ -47,7 +48,7 @@ def cam(law):
 
         pieces = [(radians(part["start_deg"]), part["coefficients"]) for part in law["segment"]]
         last = pieces[-1]
-        # The last goes on through 360 degrees to the first.
+        # The last piece continues through 360 degrees to the first.
         around = [(arb(0), polynomial(last[0] - TURN, last[1]))] if law["segment"][0]["start_deg"] > 0 else []
         return around + [(start, polynomial(start, coefficients)) for start, coefficients in pieces]
     if law["law"] == "arcs":
@@ -66,7 +67,7 @@ def cam(law):
 
             return lift
 
-        # The centres: of the flank behind the axis, of the nose towards its end; the circles touch on the line through both.
+        # The flank's centre is behind the axis, and the nose's is towards its end. The circles touch on the line through both centres.
         back = flank - base
         turn = end - start
         ahead = -back * turn.cos() + ((flank - nose) ** 2 - (back * turn.sin()) ** 2).sqrt()
@@ -83,7 +84,7 @@ def cam(law):
 
 
 def flight(follower, position, velocity):
-    """Position, velocity and acceleration over a ball of times; none where the damping may be critical."""
+    """Return a function for position, velocity and acceleration over a ball of times; None if the damping may be critical."""
     mass, damping, stiffness, gravity = (arb(follower[name]) for name in ("mass", "damping", "stiffness", "gravity"))
     zeta, square = damping / (2 * mass), stiffness / mass
     rest, q0, v0 = arb(follower["rest_position"]), arb(position), arb(velocity)
@@ -99,7 +100,7 @@ def flight(follower, position, velocity):
         left = square - zeta**2
         if not (left > 0 or left < 0):
             return None
-        # Next to critical damping two exponentials would nearly cancel; w cancels in the hyperbolic sine.
+        # Near critical damping two exponentials would nearly cancel; w cancels in the hyperbolic sine.
         w, sine, cosine = (left.sqrt(), arb.sin, arb.cos) if left > 0 else ((-left).sqrt(), arb.sinh, arb.cosh)
 
         def at(t):
@@ -118,7 +119,7 @@ def ball(low, high):
 
 
 def deeper(gap, low, high, room):
-    """Where in a range the gap is, or may be, below -room: the first such time, or None if it certainly is nowhere."""
+    """Return the first time in a range at which the gap is, or may be, below -room; None if there is certainly none."""
     left, looks = [(low, high)], 0
     while left:
         looks += 1

@@ -1,4 +1,4 @@
-"""Runs scripts that the command wrote and reads what they drew: legends, labels, and whether every series has its data."""
+"""Runs scripts that the command wrote and checks what they draw: legends, labels, and whether every series has its data."""
 
 import runpy
 import sys

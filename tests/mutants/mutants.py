@@ -1,20 +1,21 @@
 """Changes operators, conditions and values in the formulas, one at a time; each change must fail a test.
 
-All changes are compiled at once, as mutant schemata (Untch, Offutt, Harrold 1993): where the source says `a + b`, a copy of it
-says "a + b, but a - b in mutant 17 and a * b in mutant 18", and an environment variable says which mutant a process is. One build
-then serves thousands of mutants, of which each takes as long as the tests that reach it, quickest first, up to the first
-that fails. Which tests those are is listed in failing.toml, of each file; what passes them is asked all tests that reach it,
-which a first run of each test notes. How long each takes is kept beside the build.
+All changes are compiled at once, as mutant schemata (Untch, Offutt, Harrold 1993). Where the source says `a + b`, a copy of it says
+"a + b, but a - b in mutant 17 and a * b in mutant 18". An environment variable names the mutant of a process. So one build serves
+thousands of mutants. Each mutant is tried on the tests that reach it, quickest first, up to the first that fails. failing.toml lists,
+for each file, tests that have failed; they are asked first. A mutant that passes them is asked all tests that reach it, which a first
+run of each test notes. The time of each test is kept beside the build.
 
     python tests/mutants/mutants.py                   every mutant of every stage: some hours
-    python tests/mutants/mutants.py simulate/again    those in files whose path has these words
+    python tests/mutants/mutants.py simulate/again    mutants in files whose path has these words
     python tests/mutants/mutants.py --parts 100 --seed 7       one part of a hundred, drawn by the seed; or --seconds 60, as many as fit
-    python tests/mutants/mutants.py --changed --most 120       of the files that have changed since all their mutants were asked
-    python tests/mutants/mutants.py --out tried.jsonl          in several sittings: the next goes on where one was broken off
+    python tests/mutants/mutants.py --changed --most 120       mutants of the files that have changed since all their mutants were asked
+    python tests/mutants/mutants.py --out tried.jsonl          in several sittings: the next run continues where one was broken off
     python tests/mutants/mutants.py --learn tried.jsonl        no mutant: adds to failing.toml what has failed there, and notes in
                                                                asked.toml the files of which all have been asked, in open.toml what has passed
 
-What survives is listed, and the exit code is 1, unless explained.toml has a reason, or open.toml knows it as one to decide.
+Mutants that survive are listed, and the exit code is then 1. Mutants with a reason in explained.toml are not asked. With --most,
+those in open.toml, which are still to be decided, are not asked either.
 """
 
 import argparse
@@ -55,9 +56,9 @@ ARITHMETIC = {"+": "-*", "-": "+/", "*": "+/", "/": "*%", "%": "/+"}
 COMPARISONS = {"==": ["!="], "!=": ["=="], "<": ["<=", ">"], ">": [">=", "<"], "<=": ["<", ">"], ">=": [">", "<"]}
 LOGICAL = ["left alone", "right alone"]
 VALUES = {"bool": ["true", "false"], "f64": ["0.0", "1.0", "-1.0"], "usize": ["0", "1"], "u32": ["0", "1"], "u64": ["0", "1"]}
-# Of random cases a hundred: a test of thousands would take too long to be asked at all.
+# A hundred random cases: a test of thousands would take too long to be asked at all.
 ENVIRONMENT = {"RAYON_NUM_THREADS": "1", "INSTA_UPDATE": "no", "PROPTEST_CASES": "100"}
-# Where nothing can be switched at run time, or where an operator is no arithmetic.
+# Nodes in which nothing can be switched at run time, or in which an operator is not arithmetic.
 PASSED_OVER = {"const_item", "static_item", "const_block", "attribute_item", "macro_invocation", "macro_definition", "type_arguments",
                "array_type", "enum_variant", "string_literal", "line_comment", "block_comment", "use_declaration"}
 
@@ -105,12 +106,12 @@ def flat(text):
 
 
 class Schema:
-    """A file with all its mutants in it."""
+    """File with all its mutants in it."""
 
     def __init__(self, path, parser, viable, mutants):
         self.path, self.viable, self.mutants = path, viable, mutants
         self.source = (ROOT / path).read_bytes()
-        # In what is written: from where to where a mutant stands, to tell which of them the compiler complains about.
+        # Ranges of the written text with their mutants, to find the mutant that the compiler complains about.
         self.places = []
         self.function = ""
         self.repeated, self.seen = Counter(), Counter()
@@ -126,8 +127,8 @@ class Schema:
         return self.source[node.start_byte : node.end_byte].decode()
 
     def take(self, node, operator, replacements):
-        """Those of the replacements that compile, each with its number. A mutant is named by its function, the operator, and which of these
-        operators in the function it is, from 1."""
+        """Return the replacements that compile, each with its number. The name of a mutant is its function, the operator, and the
+        ordinal of this operator in the function, from 1."""
         code, ids = flat(self.said(node)), []
         self.seen[self.function, operator] += 1
         for replacement in replacements:
@@ -142,7 +143,7 @@ class Schema:
         return ids
 
     def variants(self, ids, original, variant, end="}"):
-        """`if none { original } else if is(17) { .. }`: the original first, so that the compiler takes its type from it."""
+        """Write `if none { original } else if is(17) { .. }`. The original comes first, so that the compiler takes its type from it."""
         first, count = ids[0][0], len(ids)
         self.put(f"if crate::mutants::none({first}, {count}) {{ {original} }}")
         for number, (id, replacement) in enumerate(ids):
@@ -200,7 +201,7 @@ class Schema:
             at = child.end_byte
             if child == body:
                 self.put("{")
-                # By the name alone: a body is too long to tell it by.
+                # The function's name stands for the code, since a body is too long.
                 for id, value in self.take(node.child_by_field_name("name"), "returns", values):
                     self.wrapped([(id, value)], lambda: self.put(f"if crate::mutants::is({id}) {{ return {value}; }}"))
                 self.put("{")
@@ -276,7 +277,7 @@ class Schema:
         return True
 
     def match_block(self, node):
-        """An arm before one that takes everything may be left out."""
+        """Write a match in which a guard, and an arm before an arm that takes everything, may be left out."""
         arms = [child for child in node.children if child.type == "match_arm"]
         patterns = [arm.child_by_field_name("pattern") for arm in arms]
         takes_all = bool(patterns) and self.said(patterns[-1]) == "_"
@@ -340,7 +341,7 @@ def changed(path, text):
 
 
 def copied():
-    """A copy of the package to write the mutants into; what its tests read stays where it is."""
+    """Copy the package to write the mutants into. The files that its tests read stay where they are."""
     COPY.mkdir(parents=True, exist_ok=True)
     shutil.copytree(ROOT / "src", COPY / "src", dirs_exist_ok=True)
     for name in subprocess.run(["git", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=True).stdout.split("\n"):
@@ -349,7 +350,7 @@ def copied():
             (COPY / top).symlink_to(ROOT / top)
     if (ROOT / ".venv").exists() and not (COPY / ".venv").exists():
         (COPY / ".venv").symlink_to(ROOT / ".venv")
-    # A mutant may be unreachable, unused or absurd: no lint.
+    # A mutant may be unreachable, unused or absurd, so no lint applies.
     manifest = re.sub(r"(\[workspace\.lints\.\w+\]\n)(.+\n)*", r"\1", (ROOT / "Cargo.toml").read_text())
     changed(COPY / "Cargo.toml", manifest)
 
@@ -370,22 +371,22 @@ def name_of(mutant):
 
 
 def names_of(files):
-    """The names of mutants in a table of files: rows of function, operator, its ordinal and the replacements."""
+    """Return the names of mutants in a table of files. Rows have function, operator, its ordinal and the replacements."""
     return {(file, *place, other) for file, known in files.items() if file != "why" for *place, others in known for other in others}
 
 
 def explained():
-    """The names of the mutants that explained.toml has a reason for."""
+    """Return the names of the mutants that explained.toml has a reason for."""
     return set().union(*map(names_of, tomllib.loads(EXPLAINED.read_text())["reason"]))
 
 
 def undecided():
-    """The names of the mutants that have passed the tests that they were asked, without a reason."""
+    """Return the names of the mutants that have passed the tests that they were asked, without a reason."""
     return names_of(tomllib.loads(OPEN.read_text())) if OPEN.exists() else set()
 
 
 def digest(path):
-    """Digest of the code of a file, whatever its layout, its comments and its texts."""
+    """Return a digest of the code of a file, without layout, comments and string literals."""
     words, left = [], [tree_sitter.Parser(tree_sitter.Language(tree_sitter_rust.language())).parse((ROOT / path).read_bytes()).root_node]
     while left:
         node = left.pop()
@@ -398,17 +399,18 @@ def digest(path):
 
 
 def unasked():
-    """The files that have changed since all their mutants were asked."""
+    """Return the files that have changed since all their mutants were asked."""
     asked = tomllib.loads(ASKED.read_text()) if ASKED.exists() else {}
     return [str(path) for path in sources([]) if asked.get(str(path)) != digest(path)]
 
 
 def built(words, drawn, again):
-    """The binary with the tests of all drawn mutants that compile of these files, and the mutants; `again` if others of them are compiled soon."""
+    """Return the test binary with all drawn mutants of these files that compile, and the mutants. `again` is True if others of them
+    are compiled soon."""
     copied()
     if not (COPY / "target" / "release").exists() and (ROOT / "target" / "release").exists():
-        # What the package needs is compiled already. Not by links: cargo writes into what it has there. What another build takes away
-        # meanwhile is compiled again.
+        # The dependencies are compiled already. They are copied, not linked, because cargo writes into these folders. Files that
+        # another build removes meanwhile are compiled again.
         (COPY / "target" / "release").mkdir(parents=True)
         for part in ("deps", "build", ".fingerprint"):
             subprocess.run(["cp", "-a", ROOT / "target" / "release" / part, COPY / "target" / "release" / part], stderr=subprocess.DEVNULL)
@@ -448,7 +450,7 @@ def built(words, drawn, again):
 
 def limited(seconds):
     resource.setrlimit(resource.RLIMIT_AS, (6 << 30, 6 << 30))
-    # Of a process to the millisecond; what it starts is limited in whole seconds.
+    # The process is limited to the millisecond, and its children in whole seconds.
     signal.setitimer(signal.ITIMER_PROF, seconds)
     resource.setrlimit(resource.RLIMIT_CPU, (math.ceil(seconds), math.ceil(seconds) + 1))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
@@ -456,10 +458,10 @@ def limited(seconds):
 
 
 def became(binary, tests, seconds, mutant):
-    """Whether these tests pass, fail, or take longer than they may: in seconds of a core, whatever else it does; but a test may wait.
-    Which failed, or was running when all ended, and the seconds that all took."""
+    """Run tests on a mutant. Return "pass", "fail" or "too long"; the tests that failed, or the one that was running at the end; and
+    the seconds of a core that all took. The limit is in seconds of a core, whatever else the machine does, so that a test may wait."""
     words = [binary, "--include-ignored", "--exact", "--test-threads=1", *tests]
-    # Into a file, which is read once the test has ended: what it has started may still hold a pipe.
+    # The output goes to a file, which is read once the test has ended. Children of the test may still hold a pipe.
     with tempfile.TemporaryFile() as said:
         run = subprocess.Popen(words, cwd=COPY, env=os.environ | {"MUTANT": mutant} | ENVIRONMENT,
                                stdout=said, stderr=subprocess.DEVNULL, preexec_fn=lambda: limited(seconds))
@@ -491,13 +493,13 @@ def named(binary):
 
 
 def reached(binary, longest, words, jobs):
-    """Of each test that passes in time: how long it takes, s, and which places it reaches."""
+    """Return, for each test that passes in time, the seconds that it takes and the places that it reaches."""
     stamp = hashlib.sha256(Path(binary).read_bytes()).hexdigest()
     known = json.loads(REACHED.read_text()) if REACHED.exists() else {"asked": [], "slow": {}}
     asked = [stamp, longest, words]
     if known["asked"] == asked:
         return known["tests"]
-    # What took longer than it may in another build is not waited for again.
+    # A test that took too long in another build is not tried again.
     slow = known["slow"]
     names = [name for name in named(binary) if not words or any(word in name for word in words)]
     tests = {}
@@ -508,7 +510,7 @@ def reached(binary, longest, words, jobs):
         notes = COPY / "notes" / name.replace("::", ".")
         notes.unlink(missing_ok=True)
         done, _, took = became(binary, [name], longest, str(notes))
-        # What it starts counts as well.
+        # Its children count as well.
         if done == "too long" or took > longest:
             slow[name] = longest
         elif done == "pass":
@@ -571,7 +573,7 @@ def main():
     out = open(asked.out, "a") if asked.out else None
     end_of = {id: before[mutants[id]["key"]] for id in chosen if mutants[id]["key"] in before}
     end_of |= {id: ("explained", []) for id in chosen if name_of(mutants[id]) in told}
-    # A part leaves out what is known to be open; a run of all asks it again.
+    # With --most, mutants that are known to be open are left out. Other runs ask them again.
     end_of |= {id: ("open", []) for id in chosen if name_of(mutants[id]) in still_open and asked.most}
     left = {}
     kills = Counter()
@@ -579,7 +581,7 @@ def main():
     began = time.monotonic()
 
     def ask_all(ids, seconds, tests_of):
-        """Asks these mutants their tests in turn, and returns those that pass them."""
+        """Ask these mutants their tests in turn, and return those that pass them."""
 
         def ask_one(id):
             mutant = mutants[id]
@@ -602,7 +604,7 @@ def main():
             with turn:
                 kills.update((mutant["file"], test) for test in failed)
                 end_of[id], left[id] = (done, failed), len(tests)
-                # What passes may be asked more.
+                # A mutant that passes may be asked more tests.
                 if out and done != "pass":
                     print(json.dumps(mutant | {"tests": done, "failed": failed}), file=out, flush=True)
 
@@ -611,19 +613,19 @@ def main():
         return [id for id in ids if end_of.get(id, ("", []))[0] == "pass"]
 
     failing = tomllib.loads(FAILING.read_text())
-    # Of a test that has not run yet, more than most take.
+    # A test that has not run yet counts for more seconds than most take.
     seconds = defaultdict(lambda: 1.0, json.loads(SECONDS.read_text()) if SECONDS.exists() else {})
     there = {test for test in named(binary) if not asked.tests or any(word in test for word in asked.tests)}
     of_file = lambda id: [test for test in failing["of"].get(mutants[id]["file"], []) if test in there]
     alive = ask_all([id for id in chosen if id not in end_of], seconds, of_file)
-    # What catches mutants of its neighbours catches most of the rest, and is far less to run than each test once.
+    # Tests that catch mutants of neighbouring files catch most of the rest, and take much less time than every test once.
     folder = lambda file: Path(file).parent
     beside = lambda id: [test for file, tests in failing["of"].items() if folder(file) == folder(mutants[id]["file"])
                          for test in tests if test in there and test not in of_file(id)]
     for id in alive:
         del end_of[id]
     alive = ask_all(alive, seconds, lambda id: sorted(set(beside(id)), key=lambda test: seconds[test]))
-    # A test that fails of itself tells nothing.
+    # A test that fails without a mutant proves nothing.
     told_by = sorted({test for _, test in kills})
     done, failed, _ = became(binary, told_by, 2 + 8 * sum(seconds[test] for test in told_by), "") if told_by else ("pass", [], 0)
     if done != "pass":
@@ -638,9 +640,9 @@ def main():
         place = {}
         for id, mutant in enumerate(mutants):
             place[id] = id if id in places or id == 0 else place[id - 1] if same_place(mutants[id - 1], mutant) else id
-        # What has caught others of this file, then what is quick.
+        # Tests that have caught other mutants of this file come first, then quick tests.
         likely = lambda id: sorted(places[place[id]], key=lambda test: tests[test][0] / (1 + kills[mutants[id]["file"], test]))
-        # What is not begun in time has not been tried.
+        # A mutant that is not begun in time has not been tried.
         for id in alive:
             del end_of[id]
         seconds.update((test, took) for test, (took, _) in tests.items())
@@ -663,9 +665,9 @@ def main():
 
 
 def learned(tried):
-    """Adds to what is listed of each file until each of its mutants that failed a test fails one of those: each time the one that most of
-    what is left fail for the time that it takes. Notes the files of which each mutant has been asked, is explained or does not compile, and
-    the mutants that have passed."""
+    """Add tests to the list of each file until each of its mutants that failed a test fails one of the list. The next test is the one
+    that catches most of the remaining mutants for its time. Also note the mutants that have passed, and the files of which each
+    mutant has been asked, is explained or does not compile."""
     listed = tomllib.loads(FAILING.read_text())["of"]
     seconds = defaultdict(lambda: 1.0, json.loads(SECONDS.read_text()))
     failed = defaultdict(dict)
@@ -675,7 +677,7 @@ def learned(tried):
         tests = listed.setdefault(file, [])
         while left := [those for those in of_file.values() if those and not those & set(tests)]:
             counts = Counter(test for those in left for test in those)
-            # A process takes some time to begin as well.
+            # Starting a process takes time as well.
             tests.append(max(sorted(counts), key=lambda test: counts[test] / (0.05 + seconds[test])))
     lines = ["# Tests that the mutants of a file fail, those first that most of them do: by mutants.py --learn.", "", "[of]"]
     lines += [f"{json.dumps(file)} = {json.dumps(tests, indent=4)}" for file, tests in sorted(listed.items())]

@@ -1,13 +1,14 @@
 """Cam-follower systems with impacts: runs, maps, charts, orbits, corner impacts and their proofs.
 
-Start with a `Model`. Its methods return results: dicts with attributes, tables (`to_pandas`, `to_xarray`) and plots. Runs and maps are
-columns of numpy arrays; studies are the documents that `corner-impact NAME --json` prints. `corner_impact.results` lists the classes.
+Start with a `Model`. Its methods return results: dicts with attributes, tables (`to_pandas`, `to_xarray`) and plots. Runs and maps
+are columns of numpy arrays. Studies are the documents that `corner-impact NAME --json` prints. `corner_impact.results` lists the
+classes.
 
-Angles are in rad or deg, as their names say. Cam angles lie in [0, 2 pi), with 0 at the middle of the base circle. Positions are in the
-cam's coordinates. Units are those of the model, by default m, s and kg.
+Angles are in rad or deg, as their names say. Cam angles lie in [0, 2 pi), with 0 at the middle of the base circle. Positions are in
+the cam's coordinates. Units are those of the model, by default m, s and kg.
 
-Long calls release the interpreter, and Ctrl-C ends them. A wrong argument raises `ValueError`. Among many runs, one that fails is NaN or
-has a class of its own.
+Long calls release the interpreter, and Ctrl-C ends them. A wrong argument raises `ValueError`. If one of many runs fails, its result
+is NaN or a class of its own.
 """
 
 from corner_impact._errors import ModelError

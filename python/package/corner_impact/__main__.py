@@ -8,7 +8,7 @@ from corner_impact import _native
 
 def main() -> int:
     """Run the command with the words of the command line, and return its exit code."""
-    # A command ends with Ctrl-C, and leaves nothing half done: the program sees to that itself.
+    # Ctrl-C ends the command by the default handler. The program itself leaves nothing half done.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     return _native.main(["corner-impact", *sys.argv[1:]])
 

@@ -1,11 +1,11 @@
-"""What can go wrong."""
+"""Errors of the package."""
 
 
 class ModelError(ValueError):
-    """A complaint about a model: where, what was found, what would be allowed.
+    """Error in a model: its place, what was found, and what is allowed.
 
-    `file` is the file, or what stands in its place; `line` counts from 1, and is None where there is no file or the complaint is
-    about no line of it; `field` is the dotted path of the field, or None.
+    `file` is the file, or the name that stands for it. `line` counts from 1; it is None without a file, or if the error belongs to no
+    line. `field` is the dotted path of the field, or None.
     """
 
     __module__ = "corner_impact"

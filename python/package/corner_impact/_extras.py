@@ -1,4 +1,4 @@
-"""Packages that only some users need."""
+"""Import of packages that only some users need."""
 
 from importlib import import_module
 from typing import Any

@@ -1,4 +1,4 @@
-"""The mechanism of all results: a dict with attributes, tables, plots and a picture for notebooks."""
+"""The base of all results: a dict with attributes, tables, plots and a picture for notebooks."""
 
 import html
 import json
@@ -25,15 +25,15 @@ UNITS = {
     **{f"_{length}{end}": length + by for end, by in (("_rad2", "/rad^2"), ("_rad", "/rad"), ("_s", "/s"), ("", "")) for length in LENGTHS},
     "_s": "s", "_rad": "rad", "_deg": "deg", "_rpm": "rpm", "_n": "N", "_mn": "mN", "_kn": "kN", "_kgf": "kgf", "_lbf": "lbf", "_j": "J",
 }  # fmt: skip
-"""Units by the ends of names. The first end decides, and so a longer one stands before a shorter one."""
+"""Units by the ends of names. The first end that fits decides, so longer ends come before shorter ones."""
 
 
 class Result(dict[str, Any]):
-    """A finding of the program: a dict with the entries of the command's document, and the same entries as attributes.
+    """Result of the program: a dict with the entries of the command's document, which are also attributes.
 
     A subscript returns an entry as the document has it. An attribute returns it as an object: a table as a `Result`, a list of tables
-    as a list of them, numbers as a numpy array, and a pair `re`, `im` as a complex number. An angle has two attributes, such as
-    `cam_angle_rad` and `cam_angle_deg`. A name that Python or dict keeps for itself has an underscore behind it: `class_`, `values_`.
+    as a list of `Result`s, numbers as a numpy array, and a pair `re`, `im` as a complex number. An angle has two attributes, such as
+    `cam_angle_rad` and `cam_angle_deg`. A name that Python or dict reserves ends in an underscore: `class_`, `values_`.
 
     `to_pandas`, `to_xarray` and `plot` show the main table of the result.
     """
@@ -41,7 +41,7 @@ class Result(dict[str, Any]):
     _path: ClassVar[tuple[str, ...]] = ()
     """Lists within lists whose entries are the rows of the main table."""
     _drawn: ClassVar[tuple[str, str, str]] = ("", "", "")
-    """Columns of a plot: across, up, and the one that distinguishes series. A name may lack its unit."""
+    """Columns of a plot: across, up, and the column that distinguishes series. A name may lack its unit."""
     _words: ClassVar[dict[str, str]] = {}
     """Labels of axes for columns whose names do not say enough."""
     _looks: ClassVar[dict[str, Any]] = {"linestyle": "none", "marker": "o", "markeredgewidth": 0}
@@ -63,7 +63,7 @@ class Result(dict[str, Any]):
         return [*super().__dir__(), *(name for name in self if name.isidentifier()), *turned]
 
     def __eq__(self, other: object) -> bool:
-        """Compare class and entries, arrays by their values with NaN equal to NaN. The time that a study took does not count."""
+        """Compare class and entries, arrays by their values with NaN equal to NaN. The time that a study took is ignored."""
         if not isinstance(other, Result):
             return _same(dict(self), other)
         return type(self) is type(other) and _same(self._compared(), other._compared())
@@ -96,8 +96,8 @@ class Result(dict[str, Any]):
     def table(self) -> dict[str, Array]:
         """Return the main table as columns by name, each of shape (rows,).
 
-        Lists of numbers become numbered columns such as `state_1`, complex numbers `_re` and `_im`, and lists of tables their lengths.
-        A result without a list of its own is a table of one row.
+        Lists of numbers become numbered columns such as `state_1`, complex numbers become `_re` and `_im`, and lists of tables become
+        their lengths. A result without a list of its own is a table of one row.
         """
         if not self._lists():
             return _columns([dict(_flat("", dict(self)))])
@@ -117,7 +117,7 @@ class Result(dict[str, Any]):
         """Write `to_xarray` to a netCDF file. Raises ImportError without h5netcdf and xarray (extra `netcdf`)."""
         need("h5netcdf", "netcdf")
         dataset: Any = self.to_xarray()
-        # A file has neither None nor tables: these are text there.
+        # A netCDF file has neither None nor tables. None is left out, and tables are written as text.
         notes = {name: note for name, note in dataset.attrs.items() if note is not None}
         dataset.attrs = {name: json.dumps(note) if _is_dict(note) or _is_list(note) else note for name, note in notes.items()}
         dataset.to_netcdf(path, engine="h5netcdf")
@@ -125,8 +125,8 @@ class Result(dict[str, Any]):
     def plot(self, ax: "Axes | None" = None, *, x: str = "", y: str = "", by: str = "", **style: Any) -> "Axes":
         """Draw column `y` of the main table over column `x`, one series for each value of `by`, on `ax` or a new figure.
 
-        The result has usual columns. `style` goes to `matplotlib.axes.Axes.plot`. Returns the Axes. Raises ValueError if there is no
-        such column or nothing to plot, and ImportError without matplotlib (extra `plot`).
+        Each class of results has default columns. `style` goes to `matplotlib.axes.Axes.plot`. Returns the Axes. Raises ValueError if
+        there is no such column or nothing to plot, and ImportError without matplotlib (extra `plot`).
         """
         names, table = self._columns_drawn(), self._plotted()
         if not (x or names[0]) or not table:
@@ -147,7 +147,7 @@ class Result(dict[str, Any]):
         return cast("Axes", axes)
 
     def _label(self, name: str) -> str:
-        """The label of an axis: what the class says, the number that varies for `value`, or the name."""
+        """Return the label of an axis: the words of the class, the varied number for `value`, or the name."""
         if name == "value" and isinstance(varied := self.get("over", self.get("parameter")), str):
             return label(varied)
         length = _length(self)
@@ -160,7 +160,7 @@ class Result(dict[str, Any]):
         return self._drawn
 
     def _plotted(self) -> dict[str, Array]:
-        """The columns of plots."""
+        """Return the columns of plots."""
         return self.table()
 
     def _dataset(self, variables: dict[str, tuple[tuple[str, ...], Array]]) -> "xr.Dataset":
@@ -186,7 +186,7 @@ class Columns(Result):
         return f"{type(self).__name__} of shape {shape}"
 
     def _parts(self) -> Iterator[tuple[str, Array]]:
-        """The columns, with each entry of a matrix as a column."""
+        """Yield the columns, with each entry of a matrix as a column."""
         for name, column in self.items():
             if name == "jacobian":
                 yield from ((f"{name}_{row}_{of}", column[..., row - 1, of - 1]) for row in (1, 2) for of in (1, 2))
@@ -207,7 +207,7 @@ class Columns(Result):
 
 
 class Ball(Result):
-    """A number proved to lie within `rad` of `mid`, decimal strings both."""
+    """Number proved to lie within `rad` of `mid`; both are decimal strings."""
 
     mid: str
     rad: str
@@ -217,11 +217,11 @@ class Ball(Result):
 
 
 SIZES = ((200, 6.0), (2000, 3.0), (20_000, 1.5), (np.inf, 0.8))
-"""Sizes of markers by how many there are, in points."""
+"""Sizes of markers, in points, by the number of markers."""
 
 
 def drawn(method: Any, *data: Any, **style: Any) -> Any:
-    """Draw with a method of matplotlib. Raises TypeError if it does not know a part of `style`."""
+    """Draw with a method of matplotlib. Raises TypeError if the method does not accept a part of `style`."""
     try:
         return method(*data, **style)
     except AttributeError as error:
@@ -234,7 +234,7 @@ def axes_or_new(ax: "Axes | None") -> Any:
 
 
 def mesh(axes: Any, x: Array, y: Array, codes: Array, names: list[str], **style: Any) -> None:
-    """Draw codes, counted from 0, on a grid, with a colour for each name; other codes are left out."""
+    """Draw codes, counted from 0, on a grid, with a colour for each name. Other codes are left out."""
     colours = need("matplotlib", "plot").colormaps["viridis"].resampled(max(len(names), 2))
     right, up = np.argsort(x), np.argsort(y)
     shown = np.ma.masked_outside(codes[np.ix_(up, right)], 0, len(names) - 1)
@@ -244,7 +244,7 @@ def mesh(axes: Any, x: Array, y: Array, codes: Array, names: list[str], **style:
 
 
 def label(name: str) -> str:
-    """Return a name as an axis has it: `cam angle (deg)`."""
+    """Return a name as the label of an axis: `cam angle (deg)`."""
     unit = _unit(name).get("units")
     if name == "rpm":
         return "speed (rpm)"
@@ -260,7 +260,7 @@ def entries(title: str, found: dict[str, Any]) -> str:
 
 
 def _html(table: dict[str, Array], most: int = 10) -> str:
-    """The first rows of a table."""
+    """Return the first rows of a table as HTML."""
     if not table:
         return ""
     count = len(next(iter(table.values())))
@@ -275,7 +275,7 @@ def _unit(name: str) -> dict[str, str]:
 
 
 def _length(node: Any) -> str:
-    """The unit of length of a document, by the name of the first velocity in it; empty without one."""
+    """Return the unit of length of a document, by the name of the first velocity in it; empty without one."""
     inner: list[Any] = list(node.values()) if _is_dict(node) else node if _is_list(node) else []
     names = [name for name in (node if _is_dict(node) else ()) if name.startswith("velocity_") and name.endswith("_s")]
     if names:
@@ -284,7 +284,7 @@ def _length(node: Any) -> str:
 
 
 def _same(one: Any, other: Any) -> bool:
-    """Whether two entries are equal, arrays by their values."""
+    """Return True if two entries are equal, arrays by their values."""
     if _is_dict(one) and _is_dict(other):
         return one.keys() == other.keys() and all(_same(one[name], other[name]) for name in one)
     if not (hasattr(one, "shape") or hasattr(other, "shape")):
@@ -295,7 +295,7 @@ def _same(one: Any, other: Any) -> bool:
 
 
 def _column(table: dict[str, Array], name: str) -> tuple[str, Array]:
-    """A column by its name, by the angle's other unit, or by the name without its unit."""
+    """Return a column by its name, by the angle's other unit, or by the name without its unit."""
     if name in table:
         return name, table[name]
     if name.endswith("_deg") and (rad := name[:-4] + "_rad") in table:
@@ -318,20 +318,20 @@ _HINTS: dict[type[Result], dict[str, Any]] = {}
 
 
 def _hints(of: type[Result]) -> dict[str, Any]:
-    """The declarations of a class, which take a while to find."""
+    """Return the declarations of a class. They are kept, since finding them takes a while."""
     if of not in _HINTS:
         _HINTS[of] = get_type_hints(of)
     return _HINTS[of]
 
 
 def _class(hint: Any) -> type[Result]:
-    """The class that a declaration has for tables."""
+    """Return the class that a declaration has for tables."""
     parts = [hint, *get_args(hint), *(inner for part in get_args(hint) for inner in get_args(part))]
     return next((part for part in parts if isinstance(part, type) and issubclass(part, Result)), Result)
 
 
 def _object(value: Any, hint: Any) -> Any:
-    """An entry of a document as an object."""
+    """Return an entry of a document as an object."""
     if _is_dict(value):
         if value.keys() == {"re", "im"} and all(isinstance(part, float | int) for part in value.values()):
             return complex(value["re"], value["im"])
@@ -349,7 +349,7 @@ def _object(value: Any, hint: Any) -> Any:
 
 
 def _rows(node: dict[str, Any], path: tuple[str, ...]) -> Iterator[dict[str, Any]]:
-    """The entries of a list within lists. Each has its place in the outer lists, and the plain entries there."""
+    """Yield the entries of a list within lists. Each has its index in the outer lists, and the plain entries there."""
     name, *rest = path or ("",)
     for index, part in enumerate(node[name] if name in node else []):
         if rest:
@@ -360,7 +360,7 @@ def _rows(node: dict[str, Any], path: tuple[str, ...]) -> Iterator[dict[str, Any
 
 
 def _flat(name: str, value: Any) -> Iterator[tuple[str, Any]]:
-    """An entry as columns."""
+    """Yield an entry as columns."""
     if _is_dict(value):
         if value.keys() == {"mid", "rad"}:
             yield name, float(value["mid"])
@@ -379,7 +379,7 @@ def _flat(name: str, value: Any) -> Iterator[tuple[str, Any]]:
 
 
 def _columns(rows: list[dict[str, Any]]) -> dict[str, Array]:
-    """Columns of rows: numbers, truths, or text; NaN or empty text for what is missing."""
+    """Return rows as columns of numbers, booleans or text. Missing cells are NaN or empty text."""
     found: dict[str, Array] = {}
     for name in dict.fromkeys(name for row in rows for name in row):
         cells: list[Any] = [row.get(name) for row in rows]

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 __all__ = ["dataset", "fill", "lazy"]
 
 AHEAD = 1000
-"""Largest number of blocks that wait at an executor."""
+"""Largest number of blocks that are submitted to an executor at once."""
 
 
 def dataset(chart: Chart, *, threads: int | None = None) -> "xr.Dataset":

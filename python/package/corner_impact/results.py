@@ -1,7 +1,8 @@
-"""Results of a model: what each has, as types, and which of it is a table and a plot.
+"""Classes of results: the attributes of each, as types, with its table and its plot.
 
 Each class is the document of one command, or the columns of one run. Its declarations name the attributes that are always there; the
-commands' pages describe all entries. Names of lengths and forces end in the model's units: `position_m`, or `position_mm` in millimetres.
+commands' pages describe all entries. Names of lengths and forces end in the model's units: `position_m`, or `position_mm` in
+millimetres.
 """
 
 import html
@@ -26,7 +27,7 @@ __all__ = [
 
 
 def refuse(**given: str) -> None:
-    """Raise TypeError if one of the arguments is given that a plot has no use for."""
+    """Raise TypeError if an argument is given that a plot does not use."""
     if names := [name for name, value in given.items() if value]:
         raise TypeError(f"this plot has no choice of {', '.join(names)}")
 
@@ -269,7 +270,7 @@ class Verification(Result):
         return f"{type(self).__name__} agrees={self['agrees']}: {words}" + (f"; failed: {', '.join(failed)}" if failed else "")
 
     def plot(self, ax: "Axes | None" = None, *, x: str = "", y: str = "", by: str = "", **style: Any) -> "Axes":
-        """Draw differences over tolerances on logarithmic axes, or other columns. As for all results otherwise."""
+        """Draw differences over tolerances on logarithmic axes, or other columns. The arguments are those of `Result.plot`."""
         return logarithmic(super().plot(ax, x=x, y=y, by=by, **style))
 
 
@@ -351,7 +352,7 @@ class Design(Result):
         return f"{words} ({label(name).partition('(')[2]}" if words else super()._label(name)
 
     def plot(self, ax: "Axes | None" = None, *, x: str = "", y: str = "", by: str = "", **style: Any) -> "Axes":
-        """Draw the least contact force with the speed of separation, or other columns. As for all results otherwise."""
+        """Draw the least contact force with the speed of separation, or other columns. The arguments are those of `Result.plot`."""
         axes: Any = super().plot(ax, x=x, y=y, by=by, **style)
         separation = self["separation"]
         if (x or self._columns_drawn()[0]) == "speed_rpm" and separation:
@@ -382,7 +383,7 @@ class Comparison(Result):
     _drawn = ("error", "difference", "")
 
     def plot(self, ax: "Axes | None" = None, *, x: str = "", y: str = "", by: str = "", **style: Any) -> "Axes":
-        """Draw differences over errors on logarithmic axes, or other columns. As for all results otherwise."""
+        """Draw differences over errors on logarithmic axes, or other columns. The arguments are those of `Result.plot`."""
         return logarithmic(super().plot(ax, x=x, y=y, by=by, **style))
 
 
@@ -448,7 +449,7 @@ class Basins(Result):
     def plot(self, ax: "Axes | None" = None, *, x: str = "", y: str = "", by: str = "", **style: Any) -> "Axes":
         """Draw the basins on `ax` or a new figure; `style` goes to `pcolormesh`. Returns the Axes.
 
-        Raises ValueError without a grid, and TypeError with `x`, `y` or `by`, of which a grid has no choice.
+        Raises ValueError without a grid, and TypeError if `x`, `y` or `by` is given, since a grid has no choice of columns.
         """
         if "ending" not in vars(self):
             raise ValueError("a plot is of a grid: basins(rpm, (columns, rows))")
@@ -461,7 +462,7 @@ class Basins(Result):
 
 
     def _names(self) -> list[str]:
-        """A name for each ending, with a number where another has the same."""
+        """Return a name for each ending, with a number if another ending has the same name."""
         def named(part: Result) -> str:
             period = [f"{part[what]} {what if part[what] != 1 else what[:-1]}" for what in ("revolutions", "impacts") if what in part]
             return ", ".join([part["ending"], *period])
@@ -524,7 +525,7 @@ class Branches(Result):
 
 
 def _first_impacts(points: list[dict[str, Any]]) -> dict[str, Array]:
-    """The cam angle of the first impact of the orbit of each point, NaN without one, as a column."""
+    """Return the cam angle of the first impact of each point's orbit as a column; NaN without an impact."""
     firsts = [next(iter(point["orbit"]["impacts"]), dict[str, Any]()) for point in points]
     name = next((name for first in firsts for name in first if name.startswith("cam_angle")), "")
     return {name: np.array([first.get(name, np.nan) for first in firsts])} if name else {}
@@ -566,7 +567,7 @@ class Curves(Result):
 
 
 class Theorem(Result):
-    """A set of chaotic motions that is proved to exist. `symbols` are impacts of its strips, shape (strips,)."""
+    """A set of chaotic motions that is proved to exist. `symbols` are the numbers of impacts of its strips, shape (strips,)."""
 
     rpm: Array
     symbols: Array
@@ -633,7 +634,7 @@ class Figure(Result):
     def plot(self, ax: "Axes | None" = None, *, x: str = "", y: str = "", by: str = "", **style: Any) -> "Axes":
         """Draw the lines, points and clouds of the first panel on `ax` or a new figure. Returns the Axes. `svg` has all panels.
 
-        Raises TypeError with `x`, `y` or `by`, of which a figure has no choice.
+        Raises TypeError if `x`, `y` or `by` is given, since a figure has no choice of columns.
         """
         refuse(x=x, y=y, by=by)
         axes, document = axes_or_new(ax), self["figure"]
@@ -654,7 +655,7 @@ class Figure(Result):
 
 
 def _points(series: dict[str, Any]) -> dict[str, Array]:
-    """Points of a series of a figure by their kind, shape (N, 2), and the middles of the cells of a cloud; none of words and bands."""
+    """Return the points of a figure's series by kind, shape (N, 2). A cloud gives the middles of its cells; words and bands give nothing."""
     found: dict[str, Array] = {}
     for kind, data in series["data"].items():
         if kind == "density" and data["counts"]:
@@ -707,7 +708,7 @@ class ChartPoints(Columns):
         return described(self.chart, self.axes, dict(self))
 
     def sel(self, method: Any = None, tolerance: Any = None, drop: bool = False, **values: Any) -> "xr.Dataset":
-        """Select from `to_xarray` by the values of axes, named whole or by their ends: `sel(restitution=0.7)`.
+        """Select from `to_xarray` by the values of axes, named in full or by the last part of the name: `sel(restitution=0.7)`.
 
         Raises KeyError if an axis has no such value, and ValueError if there is no such axis. Options are those of xarray.
         """

@@ -1,12 +1,13 @@
-"""Looks for periodic orbits by brute force, and tells where the program's complete lists disagree.
+"""Looks for periodic orbits by brute force, and reports where the program's complete lists disagree.
 
-Of random machines with planted difficulties, dense scans give orbits of one impact and of two, which Newton's method confirms in 60
-digits. The questions, `orbit`, `pairs` (those of two impacts), `proofs` and `certify`, `counts` (over a range of speeds) and `locate`, are asked by the
-commands that anybody would use. Each line printed is the document of a machine: what was planted, how many orbits were confirmed, how many
-lists were said to be complete, and what is `wrong`.
+The machines are random, with planted difficulties. Dense scans give orbits of one impact and of two, which Newton's method confirms
+in 60 digits. The questions are `orbit`, `pairs` (orbits of two impacts), `proofs`, `certify`, `counts` (over a range of speeds) and
+`locate`. `proofs` calls the script behind `certify`; the others run the commands that anybody would use. Each line printed is the
+document of a machine: what was planted, how many orbits were confirmed, how many lists were said to be complete, and what is `wrong`.
 
-Nothing here comes from a proof: flights are Taylor series squared, derivatives are differences, and whether a flight is clear of the
-cam is seen at thousands of its moments. What is nearer to a graze, a fold or a corner than rounding tells is `doubtful` and left out.
+The search uses nothing of the proofs: flights are Taylor series squared, derivatives are differences, and a flight is checked for
+being clear of the cam at thousands of its moments. An orbit nearer to a graze, a fold or a corner than rounding resolves is
+`doubtful` and left out.
 """
 
 import argparse
@@ -25,13 +26,13 @@ from machines import drawn
 from orbits import Follower, Machine, angles_of, apart, corner_impact, corner_impacts, corner_roots, same
 
 
-# How long an answer is waited for, s: how fast it comes is not the question.
+# Longest wait for an answer, s. The speed of an answer is not tested here.
 PATIENCE = 200
 DERIVATIONS = str(Path(__file__).parents[3] / "derivations")
 
 
 class Asked:
-    """What the program tells of a model file, and what is wrong with it."""
+    """The program's answers about a model file, and the errors in them."""
 
     def __init__(self, program, file, machine, drop):
         self.program, self.file, self.machine, self.drop = program, Path(file), machine, drop
@@ -62,7 +63,7 @@ class Asked:
         turns = self.machine.turns
         if "orbit" in questions:
             self.orbit(1)
-        # Pairs in more than one revolution are found by a search, and nothing is said of all there are; nor does `certify` look at them.
+        # The program finds pairs in more than one revolution by a search, without a claim that it has all. `certify` does not cover them.
         if "pairs" in questions and turns == 1:
             self.orbit(2)
         if "proofs" in questions and turns == 1:
@@ -101,7 +102,7 @@ class Asked:
             self.held("certify --orbits", impacts, listed, undecided, impacts in told["complete"])
 
     def proofs(self):
-        """The list of one impact that `certify --orbits` has, from its script alone: the command goes on to those of two for a minute."""
+        """Check the list of one impact of `certify --orbits`, from its script alone: the command continues with lists of two for a minute."""
         if DERIVATIONS not in sys.path:
             sys.path.append(DERIVATIONS)
         from balls import motion, numbers, orbits
@@ -128,7 +129,7 @@ class Asked:
         self.held("certify --orbits", 1, listed, ranges, not undecided)
 
     def held(self, question, impacts, listed, undecided, is_complete):
-        """A list against the orbits that were found, and each of its orbits against the laws."""
+        """Compare a list with the orbits that were found, and each of its orbits with the laws."""
         question = f"{question}, {impacts} impact(s) at {self.machine.rpm!r} rpm"
         if self.drop and listed:
             listed = listed[1:]
@@ -172,7 +173,7 @@ class Asked:
         return self.machine.searched[impacts]
 
     def over_range(self, rng):
-        """How many orbits of one impact there are at every speed of a range."""
+        """Check the number of orbits of one impact at speeds of a range."""
         low, high = (float(f"{self.machine.rpm * part:.9g}") for part in (1 - rng.uniform(0.001, 0.03), 1 + rng.uniform(0.001, 0.03)))
         told = self.document("certify", "--orbits", "--rpm", f"{low!r}:{high!r}")
         if not told:
@@ -198,7 +199,7 @@ class Asked:
                         self.say("certify --orbits over a range", f"{count['kinds']} from {start!r} to {end!r} rpm, and at {rpm!r} {kinds}")
 
     def locate(self, rng):
-        """Corner impacts of one impact, about the speed of one if there is one."""
+        """Check the corner impacts of one impact, about the speed of one if there is one."""
         machine = self.machine
         roots = list(corner_roots(machine.cam, machine.follower, 0.8 * machine.rpm, 1.25 * machine.rpm, machine.turns))
         rng.shuffle(roots)
@@ -234,14 +235,14 @@ class Asked:
 
 
 def inside(angles, ranges):
-    """Whether each angle is in one of the ranges."""
+    """Return True if each angle is in one of the ranges, and each range has one of the angles."""
     holds = lambda low, high, angle: any(low - 1e-8 <= float(angle) + k * math.tau <= high + 1e-8 for k in (-1, 0, 1))
     return all(any(holds(low, high, angle) for low, high in ranges) for angle in angles) and all(
         any(holds(low, high, angle) for angle in angles) for low, high in ranges)
 
 
 def read(file):
-    """(law, numbers of the follower) of a model file."""
+    """Return (law, numbers of the follower) of a model file."""
     model = tomllib.loads(Path(file).read_text())
     return model["cam"], model["follower"]
 

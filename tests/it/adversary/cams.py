@@ -10,7 +10,7 @@ TURN = 2 * mp.pi
 
 
 def exact(number):
-    """The decimal that a model file holds."""
+    """Return the decimal that a model file holds."""
     return mpf(repr(number))
 
 
@@ -18,11 +18,11 @@ def radians(degrees):
     return exact(degrees) * mp.pi / 180
 
 
-# Cams: a list of (angle where it begins, lift and slope as a function of the angle), the same formula for numpy and for mpmath.
+# A cam is a list of (angle where a piece begins, function). The function returns lift and slope at an angle, for numpy and for mpmath.
 
 
 class Law:
-    """A formula with numbers in 60 digits, and the same as doubles."""
+    """Formula with its numbers in 60 digits, and as doubles."""
 
     def __init__(self, formula, *numbers):
         self.formula, self.exact = formula, numbers
@@ -49,7 +49,7 @@ def waves(library, angle, offset, sizes, phases):
 
 
 def circle(library, angle, distance, direction, radius):
-    """The far crossing of a ray with a circle: d^2 + c^2 - 2 d c cos(x) = R^2, differentiated as it stands."""
+    """Return the far crossing of a ray with a circle, and its slope: d^2 + c^2 - 2 d c cos(x) = R^2, differentiated as it stands."""
     x = angle - direction
     along = distance * library.cos(x)
     value = along + library.sqrt(radius**2 - (distance * library.sin(x)) ** 2)
@@ -57,7 +57,7 @@ def circle(library, angle, distance, direction, radius):
 
 
 def stroke(library, angle, start, span, base, rise, coefficients, sine):
-    """base + rise (powers and a sine of the part of the span)."""
+    """Return base + rise (powers and a sine of the fraction of the span), and its slope."""
     value, slope = powers(library, (angle - start) / span, 0, coefficients)
     size, rate, phase = sine
     x = rate * (angle - start) / span + phase
@@ -66,7 +66,7 @@ def stroke(library, angle, start, span, base, rise, coefficients, sine):
 
 
 def from_acceleration(pieces):
-    """A motion from 0 to 1 in a unit of time, its acceleration integrated: pieces (begin, powers of the time since then, a sine).
+    """Return a motion from 0 to 1 in a unit of time from its acceleration: [(begin, powers of the time since then, sine)].
 
     The acceleration is given as (duration, a), or as (duration, a, rate, phase) for a sin(rate x + phase).
     """
@@ -107,7 +107,8 @@ MOTIONS = {
 def arcs(law):
     base, flank, nose = (exact(law[name + "_radius"]) for name in ("base", "flank", "nose"))
     start, end = radians(law["flank_start_deg"]), radians(law["nose_end_deg"])
-    # Centres: of the flank behind the axis, of the nose on the ray on which the nose ends, as far from it as two circles that touch.
+    # The flank's centre is behind the axis. The nose's is on the ray on which the nose ends, as far from the flank's as two circles
+    # that touch.
     back = flank - base
     ahead = -back * mp.cos(end - start) + mp.sqrt((flank - nose) ** 2 - (back * mp.sin(end - start)) ** 2)
     nose_x, nose_y = ahead * mp.cos(end) + back * mp.cos(start), ahead * mp.sin(end) + back * mp.sin(start)
@@ -136,25 +137,25 @@ def polynomial(law):
 
 
 def hermite(h, left, right):
-    """Powers from 0 to h with given derivatives at both ends, as many at each as are given, at most three."""
+    """Return the powers of a polynomial from 0 to h with given derivatives at both ends: two at each end, or three at each."""
     (y0, s0, *k0), (y1, s1, *k1) = left, right
     if not k0:
         rise = (y1 - y0) / h
         return [y0, s0, (3 * rise - 2 * s0 - s1) / h, (s0 + s1 - 2 * rise) / h**2]
     a, b, c = y0, s0, k0[0] / 2
-    # What the first three leave to reach at the other end.
+    # Remainders at the other end after the first three powers.
     y, s, k = y1 - (a + h * (b + h * c)), (s1 - b - 2 * c * h) * h, (k1[0] - 2 * c) * h**2
     return [a, b, c, (10 * y - 4 * s + k / 2) / h**3, (-15 * y + 7 * s - k) / h**4, (6 * y - 3 * s + k / 2) / h**5]
 
 
 def table(law):
-    """Of rows next to one another the digits cancel: twice as many are carried."""
+    """Return the spline of a table. Digits cancel between neighbouring rows, so that twice as many are carried."""
     with mp.workdps(2 * mp.dps):
         return spline(law)
 
 
 def spline(law):
-    """A periodic spline: slopes, and of degree 5 curvatures, at the rows, such that the next derivatives do not jump."""
+    """Return a periodic spline. Slopes, and for degree 5 curvatures, at the rows are such that the next derivatives do not jump."""
     rows = [(radians(angle), exact(lift)) for angle, lift in law["rows"]]
     count, quintic = len(rows), law["spline"] == "quintic"
     widths = [(rows[(i + 1) % count][0] - rows[i][0]) % TURN for i in range(count)]
@@ -174,7 +175,7 @@ def spline(law):
                 found.append((end - mp.factorial(order) * after[order]) * h**order)
         return found
 
-    # Linear in the unknowns: the matrix is solved in doubles, and what that leaves is taken off again and again.
+    # The jumps are linear in the unknowns. The system is solved in doubles, again and again for the remainder.
     zero = [mpf(0)] * (each * count)
     right = jumps(zero)
     matrix = np.zeros((each * count, each * count))
@@ -182,7 +183,7 @@ def spline(law):
         unit = list(zero)
         unit[column] = mpf(1)
         matrix[:, column] = [float(one - other) for one, other in zip(jumps(unit), right)]
-    # Rows and columns of one size, however near two rows of the table are.
+    # Rows and columns are scaled to one size, however near two rows of the table are.
     of_rows = 1 / np.abs(matrix).max(axis=1)
     of_columns = 1 / np.abs(matrix * of_rows[:, None]).max(axis=0)
     scaled = matrix * of_rows[:, None] * of_columns
@@ -218,7 +219,7 @@ LAWS = {"arcs": arcs, "program": program, "polynomial": polynomial, "table": tab
 class Cam:
     def __init__(self, law):
         self.pieces = LAWS[law["law"]](law)
-        # Where polynomials meet, and rises add up to 0, only to the rounding of what is typed, the program takes that out.
+        # The program takes out mismatches of polynomials, and sums of rises, of the size of rounding. So these cams are not exact here.
         self.is_exact = law["law"] not in ("polynomial", "program")
         self.exact = [start for start, _ in self.pieces] + [TURN]
         self.seams = np.array([float(start) for start in self.exact])
@@ -227,7 +228,7 @@ class Cam:
         self.size = float(np.abs(sample).max())
 
     def at(self, angles):
-        """Lift and slope at doubles."""
+        """Return lift and slope at doubles."""
         angles = np.mod(angles, math.tau)
         which = np.clip(np.searchsorted(self.seams, angles, side="right") - 1, 0, len(self.pieces) - 1)
         lift, slope = np.empty_like(angles), np.empty_like(angles)
@@ -237,11 +238,11 @@ class Cam:
         return lift, slope
 
     def piece(self, angle):
-        """Index of the piece that holds an angle, of the one that begins there at a seam."""
+        """Return the index of the piece that holds an angle. At a seam it is the piece that begins there."""
         return max(index for index, start in enumerate(self.exact[:-1]) if start <= angle % TURN)
 
     def one(self, angle, side=0):
-        """Lift and slope in 60 digits; at a seam of the piece before it with side -1."""
+        """Return lift and slope in 60 digits. With side -1 at a seam they are those of the piece before it."""
         angle = angle % TURN
         index = self.piece(angle)
         if side < 0 and angle == self.exact[index]:
@@ -249,7 +250,7 @@ class Cam:
         return self.pieces[index][1](angle)
 
     def corners(self):
-        """(angle, order) of each seam at which a derivative jumps up to the third, by differences."""
+        """Return (angle, order) of each seam at which a derivative up to the third jumps, found by differences."""
         found = []
         for start in self.exact[:-1]:
             sides = []

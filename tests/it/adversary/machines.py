@@ -1,4 +1,4 @@
-"""Random machines with planted difficulties: laws of cams, followers, and an orbit just where it is hard to see."""
+"""Random machines with planted difficulties: laws of cams, followers, and an orbit where it is hard to find."""
 
 import json
 import math
@@ -13,7 +13,7 @@ from orbits import Follower, Machine, angles_of, apart
 
 
 def text(law, follower):
-    """A model file."""
+    """Return the text of a model file."""
     def value(one):
         if isinstance(one, str):
             return json.dumps(one)
@@ -87,7 +87,7 @@ def knots(rng, lobes, tiny=False):
 
 
 def pieces_law(starts, powers_of):
-    """Polynomials from each angle, degrees, to the next; `powers_of` an index and a width."""
+    """Return polynomials from each angle, degrees, to the next. `powers_of` takes an index and a width."""
     places = [radians(start) for start in starts]
     widths = [(places[(k + 1) % len(places)] - place) % TURN for k, place in enumerate(places)]
     segments = [{"start_deg": start, "coefficients": [float(c) for c in powers_of(k, widths[k])]} for k, start in enumerate(starts)]
@@ -95,7 +95,7 @@ def pieces_law(starts, powers_of):
 
 
 def kinked_law(rng, lobes, tiny=False):
-    """Pieces that meet with different slopes."""
+    """Return pieces that meet with different slopes."""
     starts = knots(rng, lobes, tiny)
     each = len(starts) // lobes
     lifts, bends = [rng.uniform(0.0, 0.1) for _ in range(each)], [(rng.uniform(-0.1, 0.1), rng.uniform(-0.03, 0.03)) for _ in range(each)]
@@ -110,17 +110,17 @@ def kinked_law(rng, lobes, tiny=False):
 
 
 def smooth_lifts(rng, starts):
-    """Lifts of a smooth motion, so that two angles next to one another have nearly the same."""
+    """Return lifts of a smooth motion, so that two neighbouring angles have nearly the same lift."""
     sizes, phases = [rng.uniform(-0.06, 0.06) for _ in range(2)], [rng.uniform(0, 360.0) for _ in range(2)]
     return [sum(size * math.cos(math.radians(k * start + phase)) for k, (size, phase) in enumerate(zip(sizes, phases), 1)) for start in starts]
 
 
 def smooth_law(rng, lobes, tiny=False):
-    """Cubics whose slopes meet."""
+    """Return cubics whose slopes agree where they meet."""
     starts = knots(rng, lobes, tiny)
     each = len(starts) // lobes
     if tiny:
-        # Lifts and slopes of one motion, which at knots next to each other are nearly the same.
+        # Lifts and slopes of one motion, which are nearly the same at neighbouring knots.
         lifts = smooth_lifts(rng, [start + off for start in starts[:each] for off in (0.0, 1e-4)])
         ends = [(mpf(low), mpf(high - low) / mpf(math.radians(1e-4))) for low, high in zip(lifts[::2], lifts[1::2])]
     else:
@@ -162,11 +162,12 @@ class Planted(Exception):
 
 
 def pushed(cam, numbers, rpm, angle, turns):
-    """A machine whose law is 0 at an angle: the law is linear in what pushes the follower, the spring's rest position or gravity."""
+    """Return (numbers, machine) whose law is 0 at an angle, or None. The law is linear in what pushes the follower: the spring's rest
+    position, or gravity."""
     numbers = dict(numbers)
     lift, slope = cam.one(angle)
     if abs(slope) < 1e-6 * cam.stroke:
-        # On a dwell the law is one number all along.
+        # On a dwell the law is constant.
         return None
     name = "rest_position" if numbers["stiffness"] > 0 else "gravity"
     values = []
@@ -182,14 +183,14 @@ def pushed(cam, numbers, rpm, angle, turns):
 
 
 def speed(rng, numbers):
-    """A period of some swings, or for a follower without a spring about a second, as a speed of seven digits."""
+    """Return a speed of seven digits, rpm, with a period of some swings. Without a spring, a swing counts as one second."""
     rate = math.sqrt(numbers["stiffness"] / numbers["mass"]) or 2 * math.pi
     swings = rng.uniform(0.3, 1.6) if rng.random() < 0.8 else rng.uniform(1.0, 6.0)
     return float(f"{60 * rate / (math.tau * swings):.7g}")
 
 
 def with_orbit(rng, cam, angle_of, restitution=None, turns=1, tries=60):
-    """(numbers, machine, angle) of a machine with an orbit of one impact at an angle drawn by `angle_of`."""
+    """Return (numbers, machine, angle) with an orbit of one impact at an angle drawn by `angle_of`. Raise Planted if none is found."""
     for _ in range(tries):
         numbers = follower_numbers(rng)
         if restitution is not None:
@@ -213,7 +214,7 @@ def anywhere(rng):
 
 
 def near_seam(rng, cam, low, high):
-    """Angles so near to a seam, as powers of ten."""
+    """Return a function that draws an angle near a seam, at a distance between two powers of ten."""
     return lambda: rng.choice(cam.exact[:-1]) + rng.choice([-1, 1]) * mpf(10 ** rng.uniform(low, high))
 
 
@@ -260,7 +261,7 @@ def equal_rows(rng):
 
 
 def fold(rng):
-    """Next to a speed at which two roots of the law are one: where the law is extreme, the push makes it 0."""
+    """Plant a fold: the speed is next to one at which two roots of the law coincide. The push makes the law 0 at one of its extremes."""
     law = rng.choice(EVERY)(rng, 1)
     cam = Cam(law)
     for _ in range(60):
@@ -292,7 +293,7 @@ def fold(rng):
 
 
 def graze(rng):
-    """A bump that the flight of an orbit comes next to, or meets, shortly before the impact."""
+    """Plant a graze: the flight of an orbit passes close to a bump, or hits it, shortly before the impact."""
     law = smooth_law(rng, 1)
     cam = Cam(law)
     for _ in range(20):
@@ -327,7 +328,7 @@ PLANTS = [velocity_jump, plain, seam, equal_lobes, fold, restitutions, graze, ti
 
 
 def drawn(index, folder):
-    """(plant, law, file, machine) of a random machine; None where none was found in a fair number of tries."""
+    """Return (plant, law, file, machine) of a random machine; None if none was found in a fair number of tries."""
     rng, plant = random.Random(index), PLANTS[index % len(PLANTS)]
     try:
         law, numbers, machine = plant(rng)

@@ -1,4 +1,4 @@
-"""Orbits by brute force: dense scans, Newton's method in 60 digits, and flights that are looked at closely."""
+"""Orbits by brute force: dense scans, Newton's method in 60 digits, and flights that are checked closely."""
 
 import math
 from decimal import Decimal, getcontext
@@ -9,14 +9,14 @@ from mpmath import mp, mpf
 from cams import TURN, exact
 
 getcontext().prec = 75
-# A difference small enough that its error is below 40 digits, and what counts as zero beside a number of size 1.
+# Step of a difference, small enough that its error is below 40 digits; and size that counts as 0 beside a number of size 1.
 STEP, ZERO = mpf(10) ** -22, mpf(10) ** -40
-# What doubles may move a gap by, beside the size of the lift.
+# Largest error of a gap in doubles, relative to the size of the lift.
 ROUNDING = 1e-13
 
 
 class Follower:
-    """m q'' + b q' + k (q - rest) = -m g."""
+    """Follower with m q'' + b q' + k (q - rest) = -m g."""
 
     def __init__(self, mass, damping, stiffness, gravity, rest_position, restitution):
         m, b, k, g, rest = map(exact, (mass, damping, stiffness, gravity, rest_position))
@@ -25,9 +25,10 @@ class Follower:
         self.rate = float(self.damping) + math.sqrt(float(self.spring))
 
     def flow(self, times):
-        """(a, b, e, c, d, f): after a time q = a q0 + b v0 + e, v = c q0 + d v0 + f. Doubles in arrays, or one number of 60 digits.
+        """Return (a, b, e, c, d, f): after a time q = a q0 + b v0 + e, v = c q0 + d v0 + f. Doubles in arrays, or one number of 60
+        digits.
 
-        The Taylor series of a small part of the time, and that squared until it is whole.
+        The Taylor series of a small part of the time is squared until it covers the whole time.
         """
         exactly = isinstance(times, mpf)
         longest = float(abs(times)) if exactly else float(np.max(np.abs(times)))
@@ -35,7 +36,7 @@ class Follower:
         rate = 2.0 ** math.ceil(math.log2(max(self.rate, 1.0 / longest)))
         parts, terms, number = (14, 16, decimal) if exactly else (1, 20, float)
         halvings = parts + max(0, math.ceil(math.log2(rate * longest)))
-        # Of (q, v/rate) by the time times the rate, pushed by 1: q' = v, v' = 1 - spring q - damping v.
+        # The equation of (q, v/rate) in the time times the rate, pushed by 1: q' = v, v' = 1 - spring q - damping v.
         spring, damping = number(self.spring / rate**2), number(self.damping / rate)
         t = number(times * rate / 2**halvings) if exactly else times * (rate / 2.0**halvings)
         zero, one = t * 0, t * 0 + 1
@@ -56,12 +57,12 @@ class Follower:
 
 
 def decimal(number):
-    """The same with 75 digits, for what decimals are quick at."""
+    """Return a number as a Decimal with five digits more than mpmath carries. Decimals are faster."""
     return Decimal(mp.nstr(number, mp.dps + 5))
 
 
 class Machine:
-    """A cam and a follower at a speed; flights of one impact last so many turns."""
+    """Cam and follower at a speed. Flights of one impact last `turns` turns."""
 
     def __init__(self, cam, follower, rpm, turns=1):
         self.cam, self.follower, self.rpm, self.turns = cam, follower, rpm, turns
@@ -75,16 +76,17 @@ class Machine:
         self._numbers = (tuple(map(float, self.whole)), float(self.r), float(self.omega)), numbers
 
     def law(self, lift, slope):
-        """What is 0 where an impact at this lift and slope throws the follower so that it comes back.
+        """Return a number that is 0 if an impact at this lift and slope throws the follower so that it returns.
 
-        (1 - a) c - e - b u = 0 of the flight, u (1 + r d) = (1 + r) omega c' - r (c c0 + f) of the impact; u is eliminated.
+        The flight gives (1 - a) c - e - b u = 0, and the impact gives u (1 + r d) = (1 + r) omega c' - r (c c0 + f). Then u is
+        eliminated.
         """
         (a, b, e, c, d, f), r, omega = self._numbers[isinstance(lift, mpf)]
         back, thrown = (1 - a) * lift - e, (1 + r) * omega * slope - r * (c * lift + f)
         return back * (1 + r * d) - b * thrown
 
     def velocities(self, lift, slope):
-        """Before and after the impact, by whichever of the two equations tells it better."""
+        """Return the velocities before and after the impact, from the better conditioned of the two equations."""
         a, b, e, c, d, f = self.whole
         r, scale = self.r, self.follower.rate + 1 / self.period
         back, thrown = (1 - a) * lift - e, (1 + r) * self.omega * slope - r * (c * lift + f)
@@ -92,7 +94,7 @@ class Machine:
         return c * lift + d * after + f, after
 
     def scan(self, count=4000):
-        """Angles at which the law changes its sign, as brackets in doubles, and where it nearly touches 0."""
+        """Return brackets in doubles, (law, low, high), of the angles at which the law changes its sign, also between close roots."""
         found = []
         near = 10.0 ** np.linspace(-11, -2, 28)
         for start, end, (_, law) in zip(self.cam.seams, self.cam.seams[1:], self.cam.pieces):
@@ -104,7 +106,7 @@ class Machine:
             grid = grid[(grid >= start) & (grid <= end)]
             values = self.law(*law(grid))
             found += [(law, grid[i], grid[i + 1]) for i in np.nonzero(np.signbit(values[1:]) != np.signbit(values[:-1]))[0]]
-            # Two roots between two points of the grid: where |law| is least, looked at closely.
+            # Two roots may lie between two points of the grid, so each minimum of |law| is examined closely.
             size = np.abs(values)
             is_least = (size[1:-1] < size[:-2]) & (size[1:-1] < size[2:]) & (size[1:-1] < 1e-3 * self._size(grid))
             least = np.nonzero(is_least)[0] + 1
@@ -114,7 +116,7 @@ class Machine:
         return found
 
     def _size(self, grid):
-        """Of the terms of the law on a grid, the largest."""
+        """Return the largest size of the terms of the law on a grid."""
         _, slope = self.cam.at(grid)
         a, b, e, c, d, f = map(abs, map(float, self.whole))
         r, omega = float(self.r), float(self.omega)
@@ -134,7 +136,7 @@ class Machine:
         return []
 
     def one_impact(self, count=4000):
-        """(orbits, doubtful angles) of one impact."""
+        """Return (orbits, doubtful angles) of one impact."""
         orbits, doubtful = [], []
         for law, low, high in self.scan(count):
             below = np.signbit(self.law(*law(np.array([low]))))[0]
@@ -152,7 +154,7 @@ class Machine:
         return orbits, doubtful
 
     def _one(self, law, guess, near=None):
-        """The orbit of the root of a piece's law next to a guess."""
+        """Return the orbit of the root of a piece's law next to a guess; None if there is none, "doubtful" if that is uncertain."""
         start, end = next((a, b) for a, b, piece in zip(self.cam.exact, self.cam.exact[1:], self.cam.pieces) if piece[1] is law)
         angle, slope = newton(lambda angle: self.law(*law(angle)), mpf(guess) if near is None else near)
         if angle is None:
@@ -160,7 +162,7 @@ class Machine:
         if min(abs(angle - start), abs(angle - end)) < 1e-13:
             return "doubtful"
         if not start < angle < end:
-            # Beyond its piece the other law may have a root of its own, which is looked for there.
+            # Outside its piece the root does not count. The law of the other piece is searched by itself.
             return None if near is None else "doubtful"
         lift, rise = law(angle)
         before, after = self.velocities(lift, rise)
@@ -171,10 +173,10 @@ class Machine:
         return orbit
 
     def pair(self, first, turned):
-        """What is 0 where the second impact comes `turned` after the first: by shooting from one to the other and back.
+        """Return two residuals, which are 0 if the second impact comes `turned` after the first, and the numbers they are made of.
 
-        The first flight leaves so that it ends on the cam, the second as the law of impact has it; what is left is where that ends,
-        and the law at the first impact. Everything times b of the first flight, and u with it.
+        The first flight leaves so that it ends on the cam, and the second leaves by the law of impact. The residuals are the end of
+        the second flight, and the law at the first impact. Everything, u included, is multiplied by b of the first flight.
         """
         exactly = isinstance(first, mpf)
         number = mpf if exactly else float
@@ -191,9 +193,9 @@ class Machine:
         return ends, u1 - (1 + r) * omega * s1 * b + r * v1, (b, u1, v2, u2, v1, s1, s2)
 
     def two_impacts(self, count=160):
-        """(orbits, doubtful pairs of angles) of two impacts, as many as a grid of so many angles shows."""
+        """Return (orbits, doubtful pairs of angles) of two impacts, as far as a grid of `count` angles shows them."""
         first, turned = np.linspace(0, math.tau, 2 * count), np.concatenate([[1e-4, 1e-3, 0.004, 0.01], np.linspace(0.02, math.pi + 0.02, count)])
-        # One flow for each time, whatever the angle.
+        # One flow for each time serves every angle.
         ends, law, _ = self.pair(first[:, None], turned[None, :])
 
         def crossed(values):
@@ -217,7 +219,7 @@ class Machine:
             x, y = x[good] - np.clip(dx, -0.05, 0.05), y[good] - np.clip(dy, -0.05, 0.05)
             if not len(x):
                 return [], []
-        # Those that have settled, and that arrive from above.
+        # Keep those that have converged and arrive from above.
         b, u1, v2, u2, v1, s1, s2 = self.pair(x, y)[2]
         with np.errstate(all="ignore"):
             above = (v1 / b - float(self.omega) * s1 < 1e-6) & (v2 / b - float(self.omega) * s2 < 1e-6)
@@ -236,7 +238,7 @@ class Machine:
         return orbits, doubtful
 
     def confirmed(self, angles):
-        """The orbit next to angles that are told; None where there is none, "doubtful" where that is not certain."""
+        """Return the orbit next to given angles; None if there is none, "doubtful" if that is uncertain."""
         if len(angles) == 2:
             found = self._two(angles[0], (angles[1] - angles[0]) % TURN)
         else:
@@ -266,7 +268,7 @@ class Machine:
             return None
         b, u1, v2, u2, v1, s1, s2 = self.pair(first, turned)[2]
         if abs(b) * (self.follower.rate + 1 / self.period) < 1e-6:
-            # The flight is half a swing, or next to none, and says nothing of how it began.
+            # The flight lasts half a swing, or hardly any time, so that its end does not fix its velocity at the start.
             return "doubtful"
         omega, second = self.omega, (first + turned) % TURN
         if any(min(abs(angle - seam) for seam in self.cam.exact) < 1e-13 for angle in (first, second)):
@@ -279,7 +281,8 @@ class Machine:
         return orbit
 
     def judged(self, impacts, times):
-        """The orbit of impacts (angle, relative velocity before and after); None where it is none, "doubtful" where that is not certain."""
+        """Return the orbit of impacts (angle, relative velocity before and after); None if it is no orbit, "doubtful" if that is
+        uncertain."""
         fastest = float(self.omega) * self.cam.stroke
         if any(before > 0 or after < 0 for _, before, after in impacts):
             return None
@@ -293,7 +296,7 @@ class Machine:
         return {"impacts": impacts, "times": times, "gap": min(standing)}
 
     def clear(self, angle, after, time):
-        """The least gap of a flight seen closely, False where it is below the cam, None where rounding does not tell."""
+        """Return the least gap of a flight, checked closely; False if it is below the cam, None if rounding does not decide."""
         cam, omega, scale = self.cam, float(self.omega), self.cam.stroke
         start, slope = cam.one(angle)
         velocity = after + self.omega * slope
@@ -318,14 +321,14 @@ class Machine:
             if lowest < 1e-5 * scale:
                 lowest, is_between = self._closest(exactly, parts[i - 1], parts[i + 1], turned, angle)
                 if not is_between and lowest > 0:
-                    # It rises or falls all along, and rounding alone had a least gap there.
+                    # The gap rises or falls all along; only rounding showed a minimum.
                     continue
             if lowest < -ROUNDING * cam.size:
                 return False
             if lowest < ROUNDING * cam.size:
                 return None
             least = min(least, lowest)
-        # Next to both ends it rises and falls, or it has been below.
+        # The gap is positive next to both ends, unless the flight has been below the cam.
         for part in (mpf(10) ** -10, 1 - mpf(10) ** -10):
             if exactly(part) < 0:
                 return False
@@ -346,7 +349,7 @@ class Machine:
         return float(gap[i])
 
     def _closest(self, gap, low, high, turned, angle):
-        """The least gap between two parts of a flight, by golden section between the seams, and whether it is not at an end."""
+        """Return the least gap between two parts of a flight, by golden section between the seams, and True if it is not at an end."""
         low, high, seams = mpf(float(low)), mpf(float(high)), []
         for k in range(-1, self.turns + 2):
             seams += [(seam + k * TURN - angle) / mpf(turned) for seam in self.cam.exact]
@@ -369,7 +372,7 @@ class Machine:
         return least, min(part - low, high - part) > 1e-6 * (high - low)
 
     def kind(self, orbit):
-        """stable, saddle, flip or unstable, by differences of where each flight ends; None where a multiplier is too near to 1 or -1."""
+        """Return stable, saddle, flip or unstable, by differences of where each flight ends; None if a sign is too close to decide."""
         whole = mp.eye(2)
         for (angle, _, after), time, (_, before, _) in zip(orbit["impacts"], orbit["times"], orbit["impacts"][1:] + orbit["impacts"][:1]):
             ends = []
@@ -397,7 +400,7 @@ class Machine:
 
 
 def newton(function, x, change=STEP):
-    """(root, derivative) near x in 40 digits and more; None where it wanders."""
+    """Return (root, derivative) near x in 40 digits or more. The root is None if Newton's method does not converge."""
     slope = mpf(0)
     for _ in range(80):
         value = function(x)
@@ -423,7 +426,7 @@ def apart(one, other):
 
 
 def same(one, other, within):
-    """Whether two lists of angles are the same impacts, whichever comes first."""
+    """Return True if two lists of angles are the same impacts, whichever comes first."""
     turned = [other[k:] + other[:k] for k in range(len(other))]
     return len(one) == len(other) and any(all(apart(a, b) < within for a, b in zip(one, turn)) for turn in turned)
 
@@ -432,7 +435,7 @@ def same(one, other, within):
 
 
 def corner_roots(cam, follower, low, high, turns):
-    """(law of a period, ends in doubles of a period where it changes its sign, angle, order, side) for each corner between two speeds."""
+    """Yield (law as a function of the period, bracket of a sign change in doubles, angle, order, side) for each corner between two speeds."""
     times = np.linspace(60 * turns / high, 60 * turns / low, 4000)
     flows = follower.flow(times)
     for angle, order in cam.corners():
@@ -452,7 +455,7 @@ def corner_roots(cam, follower, low, high, turns):
 
 
 def corner_impact(cam, follower, turns, root):
-    """(speed, angle, side, whether it is doubtful) at a root of the law at a corner; None where it is no orbit."""
+    """Return (speed, angle, side, True if doubtful) at a root of the law at a corner; None if it is no orbit."""
     law, ends, angle, order, side = root
     time = bracketed(law, *map(mpf, map(float, ends)))
     if time is None:
@@ -465,13 +468,13 @@ def corner_impact(cam, follower, turns, root):
 
 
 def corner_impacts(cam, follower, low, high, turns=1):
-    """Those of one impact between two speeds."""
+    """Return the corner impacts of one impact between two speeds."""
     found = (corner_impact(cam, follower, turns, root) for root in corner_roots(cam, follower, low, high, turns))
     return [place for place in found if place and low < place[0] < high]
 
 
 def bracketed(function, low, high):
-    """A root between two signs in 40 digits, by bisection and then Newton's method; None where there is none after all."""
+    """Return a root between two signs in 40 digits, by bisection and then Newton's method; None if there is none."""
     below = function(low) < 0
     for _ in range(20):
         middle = (low + high) / 2
