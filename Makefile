@@ -29,7 +29,7 @@ SECOND_MODEL := models/damped-heavy.toml
 verify: $(VENV) ## find the corner impact of MODEL, compute its map by every route, compare; and of a damped, heavy follower
 	$(CARGO) build $(RELEASE) --quiet
 	@target/release/corner-impact verify $(MODEL)
-	@page=$$(target/release/corner-impact verify $(SECOND_MODEL)) || { echo "$$page"; exit 1; }; echo "$$page" | tail -4
+	@page=$$(target/release/corner-impact verify $(SECOND_MODEL)) || { echo "$$page"; exit 1; }; echo; echo "The same of $(SECOND_MODEL):"; echo "$$page" | tail -3
 
 report: $(VENV) ## write all that is found about MODEL as one HTML page in this folder, NAME-report.html, and print its name
 	$(CARGO) build $(RELEASE) --quiet

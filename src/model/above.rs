@@ -161,7 +161,7 @@ impl<'a> Table<'a> {
         let header = self.header(lines, width, chosen)?;
         let is_used = |&(index, above): &(usize, &LineAbove<'a>)| {
             header.is_some_and(|(at, columns)| {
-                let is_known = || above.headings.iter().all(Heading::is_known);
+                let is_known = || above.names_all();
                 let names_them = || above.is_units() || is_known() && self.named(above, chosen) == Ok(Some(columns));
                 index == at || above.cells.len() == width && names_them()
             })
@@ -222,7 +222,7 @@ impl<'a> Table<'a> {
         for (of_comments, of_units) in [(false, false), (false, true), (true, false), (true, true)] {
             for (index, above) in lines.iter().enumerate().rev() {
                 let is_whole = above.cells.len() == width;
-                let is_known = || is_whole && above.headings.iter().all(Heading::is_known);
+                let is_known = || is_whole && above.names_all();
                 if above.is_comment != of_comments || above.is_units() != of_units || above.is_comment && !is_known() {
                     continue;
                 }
@@ -312,6 +312,16 @@ impl<'a> LineAbove<'a> {
         let cells = separator.names(text, width);
         let headings = cells.iter().map(|cell| Heading::of(cell)).collect();
         Self { line, text, is_comment, cells, headings }
+    }
+
+    /// Whether each of its cells is understood without the others. In a comment, a number and a unit beside an unknown word are a
+    /// length, not the unit of a column: `dial gauge 0.01 mm`.
+    fn names_all(&self) -> bool {
+        let is_length = |heading: &Heading, cell: &str| {
+            heading.kind == Kind::Unknown && !heading.is_unit && cell.contains(|letter: char| letter.is_ascii_digit())
+        };
+        let mut cells = self.headings.iter().zip(&self.cells);
+        cells.all(|(heading, cell)| heading.is_known() && !(self.is_comment && is_length(heading, cell)))
     }
 
     /// Whether it has units but no names of an angle or a lift: an angle's unit, or units alone.

@@ -535,6 +535,13 @@ fn is_derivative(tokens: &[Token]) -> bool {
     tokens.windows(2).any(is_prime) || tokens.windows(3).any(is_quotient)
 }
 
+/// Whether a word of a title or a comment is about the accuracy of lifts.
+fn is_of_accuracy(token: &Token) -> bool {
+    const WORDS: [&str; 10] =
+        ["accura", "dial", "error", "gauge", "gage", "graduat", "precis", "resol", "round", "toleran"];
+    token.text == "±" || WORDS.iter().any(|word| token.text.starts_with(word))
+}
+
 /// Unit in a title or a comment.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum ProseUnit {
@@ -559,8 +566,11 @@ pub(super) fn prose_units(text: &str) -> Vec<(String, ProseUnit)> {
         if word.bracket == 0 && (word.text == "\"" || WORDS_TOO.contains(&&*word.text) && !is_counted) || unit.is_rate {
             return None;
         }
-        // A number beside the unit is either the decimal part of the lifts' unit, or a length.
+        // A number beside the unit is either the decimal part of the lifts' unit, or a length, such as the accuracy of a gauge.
+        let is_in = |start: usize| start > 0 && tokens[start - 1].text == "in";
+        let is_accuracy = tokens.iter().any(is_of_accuracy) && !is_in(unit.at.start);
         let places = match unit.parts {
+            _ if is_accuracy => 0,
             Parts::Decimal(0) if is_of_lift => multiple(&tokens, &units).and_then(places_of).unwrap_or(0),
             Parts::Decimal(places) if is_of_lift => places,
             _ => 0,

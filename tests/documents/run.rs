@@ -19,7 +19,7 @@ pub enum Held {
 
 /// Commands that are too long or too wide for this test: why, and what holds them instead.
 pub const ELSEWHERE: &[(&str, &str, Held)] = &[
-    ("cargo install --path crates/program", "compiles the program once more", Held::Landing),
+    ("cargo install --path crates/program --locked", "compiles the program once more", Held::Landing),
     ("make properties", "takes an hour", Held::Target),
     (
         "make fuzz",

@@ -74,6 +74,18 @@ fn templates_have_every_number_of_their_law() {
     }
 }
 
+/// Templates that have a follower of their own name each of its numbers.
+#[test]
+fn templates_with_a_follower_have_all_its_numbers() {
+    for template in ["follower", "table", "contour"] {
+        let text = read(&format!("src/model/templates/{template}.toml"));
+        for number in MODEL_NUMBERS.iter().filter(|number| number.path.starts_with("follower.")) {
+            let names = text.split(|c: char| !(c.is_alphanumeric() || c == '_'));
+            assert!(names.into_iter().any(|word| word == number.name()), "{template}: {}", number.path);
+        }
+    }
+}
+
 #[test]
 fn every_number_of_a_model_has_its_row_and_is_held_to_it() {
     for file in common::model_files() {

@@ -45,6 +45,25 @@ pub(crate) fn near(found: f64, wanted: f64, within: f64) {
     assert!((found - wanted).abs() <= within * wanted.abs(), "{found}, not {wanted}");
 }
 
+/// Likely machines differ in each number that has an error: none of the table's rows is left out.
+#[test]
+fn every_number_of_the_follower_may_have_an_error() {
+    assert_eq!(FollowerErrors::names().count(), FollowerErrors::COUNT);
+    for name in FollowerErrors::names() {
+        let mut follower =
+            json!({ "mass": 0.5, "stiffness": 2000.0, "gravity": 9.81, "damping": 1.0, "restitution": 0.5 });
+        let place = if name == "preload" { "preload" } else { "rest_position" };
+        follower[place] = json!(if name == "preload" { 60.0 } else { -0.03 });
+        let value = follower[name].as_f64().unwrap();
+        follower[name] = with(value, 0.01 * value.abs());
+        let model = cosine(&follower);
+        let cam = Cam::new(&model).unwrap();
+        let machines = PlausibleMachines::of(&model, &cam).unwrap();
+        let numbers = machines.each(|machine, _| Some(format!("{:?}", machine.follower)));
+        assert!(numbers.iter().any(|other| *other != format!("{:?}", model.follower)), "{name}: {numbers:?}");
+    }
+}
+
 /// The follower leaves where `m w^2 A = k (C + A - rest) + m g`.
 #[test]
 fn separation_has_the_parts_that_follow_from_its_formula() {

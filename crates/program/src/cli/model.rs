@@ -386,7 +386,7 @@ fn assumed(table: &Path, changes: &mut Changes, needs_follower: bool) -> Result<
             (None, _) if unit.is_empty() => (option.assumed, "assumed".into()),
             (None, _) => (option.assumed, format!("{unit}, assumed")),
         };
-        let line = format!("{:<18}# {remark}", format!("{} = {value:?}", option.name));
+        let line = format!("{:<17} # {remark}", format!("{} = {value:?}", option.name));
         lines += &format!("{}\n", line.trim_end_matches(['#', ' ']));
     }
     if !missing.is_empty() {

@@ -297,10 +297,10 @@ fn overview(model: &Model, cam: &Cam, found: &SpeedSurvey) -> RenderedFigure {
     let figure = impacts_by_speed(found, &corner_marks(cam));
     let title = figure.title.clone();
     let [low, high] = found.range;
-    let caption = format!(
-        "Cam angles at which the follower of {} hits the cam, {low} to {high} rpm. Grey marks speeds at which runs settle on several motions.",
-        model.name
-    );
+    let several =
+        if found.coexistence.is_empty() { "" } else { " Grey marks speeds at which runs settle on several motions." };
+    let caption =
+        format!("Cam angles at which the follower of {} hits the cam, {low} to {high} rpm.{several}", model.name);
     let command = command("speeds", model, &format!("--rpm {low}:{high} --out impacts.svg"));
     RenderedFigure { id: "overview", place: "", title, command, drawn: Ok(Captioned { figure, caption }) }
 }
