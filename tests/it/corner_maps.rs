@@ -241,6 +241,7 @@ fn the_derivative_of_the_cams_lift_is_known_to_its_error() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn what_cannot_be_varied_is_refused() {
     let Case { model, cam, at } = case(common::osorio(), 673.234445, 1);
     let unknown = Varied::Number("follower.colour".into());

@@ -104,6 +104,7 @@ fn assert_columns(found: &Value, table: &BTreeMap<String, Vec<String>>, names: &
 }
 
 #[test]
+#[ignore = "slow"]
 fn documents_are_those_of_the_commands() {
     for file in MACHINES {
         let model = model(file);
@@ -265,6 +266,7 @@ fn sliders_hold_the_value_and_every_end_is_allowed() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn each_law_has_a_template_that_is_a_whole_model() {
     let laws = asked(&json!({}), json!({ "view": "model" }))["found"]["laws"].clone();
     for law in laws.as_array().unwrap() {

@@ -26,6 +26,7 @@ fn endless() -> String {
 
 /// Each answer names a command whose document or table has the same digits.
 #[test]
+#[ignore = "slow"]
 fn answers_are_those_of_the_command_line() {
     let served = Served::start(&["--threads", "2"]);
     let ask = |lane: &str, question: &str| {
@@ -95,6 +96,7 @@ fn answers_are_those_of_the_command_line() {
 
 /// A hundred questions of a moving slider: the last is answered, and the work on each other one ends.
 #[test]
+#[ignore = "slow"]
 fn a_newer_question_stops_the_older_ones() {
     let served = Served::start(&[]);
     let page = served.page.clone();
@@ -137,6 +139,7 @@ fn a_newer_question_stops_the_older_ones() {
 
 /// Work that takes too long is answered by a sentence. Work that nobody waits for ends.
 #[test]
+#[ignore = "slow"]
 fn work_has_an_end() {
     let served = Served::start(&["--hurried", "60"]);
     let answer = format!("{}answer?lane=a&sequence=1", served.page);
@@ -161,6 +164,7 @@ fn work_has_an_end() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn it_ends_with_the_page() {
     // A minute is a second here, and ten minutes are ten seconds.
     let served = Served::start(&["--hurried", "60"]);
@@ -254,6 +258,7 @@ fn the_browser_is_opened_without_the_token() {
 
 /// All that the page does works under the policy that it is served with, in a real browser.
 #[test]
+#[ignore = "slow"]
 fn a_browser_shows_the_page_without_a_complaint() {
     let served = Served::start(&["--hurried", "10"]);
     let root = format!("http://{}{}", served.address, served.page);

@@ -42,6 +42,7 @@ const ROLLERS: [&str; 4] = [
 ];
 
 #[test]
+#[ignore = "slow"]
 fn lifts_are_those_of_points_of_the_contour() {
     let contacts = ["", "contact = \"point\"", "contact = \"flat\""].into_iter().chain(ROLLERS);
     let models: Vec<Model> = contacts.map(paper).collect();

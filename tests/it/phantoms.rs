@@ -283,6 +283,7 @@ const OTHERS: u64 = 1_000_000;
 
 /// Of 200 cams without corners none is given one.
 #[test]
+#[ignore = "slow"]
 fn a_cam_without_corners_is_given_none() {
     let alarms = alarms(0, 200);
     assert!(alarms.is_empty(), "{alarms:#?}");
@@ -303,6 +304,7 @@ fn hardly_any_cam_without_corners_is_given_one() {
 
 /// More rows of a cam of constant accelerations have the corners that fewer have, clean and rounded to a micrometre.
 #[test]
+#[ignore = "slow"]
 fn more_rows_have_the_corners_that_fewer_have() {
     for (start, [up, top, down], rise) in
         [(7.0, [90.0, 30.0, 120.0], 8.0), (0.3, [60.0, 0.0, 60.0], 10.0), (3.1, [150.0, 10.0, 140.0], 12.0)]
@@ -407,6 +409,7 @@ fn a_base_circle_that_runs_out_is_one_dwell_or_none() {
 
 /// A doubtful corner is told with the lines that settle it, and each of them does.
 #[test]
+#[ignore = "slow"]
 fn a_doubtful_corner_is_told_with_the_lines_that_settle_it() {
     let doubtful = (0..400_u64).find_map(|seed| {
         let mut random = Random((seed << 32) + 1);

@@ -134,6 +134,7 @@ fn revolutions_without_a_rest_are_those_that_were_run() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn an_attractor_is_the_same_whoever_finds_it() {
     let cases = [
         ("osorio-2008", 700, "0.8"),

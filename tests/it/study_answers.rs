@@ -17,6 +17,7 @@ fn what_cams_are_made_of() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn what_moved_between_machines() {
     are_as_they_were(
         "answers-compare-more",

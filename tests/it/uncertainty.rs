@@ -442,6 +442,7 @@ fn a_speed_that_may_be_0_has_a_bound() {
 
 /// Every page with a ± says what it is of, within 80 columns.
 #[test]
+#[ignore = "slow"]
 fn pages_say_where_the_uncertainty_comes_from() {
     let folder = tempfile::tempdir().unwrap();
     let run = |words: &[&str]| {
