@@ -1023,7 +1023,7 @@ fn a_new_measured_machine() {
         "angles: column 1, in deg",
         "lifts: column 2, in mm",
         "accuracy: lift rounded to 0.001 mm; the rows scatter about a smooth motion by 0.000",
-        "no corners found; dwells found: 19",
+        "no corners of order 2 found; dwells found: 19",
         "Corners (2)",
     ] {
         assert!(page.contains(says), "no \"{says}\" in: {page}");

@@ -145,7 +145,7 @@ pub(crate) fn measured(measured: &Measured) -> Vec<Block> {
             "smoothing: at most ",
             told(measured.largest_distance_m),
             " from a row",
-            features("corners", measured.corners_are_found, corners),
+            features("corners of order 2", measured.corners_are_found, corners),
             features("dwells", measured.dwells_are_found, dwells)
         ]));
         blocks.extend(measured.doubtful_corners.iter().map(|doubtful| {
