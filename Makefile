@@ -40,9 +40,8 @@ quick: $(VENV) ## the tests that answer at once, after each change: within a min
 	$(if $(shell command -v cargo-nextest),$(CARGO) nextest run --locked --test it,$(CARGO) test --locked --test it)
 
 # Not by nextest: it runs each test in a process of its own, and tests of the report share one that takes a while to make.
-# One thread more than there are processors: some tests wait for a browser or a server.
 test: $(VENV) ## run every test
-	$(CARGO) test $(RELEASE) -- --include-ignored --test-threads=$$(($$(getconf _NPROCESSORS_ONLN) + 1))
+	$(CARGO) test $(RELEASE) -- --include-ignored
 
 properties: $(VENV) ## attractors and corner impacts of many models over parts of ranges and at two resolutions, all answers of 200 machines in other units, separation of 500, corners of 5000 cams without any, and a search for orbits that complete lists lack
 	PROPERTIES=all $(CARGO) test $(RELEASE) --test it -- --include-ignored --nocapture a_part_of_a_range parts_of_ranges all_answers_are_the_same \

@@ -122,7 +122,7 @@ fn chaos_beside_a_long_motion_ends_before_the_next_speed() {
 fn the_paper_s_cam_has_two_motions_up_to_682_rpm() {
     let model = common::osorio();
     let [narrow, wide] =
-        [([674.0, 680.0], 2.0), ([670.0, 684.0], 2.0)].map(|(range, step)| found(&model, range, step, 48));
+        [([674.0, 681.0], 1.0), ([660.0, 690.0], 2.0)].map(|(range, step)| found(&model, range, step, 48));
     for found in [&narrow, &wide] {
         let one = periodic(found, (1, 1)).unwrap();
         for rpm in [674.0, 676.0, 678.0, 680.0] {

@@ -79,7 +79,7 @@ pub(crate) fn separation(found: &Design) -> Words {
     leaves(found.separation, &found.places, sources(found), error)
 }
 
-/// Sentence about a separation, with its angle or the competing places. Another sentence follows if errors of the rows decide it.
+/// Sentence about a separation, with its angle or the competing places. Another sentence follows if errors of the rows may decide it.
 pub(crate) fn leaves(
     separation: Separation,
     places: &[SeparationPlace],
@@ -97,7 +97,7 @@ pub(crate) fn leaves(
 pub(crate) fn decided_by_errors(separation: Separation) -> Option<&'static str> {
     matches!(separation, Separation::At { within_errors: true, .. }).then_some(
         "On this or another likely cam, it leaves where spring and weight press with less force than an error of one row changes. There \
-         errors of the rows decide the speed: is the preload right?",
+         errors of the rows may decide the speed: is the preload right?",
     )
 }
 
