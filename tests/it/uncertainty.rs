@@ -64,6 +64,22 @@ fn every_number_of_the_follower_may_have_an_error() {
     }
 }
 
+/// The uncertainty of a number that a load needs is what the number moves by with the machine, and not what a separation would need.
+#[test]
+fn a_need_of_a_load_moves_with_the_uncertain_mass() {
+    let needs = |mass: Value| {
+        let model = cosine(&json!({
+            "mass": mass, "stiffness": 2000.0, "gravity": 9.81, "rest_position": -0.03, "damping": 0.0, "restitution": 0.3,
+        }));
+        let needs = designed(&model, &["impact speed below 0.2 m/s to 1300 rpm"]).needs;
+        needs.into_iter().find(|need| need.lever == Lever::Stiffness).unwrap()
+    };
+    let error = 0.015;
+    let found = needs(with(0.5, error));
+    let [high, low] = [0.5 + 2.0 * error, 0.5 - 2.0 * error].map(|mass| needs(json!(mass)).value.unwrap());
+    near(part(&found.error.unwrap(), "mass"), 0.5 * (high - low), 0.1);
+}
+
 /// The follower leaves where `m w^2 A = k (C + A - rest) + m g`.
 #[test]
 fn separation_has_the_parts_that_follow_from_its_formula() {
