@@ -215,7 +215,8 @@ impl Simulation {
             Until::Revolutions(count) => (count, u64::MAX, count),
             Until::Impacts(count) => (u64::MAX, count, count),
         };
-        let (end, drawn) = (first.after(revolutions), first.after(revolutions.saturating_sub(wanted.drawn)));
+        let [end, drawn, last] =
+            [0, wanted.drawn, RunLoads::MOST].map(|before| first.after(revolutions.saturating_sub(before)));
         let (mut motion, mut before_drawn, mut wall, mut last_impact) = (*first, *first, Duration::ZERO, 0);
         let mut marks = [*first; 2];
         let ([mut impacts, mut sticks, mut releases], mut kept) = ([0; 3], Vec::new());
@@ -225,14 +226,16 @@ impl Simulation {
             watch.at("", (done * PARTS) as u64, (total as f64 * PARTS) as u64);
         };
         while impacts < most {
-            // With marks this far apart, the first one is before the last revolutions wherever the run ends.
+            // With marks this far apart, the first one is before the last revolutions wherever a number of impacts ends the run.
             if motion.revolution >= marks[1].revolution + RunLoads::MOST {
                 marks = [marks[1], motion];
             }
             let mut goal = earlier(end, motion.after(STRIDE));
             goal = wanted.strobe.map_or(goal, |angle| earlier(goal, motion.next(angle)));
-            if (motion.revolution, motion.cam_angle) < (drawn.revolution, drawn.cam_angle) {
-                goal = earlier(goal, drawn);
+            for stop in [drawn, last] {
+                if (motion.revolution, motion.cam_angle) < (stop.revolution, stop.cam_angle) {
+                    goal = earlier(goal, stop);
+                }
             }
             let (before, clock) = (impacts, Clock::start());
             let mut events = 0_u32;
@@ -267,6 +270,9 @@ impl Simulation {
             }
             if goal == drawn {
                 before_drawn = motion;
+            }
+            if goal == last {
+                marks = [motion; 2];
             }
             if wanted.strobe == Some(goal.cam_angle) {
                 see(Sight::State(&motion))?;
