@@ -66,6 +66,7 @@ fn headers_are_read_wherever_they_stand() {
         ("# dial gauge, 0.001 mm\nangle,lift", COMMA, 1.0),
         ("# intake cam, dial gauge 0.01 mm\nangle,lift", COMMA, 1.0),
         ("# cam 3; gauge 1/100 mm\nangle;lift", SEMICOLON, 1.0),
+        ("# mm, by dial gauge\nangle,lift", COMMA, 1.0),
         ("# cam of the press, read on a gauge with 0.01 mm\nangle,lift", COMMA, 1.0),
         ("# lift by dial gauge, accuracy 0.01 mm\nangle,lift", COMMA, 1.0),
         ("# intake cam cylinder 1, dial gauge 0.001 mm\ncam angle [deg],valve lift [in]", COMMA, 25.4),
