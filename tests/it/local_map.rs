@@ -14,10 +14,12 @@ use corner_impact::cam::Side;
 use corner_impact::estimate::Estimate;
 use corner_impact::flight::State;
 use corner_impact::model::Model;
+use corner_impact::orbit::Stability;
 use corner_impact::progress::Unwatched;
 use corner_impact::section::StroboscopicMap;
 use corner_impact::simulate::Machine;
 use corner_impact::simulate::growth;
+use corner_impact::study::local::{Crossings, NextToCorner};
 use corner_impact::study::locate::{Happens, locate};
 use corner_impact::study::verify::{External, Verification, verify};
 use corner_impact_cli::show::Paged;
@@ -327,4 +329,54 @@ fn a_degenerate_case_has_no_verdict_but_a_reason() {
     assert!(page.contains("degenerate: the determinant of I - A is 1e-17") && page.contains("11 of 12 hold"), "{page}");
     assert!(page.contains("  fails               det(I - A-) ="), "{page}");
     assert!(!page.contains("nonsmooth-fold") && !page.contains("Range of the local map"), "{page}");
+}
+
+/// The figure of the local map has each orbit as a ray, and beside it the machine's own orbit, from the corner impact up to where it is far
+/// from the ray.
+#[test]
+fn the_machines_orbits_leave_the_corner_impact_along_the_rays() {
+    for (model, words, left) in [
+        (common::osorio(), vec!["L", "R"], vec![1.0]),
+        (common::read(Path::new("models/nonsmooth-flip.toml")), vec!["R", "LR", "L"], vec![]),
+    ] {
+        let found = verify(&model, External::LeftOut).unwrap();
+        let shown = NextToCorner::new(&model, &common::cam(&model), &found).unwrap();
+        assert_eq!(shown.rays.iter().map(|ray| &*ray.word).collect::<Vec<_>>(), words);
+        assert_eq!(shown.left, left);
+        assert_eq!((shown.period, shown.position), (found.at.period, found.at.state.position));
+        // Three times as far as the nearer of the fixed points is within a tenth of its ray.
+        let held = |of: ComparedMotion| {
+            let ends = found.ranges.iter().filter(|range| (range.order, range.compared) == (1, of));
+            ends.map(|range| range.period_change.abs()).filter(|change| *change != 0.0).fold(f64::INFINITY, f64::min)
+        };
+        let held = held(ComparedMotion::FixedPointMinus).min(held(ComparedMotion::FixedPointPlus));
+        assert_relative_eq!(shown.reach, 3.0 * held, max_relative = 1e-15);
+        let changes = || shown.machine.iter().flat_map(|line| &line.points).map(|point| point[0]);
+        let farthest = changes().map(f64::abs).fold(0.0, f64::max);
+        assert_relative_eq!(farthest, shown.reach, max_relative = 1e-9);
+        let omega = TAU / shown.period;
+        for ray in &shown.rays {
+            assert!(ray.positions.len() == ray.word.len() && ray.velocities.len() == ray.word.len());
+            for (position, velocity) in ray.positions.iter().zip(&ray.velocities) {
+                let allowed = 0.1 * position.hypot(velocity / omega);
+                let follows = |line: &&Crossings| {
+                    let near = |point: &&[f64; 2]| (0.01 * held..=0.5 * held).contains(&(point[0] * ray.sign));
+                    let mut points = line.points.iter().filter(near).peekable();
+                    points.peek().is_some()
+                        && points.all(|[change, at]| (at / change.abs() - position).abs() <= allowed)
+                };
+                let beside: Vec<Stability> = shown.machine.iter().filter(follows).map(|line| line.stability).collect();
+                assert_eq!(beside, [ray.stability], "{} of {}", ray.word, model.name);
+            }
+        }
+        // A line ends only where its stability does.
+        for pair in shown.machine.windows(2) {
+            assert!(pair[0].points.last() != pair[1].points.first() || pair[0].stability != pair[1].stability);
+        }
+        // Orbits that strike far from the corner are not shown.
+        let highest = shown.rays.iter().flat_map(|ray| &ray.positions).fold(0.0_f64, |most, one| most.max(one.abs()));
+        for [_, position] in shown.machine.iter().flat_map(|line| &line.points) {
+            assert!(position.abs() <= 1.5 * highest * shown.reach, "{position} of {}", model.name);
+        }
+    }
 }
