@@ -232,6 +232,36 @@ fn what_a_measured_cam_leaves_open_is_no_change() {
     assert!(two_cams.error.unwrap() > 5.0 * one_cam.error.unwrap(), "{one_cam:?} {two_cams:?}");
 }
 
+/// Where the follower separates goes with the root of its mass. One mass of both machines, with one error, moves both alike; other masses
+/// are off by chance, each on its own.
+#[test]
+fn an_error_of_both_machines_moves_both_alike() {
+    const MASS: f64 = 1.221;
+    let machine = |(mass, error, stiffness): (f64, Option<f64>, f64)| {
+        let mass = error.map_or(mass.to_string(), |error| format!("{{ value = {mass}, error = {error} }}"));
+        common::osorio_with(&[("mass", &mass), ("stiffness", &stiffness.to_string())])
+    };
+    let here = |error: Option<f64>| (MASS, error, 1430.8);
+    for (a, b, is_common) in [
+        (here(Some(0.01)), (1.3, Some(0.01), 1430.8), false),
+        (here(Some(0.01)), (MASS, Some(0.02), 1500.0), false),
+        (here(None), (1.3, Some(0.01), 1430.8), false),
+        (here(Some(0.01)), (1.3, None, 1430.8), false),
+        (here(Some(0.01)), (MASS, Some(0.01), 1600.0), true),
+    ] {
+        let found = compare(&machine(a), &machine(b), External::LeftOut, &Unwatched).unwrap();
+        let change = found.changes.iter().chain(&found.unchanged).find(|it| it.quantity == "separation_speed_rpm");
+        let change = change.unwrap();
+        let moved = |speed: &Option<Value>, (mass, error, _): (f64, Option<f64>, f64)| {
+            // Twice the standard deviation is told.
+            -0.5 * 2.0 * speed.as_ref().and_then(Value::as_f64).unwrap() * error.unwrap_or(0.0) / mass
+        };
+        let (of_a, of_b) = (moved(&change.a, a), moved(&change.b, b));
+        let expected = if is_common { (of_b - of_a).abs() } else { of_a.hypot(of_b) };
+        approx::assert_relative_eq!(change.error.unwrap(), expected, max_relative = 1e-3);
+    }
+}
+
 /// Where routes know the orbit, what they differ by of both models is the error: of the period and the state as it is, and of the speed
 /// 60/T by 60/T^2 of that of the period.
 #[test]

@@ -1,5 +1,7 @@
 //! Does a deviation grow as the motion has it, where that is known in closed form?
 
+use std::path::Path;
+
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 use corner_impact::flight::State;
 use corner_impact::model::Model;
@@ -28,6 +30,50 @@ fn swung(revolutions: u64) -> f64 {
     let position = 0.6 * cos + 0.8 * TURNS / SWINGS * sin;
     let velocity = 0.8 * cos - 0.6 * SWINGS / TURNS * sin;
     position.hypot(velocity).ln()
+}
+
+/// Impacts carry a deviation as they carry two motions that begin next to each other.
+#[test]
+fn a_deviation_is_what_two_motions_differ_by() {
+    let models = [
+        common::osorio(),
+        common::read(Path::new("models/damped-light.toml")),
+        common::read(Path::new("models/overdamped.toml")),
+    ];
+    for (model, rpm) in models.iter().zip([670.0, 690.0, 700.0]) {
+        let machine = machine(model, rpm);
+        let mut motion = machine.start_on_cam(0.0, 3.0).unwrap();
+        machine.revolve(&mut motion, 3).unwrap();
+        let (angle, State { position, velocity }) = (motion.cam_angle, motion.state);
+        let omega = machine.angular_velocity();
+        let beside = |by: f64, revolutions: u64| {
+            let state = State { position: position + 0.6 * by, velocity: velocity + 0.8 * omega * by };
+            let mut motion = machine.start(angle, state).unwrap();
+            machine.revolve(&mut motion, revolutions).unwrap();
+            motion.state
+        };
+        for revolutions in [1, 2, 3] {
+            let [one, other] = [-1e-7, 1e-7].map(|by| beside(by, revolutions));
+            let apart = (other.position - one.position).hypot((other.velocity - one.velocity) / omega) / 2e-7;
+            let begun = machine.start(angle, motion.state).unwrap();
+            let mean = growth(&machine, begun, revolutions).unwrap();
+            assert_abs_diff_eq!(mean * revolutions as f64, apart.ln(), epsilon = 1e-5);
+            let mut record = Record::over(1);
+            record.take(&machine, &mut begun.clone(), revolutions).unwrap();
+            assert!(record.met.impacts > 0, "{}", model.name);
+            assert_abs_diff_eq!(record.growth().value, mean, epsilon = 1e-12);
+        }
+    }
+}
+
+/// A follower that never leaves the cam forgets a deviation. In no revolution nothing grows.
+#[test]
+fn a_deviation_vanishes_on_the_cam() {
+    let machine = machine(&common::osorio(), 80.0);
+    let motion = machine.start_on_cam(1.0, 0.0).unwrap();
+    assert!(motion.contact);
+    assert_eq!(growth(&machine, motion, 0).unwrap(), 0.0);
+    assert_eq!(growth(&machine, motion, 3).unwrap(), f64::NEG_INFINITY);
 }
 
 /// What no impact changes swings as the follower does.
