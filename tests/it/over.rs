@@ -313,6 +313,28 @@ fn at_rest(step: Step) -> Resolution {
     Resolution { sample: Sample::Given(vec![REST]), ..Resolution::new(step, 1) }
 }
 
+/// The spring that just keeps the follower on the cam is as stiff as its mass is heavy; the speed up to which it does goes with the root. So
+/// each is known as well as the mass allows.
+#[test]
+fn where_a_follower_leaves_the_cam_is_known_as_well_as_its_mass() {
+    const MASS: f64 = 1.221;
+    const ERROR: f64 = 0.01;
+    let model = common::osorio_with(&[("mass", &format!("{{ value = {MASS}, error = {ERROR} }}"))]);
+    let stiffness = Over::new(&model, Parameter::named(&model, "stiffness").unwrap(), Some(150.0)).unwrap();
+    let speed = Over::speed(&model).unwrap();
+    for (over, range, power) in [(stiffness, [2000.0, 3000.0], 1.0), (speed, [105.0, 125.0], 0.5)] {
+        let found = speeds(&over, range, &at_rest(common::step(0.25 * (range[1] - range[0]))), &Unwatched).unwrap();
+        let ends = found.attractors.iter().flat_map(|row| row.birth.iter().chain(&row.death));
+        let leaves: Vec<_> = ends.filter(|end| end.cause == Cause::Detachment).collect();
+        assert!(!leaves.is_empty(), "{:?}", found.attractors);
+        for end in leaves {
+            // Twice the standard deviation is told.
+            let expected = 2.0 * power * ERROR / MASS * end.value();
+            assert_relative_eq!(end.error.unwrap().total(), expected, max_relative = 2e-3);
+        }
+    }
+}
+
 /// The values of a grid, and whether there is a machine at each.
 fn grid(over: &Over<'_>, range: [f64; 2], step: Step) -> Result<Vec<(f64, bool)>, AttractorsError> {
     let found = attractors(over, range, &at_rest(step), &Unwatched)?;
