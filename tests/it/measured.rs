@@ -25,6 +25,7 @@ use serde_json::{Value, json};
 
 use crate::common;
 use crate::design_numbers::{OWN, asked, rpm};
+use crate::phantoms::Random;
 use crate::snapshots;
 use crate::study_numbers::resolution;
 
@@ -423,6 +424,56 @@ fn six_rows_at_one_lift_are_a_dwell() {
     let dwells = cam.segments().iter().filter(|segment| matches!(segment.law, Law::Dwell(_)));
     let within = |dwell: &&Segment| 120_f64.to_radians() <= dwell.start && dwell.end <= 135_f64.to_radians();
     assert_eq!(dwells.filter(within).count(), 1);
+}
+
+/// Corners and dwells that are found in rows of known cams with noise, some of them with an eccentric base circle. A dwell that is found is
+/// inside of one that is there, to within a row.
+#[test]
+fn corners_and_dwells_of_tables_are_where_they_were() {
+    let cams = [
+        ("cycloidal", 90.0, 60.0, 60.0),
+        ("harmonic", 80.0, 100.0, 20.0),
+        ("poly345", 60.0, 120.0, 12.0),
+        ("modified-sine", 100.0, 30.0, 90.0),
+    ];
+    // Rows, places, first angle, noise in mm.
+    let tables =
+        [(360, 2, 0.0, 0.01), (360, 3, 0.3, 0.0), (180, 3, 0.0, 0.005), (120, 3, 0.7, 0.002), (720, 4, 0.1, 0.005)];
+    let mut random = Random(1);
+    let mut told = String::new();
+    for (which, (motion, span, low, top)) in cams.into_iter().enumerate() {
+        let exact = Cam::new(&machine(program(motion, span, low, top)).unwrap()).unwrap();
+        let rests = [[low + 2.0 * span + top - 360.0, low], [low + span, low + span + top]];
+        for (table, (count, places, by, noise)) in tables.into_iter().enumerate() {
+            let eccentricity = [0.0, 0.02, 0.3][(which + table) % 3];
+            let gap = 360.0 / f64::from(count);
+            let row = |index: i32| {
+                let angle = f64::from(index) * gap + by;
+                let lift = exact.lift(angle.to_radians()).value + eccentricity * (1.0 + angle.to_radians().sin());
+                let lift = lift + noise * random.normal();
+                (angle, (lift * 10.0_f64.powi(places)).round() / 10.0_f64.powi(places))
+            };
+            let rows: Vec<_> = (0..count).map(row).collect();
+            let model = machine(smoothing(&rows, &json!({}))).unwrap();
+            let found = PlausibleCams::of(&model).unwrap().unwrap().measured;
+            for [from, to] in &found.dwells_deg {
+                let is_inside = |[start, end]: &[f64; 2]| {
+                    let from = start + (from - start + 180.0).rem_euclid(360.0) - 180.0;
+                    start - gap <= from && from + (to - from).rem_euclid(360.0) <= end + gap
+                };
+                assert!(rests.iter().any(is_inside), "{motion} {count} {places} {by} {eccentricity}: {from} {to}");
+            }
+            let doubtful = found.doubtful_corners.map_or_else(Vec::new, |doubtful| doubtful.at_deg);
+            let degrees = |all: &[f64]| all.iter().map(|angle| format!(" {angle:.4}")).collect::<String>();
+            told += &format!(
+                "{motion}, {eccentricity} mm eccentric, {count} rows from {by} to {places} places with {noise} mm: corners{}, doubtful{}, dwells{}\n",
+                degrees(&found.corners_deg),
+                degrees(&doubtful),
+                degrees(found.dwells_deg.as_flattened())
+            );
+        }
+    }
+    snapshots::settings().bind(|| insta::assert_snapshot!("features", told));
 }
 
 /// Two stretches of rest with a short ramp between them are two dwells, however near they are: their lifts differ by more than the noise.

@@ -17,7 +17,7 @@ use crate::measured::{machine, smoothing};
 const FINE: usize = 3600;
 
 /// SplitMix64, the same on every machine.
-struct Random(u64);
+pub(crate) struct Random(pub u64);
 
 impl Random {
     fn bits(&mut self) -> u64 {
@@ -40,7 +40,7 @@ impl Random {
         self.within(0.0, 1.0) < part
     }
 
-    fn normal(&mut self) -> f64 {
+    pub fn normal(&mut self) -> f64 {
         (-2.0 * self.within(1e-300, 1.0).ln()).sqrt() * (TAU * self.within(0.0, 1.0)).cos()
     }
 }
