@@ -212,3 +212,69 @@ fn rows_that_are_missing_over_the_nose_are_noted() {
     };
     assert_eq!(doubts(&rows((0..360).step_by(5).filter(|angle| !(160..205).contains(angle)), rest)), [""; 0]);
 }
+
+/// A table of lifts at given angles.
+fn of_rows(rows: &[(i32, f64)]) -> String {
+    rows.iter().map(|(angle, lift)| format!("{angle},{lift:.4}\n")).collect()
+}
+
+/// Two rows that are missing anywhere in a wave are noted with the rows around them, across angle 0 as well. One alone is not.
+#[test]
+fn rows_that_are_missing_anywhere_in_a_wave_are_noted() {
+    let doubts = |csv: &str| table(&model(&TempDir::new().unwrap(), csv, "").unwrap()).doubts();
+    let wave = |angle: i32| ((5.0 - 5.0 * f64::from(angle).to_radians().cos()) * 1e4).round() / 1e4;
+    let all: Vec<(i32, f64)> = (0..90).map(|row| 4 * row).map(|angle| (angle, wave(angle))).collect();
+    let without = |gone: &[usize]| -> Vec<(i32, f64)> {
+        all.iter().enumerate().filter(|(index, _)| !gone.contains(index)).map(|(_, row)| *row).collect()
+    };
+    for first in 0..90 {
+        let (before, after) = ((first + 89) % 90, (first + 2) % 90);
+        let rows = without(&[first, (first + 1) % 90]);
+        let [told] = &doubts(&of_rows(&rows))[..] else { panic!("{first}") };
+        let line = 1 + rows.iter().position(|row| *row == all[before]).unwrap();
+        let size = (all[after].1 - all[before].1).abs();
+        let what = match size > 0.1 {
+            true => format!("the lift changes by {} mm", (size * 1e6).round() / 1e6),
+            false => "the lift has a turning point".to_owned(),
+        };
+        let says = format!("line {line}: no row between {} and {} deg, where {what}:", all[before].0, all[after].0);
+        assert!(told.contains(&says), "no \"{says}\" in: {told}");
+        assert_eq!(doubts(&of_rows(&without(&[first]))), [""; 0], "{first}");
+    }
+    // Two and a half times as far apart as the farther of the rows beside them.
+    for (angles, is_told) in [([96, 100, 110, 114], true), ([96, 100, 110, 115], false), ([95, 100, 110, 114], false)] {
+        let beside = (0..360).step_by(4).filter(|angle| !(96..=114).contains(angle));
+        let mut rows: Vec<(i32, f64)> = beside.chain(angles).map(|angle| (angle, wave(angle))).collect();
+        rows.sort_by_key(|row| row.0);
+        let told = doubts(&of_rows(&rows));
+        assert_eq!(told.iter().any(|told| told.contains("no row between 100 and 110 deg")), is_told, "{told:?}");
+    }
+}
+
+/// A step between two level stretches of five rows or more is a slip, from twenty rows on, up to a fifth of the rise.
+#[test]
+fn a_slip_is_a_step_between_level_stretches() {
+    let doubts = |csv: &str| table(&model(&TempDir::new().unwrap(), csv, "").unwrap()).doubts();
+    let slips = |rows: &[(i32, f64)]| -> Vec<String> {
+        doubts(&of_rows(rows)).into_iter().filter(|told| told.contains("has the gauge slipped?")).collect()
+    };
+    let lobe = [2.0013, 5.0021, 8.0034, 10.0, 9.0011, 7.0042, 5.0023, 3.0051, 2.0017, 1.0012];
+    let of = |low: usize, high: usize, step: f64| -> Vec<(i32, f64)> {
+        let lifts = [vec![0.0; low], vec![step; high], lobe.to_vec()].concat();
+        let gap = 360 / lifts.len() as i32;
+        lifts.into_iter().enumerate().map(|(row, lift)| (gap * row as i32, lift)).collect()
+    };
+    for (low, high) in [(5, 5), (6, 5), (5, 9), (12, 8)] {
+        let rows = of(low, high, 0.5004);
+        let [told] = &slips(&rows)[..] else { panic!("{low} {high}: {:?}", doubts(&of_rows(&rows))) };
+        let says = format!("line {}: the lift steps by 0.5004 mm at {} deg", low + 1, rows[low].0);
+        assert!(told.contains(&says), "no \"{says}\" in: {told}");
+    }
+    for rows in [of(4, 6, 0.5004), of(6, 4, 0.5004), of(8, 8, 2.0006), of(8, 8, 3.0006)] {
+        assert_eq!(slips(&rows), [""; 0], "{rows:?}");
+    }
+    // Nineteen rows are too few.
+    let mut few = of(5, 5, 0.5004);
+    few.pop();
+    assert_eq!(slips(&few), [""; 0]);
+}
