@@ -145,14 +145,17 @@ fn loads_of_a_run_are_those_of_its_events() {
     // Whether the run is one piece, or a piece a revolution.
     let folder = TempDir::new().unwrap();
     let strobed = format!(" --strobe 1.5 --strobe-out {}", folder.path().join("states.csv").display());
-    for (revolutions, pieces) in [(2_u32, ""), (250, ""), (250, &*strobed)] {
-        let line = format!("simulate --rpm 670 --revolutions {revolutions}");
+    for (length, pieces) in
+        [("--revolutions 2", ""), ("--revolutions 250", ""), ("--revolutions 250", &*strobed), ("--impacts 400", "")]
+    {
+        let line = format!("simulate --rpm 670 {length}");
         let found: serde_json::Value = serde_json::from_str(&printed(&format!("{line}{pieces} --json"))).unwrap();
         let recorded = rows(&printed(&format!("{line} --events -")));
-        let last = recorded.iter().filter(|row| number(&row[0]) >= f64::from(revolutions.saturating_sub(100)));
+        let turns = |row: &Vec<String>| number(&row[1]) * 670.0 / 60.0;
+        let last = recorded.iter().filter(|row| turns(row) >= found["revolutions"].as_f64().unwrap() - 100.0);
         let speeds = last.map(|row| (number(&row[5]) - number(&row[7])).abs());
         let (hardest, told) = (speeds.fold(0.0, f64::max), found["hardest_impact_m_s"].as_f64().unwrap());
-        assert!(hardest > 1.0 && (told - hardest).abs() < 1e-9 * hardest, "{revolutions}: {hardest} {found}");
+        assert!(hardest > 1.0 && (told - hardest).abs() < 1e-9 * hardest, "{length}: {hardest} {found}");
     }
     // An orbit of more impacts than its page lists has the hardest of all.
     let page = printed("orbit --rpm 183");
