@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use approx::{assert_abs_diff_eq, assert_relative_eq};
-use corner_impact::cam::{Cam, OffsetArc};
+use corner_impact::cam::{Cam, OffsetArc, Outline};
 use corner_impact::model::Model;
 use corner_impact::study::cam::{CamGeometry, CamSheet};
 use corner_impact::study::design::contact::{Contact, Separation};
@@ -57,6 +57,79 @@ fn lifts_are_those_of_points_of_the_contour() {
             // Points less than a ten thousandth of a radian apart.
             assert_abs_diff_eq!(cam.lift(*angle).value, found, epsilon = 1e-9);
         }
+    }
+}
+
+/// Whatever follows it, the outline is the contour: a point follower is lifted there to its radius.
+#[test]
+fn the_outline_is_the_contour_under_each_follower() {
+    let point = common::cam(&paper(""));
+    let rollers = [[0.2, 0.0], [0.1, 0.05], [0.3, -0.1], [0.01, 0.2]].map(Some);
+    let contacts = ["", "contact = \"point\"", "contact = \"flat\""].map(|contact| (contact, None));
+    for (contact, roller) in contacts.into_iter().chain(ROLLERS.into_iter().zip(rollers)) {
+        let model = paper(contact);
+        let cam = common::cam(&model);
+        let (outline, first) = (Outline::of(&model, &cam), cam.lift(0.0).value);
+        assert_eq!((outline.added, outline.pieces.len()), (0.0, cam.segments().len()));
+        for (piece, segment) in outline.pieces.iter().zip(cam.segments()) {
+            let span = segment.end - segment.start;
+            // Four points a degree.
+            let steps = (span / TAU * 1440.0).ceil().max(2.0);
+            assert_eq!(piece.points.len(), steps as usize + 1);
+            for (step, [x, y]) in piece.points.iter().enumerate() {
+                let polar = x.atan2(*y).rem_euclid(TAU);
+                assert_abs_diff_eq!(x.hypot(*y), point.lift(polar).value, epsilon = 1e-12);
+                if !contact.contains(['f', '{']) {
+                    let turned = polar - segment.start - span * step as f64 / steps;
+                    assert_abs_diff_eq!((turned + PI).rem_euclid(TAU) - PI, 0.0, epsilon = 1e-12);
+                }
+            }
+        }
+        let circles: Vec<_> = outline.pieces.iter().filter_map(|piece| Some((piece, piece.centre?))).collect();
+        assert!(circles.len() >= 3 || contact.contains(['f', '{']), "flanks and nose: {}", circles.len());
+        for (piece, [x, y]) in circles {
+            let radii: Vec<f64> = piece.points.iter().map(|[u, v]| (u - x).hypot(v - y)).collect();
+            assert!(radii.iter().all(|radius| (radius - radii[0]).abs() < 1e-12), "{contact}");
+        }
+        let points: Vec<[f64; 2]> = outline.pieces.iter().flat_map(|piece| piece.points.clone()).collect();
+        for (angle, place) in &outline.corners {
+            let begins = cam.segments().iter().position(|segment| segment.start == *angle).unwrap();
+            assert_eq!(outline.pieces[begins].points[0], *place, "{contact}");
+        }
+        match roller {
+            Some([radius, offset]) => {
+                for (part, at) in [(0, [0.0, radius]), (18, [radius, 0.0]), (36, [0.0, -radius]), (72, [0.0, radius])] {
+                    assert_abs_diff_eq!(outline.follower[part][0], offset + at[0], epsilon = 1e-15);
+                    assert_abs_diff_eq!(outline.follower[part][1], first + at[1], epsilon = 1e-15);
+                }
+                assert_eq!((outline.follower.len(), outline.pitch.len()), (73, points.len()));
+                for ([x, y], [u, v]) in outline.pitch.iter().zip(&points) {
+                    assert_abs_diff_eq!((x - u).hypot(y - v), radius, epsilon = 1e-12);
+                }
+            }
+            None if contact.contains("flat") => {
+                let [[left, low], [right, high]] = outline.follower[..] else { panic!("{:?}", outline.follower) };
+                assert_eq!((low, high), (first, first));
+                // The face touches the cam as far from the axis as the lift is steep.
+                let slopes: Vec<f64> = (0..3600).map(|tenth| cam.lift(f64::from(tenth) / 3600.0 * TAU).slope).collect();
+                assert_abs_diff_eq!(left, slopes.iter().copied().fold(0.0, f64::min), epsilon = 1e-3);
+                assert_abs_diff_eq!(right, slopes.iter().copied().fold(0.0, f64::max), epsilon = 1e-3);
+            }
+            None => assert!(outline.follower.is_empty() && outline.pitch.is_empty()),
+        }
+        let all = points.iter().chain(&outline.follower).chain(&outline.pitch);
+        let farthest = all.fold(0.0_f64, |far, [x, y]| far.max(x.hypot(*y)));
+        assert_relative_eq!(outline.farthest(), farthest, max_relative = 1e-15);
+    }
+    // A lift that is no radius gets one: twice the stroke at the lowest point.
+    let wave = "[follower]\nmass = 1\ndamping = 0\nstiffness = 100\ngravity = 0\nrest_position = 1\nrestitution = 0.5\n[cam]\n\
+                law = \"harmonic\"\noffset = 0.0\namplitudes = [0.01]\nphases_deg = [0.0]\n";
+    let wave = Model::parse("wave.toml", wave).unwrap();
+    let outline = Outline::of(&wave, &common::cam(&wave));
+    assert_abs_diff_eq!(outline.added, 0.05, epsilon = 1e-12);
+    assert!(outline.pieces.iter().all(|piece| piece.centre.is_none()));
+    for [x, y] in outline.pieces.iter().flat_map(|piece| &piece.points) {
+        assert_abs_diff_eq!(x.hypot(*y), 0.05 + 0.01 * x.atan2(*y).cos(), epsilon = 1e-12);
     }
 }
 
