@@ -232,8 +232,8 @@ fn what_a_measured_cam_leaves_open_is_no_change() {
     assert!(two_cams.error.unwrap() > 5.0 * one_cam.error.unwrap(), "{one_cam:?} {two_cams:?}");
 }
 
-/// Where the follower separates goes with the root of its mass. One mass of both machines, with one error, moves both alike; other masses
-/// are off by chance, each on its own.
+/// The separation speed goes with one over the root of the mass. If both machines have one mass with one error, the error moves both alike.
+/// Otherwise the errors are independent.
 #[test]
 fn an_error_of_both_machines_moves_both_alike() {
     const MASS: f64 = 1.221;

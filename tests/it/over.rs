@@ -313,8 +313,8 @@ fn at_rest(step: Step) -> Resolution {
     Resolution { sample: Sample::Given(vec![REST]), ..Resolution::new(step, 1) }
 }
 
-/// The spring that just keeps the follower on the cam is as stiff as its mass is heavy; the speed up to which it does goes with the root. So
-/// each is known as well as the mass allows.
+/// Without gravity, the least stiffness that keeps the follower on the cam is proportional to the mass. The highest speed at which it stays
+/// there goes with one over the root of the mass. So each is known as well as the mass allows.
 #[test]
 fn where_a_follower_leaves_the_cam_is_known_as_well_as_its_mass() {
     const MASS: f64 = 1.221;
