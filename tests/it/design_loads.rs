@@ -12,6 +12,7 @@ use corner_impact::study::design::loads::{Load, Loads};
 use corner_impact::study::design::needs::{Lever, Need, What, in_si};
 use corner_impact::study::design::{Asked, design};
 
+use crate::common;
 use crate::design::separation;
 use crate::design_numbers::{Eccentric, GRAVITY, OWN, answers, asked, ball, rpm};
 use crate::orbit_numbers::machine;
@@ -209,4 +210,24 @@ fn loads_of_chaos_are_of_eight_revolutions_for_each_start() {
     let fastest = |count: usize| recorded[..count].iter().fold(0.0_f64, |most, loads| most.max(loads.impact_speed));
     assert_eq!(found.impact_speed, fastest(32));
     assert!(fastest(12) < fastest(32), "{} {}", fastest(12), fastest(32));
+}
+
+/// A picture has as many values between each two of the table, evenly spaced. The ± between them is linear.
+#[test]
+fn between_the_values_of_a_table_their_errors_are_linear() {
+    let model = common::osorio_with(&[("mass", "{ value = 1.221, error = 0.01 }")]);
+    let asked = Asked { rpm: Some([90.0, 110.0]), speeds: 3, drawn: Some(16), ..Asked::default() };
+    let found = design(&model, &asked, &Unwatched).unwrap();
+    let curves = found.curves.unwrap();
+    let table: Vec<(f64, f64)> = found.forces.iter().map(|at| (at.place.rpm, at.error.unwrap().total())).collect();
+    let [(_, low), (_, middle), (_, high)] = table[..] else { panic!("{table:?}") };
+    assert!(low < middle && middle < high);
+    assert_eq!(curves.forces.len(), 17);
+    for (part, at) in (0..17).map(f64::from).zip(&curves.forces) {
+        assert_relative_eq!(at.place.rpm, 90.0 + 1.25 * part, max_relative = 1e-12);
+        let [from, to, share] = if part < 8.0 { [low, middle, part / 8.0] } else { [middle, high, part / 8.0 - 1.0] };
+        assert_relative_eq!(at.error.unwrap().total(), from + share * (to - from), max_relative = 1e-9);
+    }
+    let greatest = curves.greatest_forces();
+    assert!(greatest.len() == 17 && greatest.iter().all(|(.., bounds)| bounds.is_some()), "{greatest:?}");
 }
