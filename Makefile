@@ -9,7 +9,7 @@ OLDEST := $(shell sed -n 's/^rust-version = "\(.*\)"/\1/p' Cargo.toml)
 ELSEWHERE := aarch64-apple-darwin x86_64-apple-darwin x86_64-pc-windows-msvc x86_64-pc-windows-gnu
 
 .DEFAULT_GOAL := help
-.PHONY: help verify report quick test properties python slurm-test wheel sdist archive package oldest targets workflows release-check release-page publish check audit derive derive-check theorems claims pictures review wasm explore book mutants mutants-sample fuzz soak bench bench-each bench-growth bench-peers clean
+.PHONY: help verify report quick test properties python slurm-test wheel sdist archive package oldest targets workflows release-check release-page publish check audit derive derive-check theorems claims pictures review wasm explore mdbook book mutants mutants-sample fuzz soak bench bench-each bench-growth bench-peers clean
 
 # Python and its packages, once; again when the list of packages changes. Windows has its programs in another folder.
 PYTHON ?= python3
@@ -168,8 +168,10 @@ $(BOOK): $(VENV) docs/requirements.txt
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -r docs/requirements.txt
 	@touch $@
 
-book: $(BOOK) ## build the documentation as a site in target/book; with `make explore` before it, the live page is a part of it
+mdbook:
 	@command -v mdbook >/dev/null || $(CARGO) install mdbook --version 0.5.4 --locked --quiet --no-default-features --features search
+
+book: $(BOOK) mdbook ## build the documentation as a site in target/book; with `make explore` before it, the live page is a part of it
 	$(CARGO) build $(RELEASE) --quiet
 	MDBOOK_OUTPUT__HTML__GIT_REPOSITORY_URL=$$(sed -n 's/^repository = "\(.*\)"/\1/p' Cargo.toml) mdbook build docs
 	@if [ -s crates/program/module/explore.wasm.gz ]; then target/release/corner-impact explore models/osorio-2008.toml --quiet --out target/book/live.html; \
