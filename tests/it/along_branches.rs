@@ -503,6 +503,7 @@ fn a_cam_that_does_not_move_lets_go_all_at_once() {
 
 /// The first is a fiftieth of the longest, and each is half as long again as the one before: the tenth after it is the longest.
 #[test]
+#[ignore = "slow"]
 fn steps_along_a_branch_grow_to_the_longest() {
     let model = ball(0.5, 0.0);
     let mut seen = 0;

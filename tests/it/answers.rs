@@ -183,11 +183,13 @@ fn corner_impacts_of_more_impacts_yet() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn which_motions_there_are() {
     are_as_they_were("answers-speeds", &["speeds --rpm 735:739 --step 2 --starts 8 --json"]);
 }
 
 #[test]
+#[ignore = "slow"]
 fn which_motions_there_are_side_by_side() {
     are_as_they_were(
         "answers-speeds-several",
@@ -196,6 +198,7 @@ fn which_motions_there_are_side_by_side() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn which_motions_there_are_beside_chaos() {
     are_as_they_were("answers-speeds-chaos", &["speeds --rpm 676:680 --step 2 --starts 4 --json"]);
 }

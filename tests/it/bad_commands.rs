@@ -49,6 +49,7 @@ impl Place {
 }
 
 #[test]
+#[ignore = "slow"]
 fn numbers_that_cannot_be() {
     let place = Place::new();
     let simulate = |rest: &str| format!("simulate MODEL --events out.csv {rest}");
@@ -354,6 +355,7 @@ fn folders_that_are_not_to_be_written_to() {
 
 /// Nothing at all is asked for, and that is what there is.
 #[test]
+#[ignore = "slow"]
 fn runs_of_no_length() {
     let place = Place::new();
     for line in [

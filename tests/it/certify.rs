@@ -177,6 +177,7 @@ fn fixed(decimal: &str) -> i128 {
 
 /// By how many units of its last digit each printed number is off, to a thousandth of a unit: more than doubles can tell.
 #[test]
+#[ignore = "slow"]
 fn the_printed_digits_are_off_by_so_many_units_of_the_last() {
     let found = certified(&["models/osorio-2008.toml"]);
     let proved = &found["corner_impacts"][0];
@@ -216,6 +217,7 @@ fn the_printed_digits_are_off_by_so_many_units_of_the_last() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn more_bits_prove_more_digits_and_too_few_prove_nothing() {
     let model = common::osorio();
     let place = json!({ "cam_angle_rad": CORNER, "period_s": PERIOD, "revolutions": 1 });
@@ -430,6 +432,7 @@ fn without_python_it_says_so() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn without_python_flint_it_says_so() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("flint.py"), "raise ImportError\n").unwrap();

@@ -106,6 +106,7 @@ fn the_map_of_one_impact_is_the_same_in_any_unit_of_length() {
 
 /// It has no map.
 #[test]
+#[ignore = "slow"]
 fn a_corner_impact_where_the_velocity_jumps_is_the_same_in_any_unit_of_length() {
     are_the_same("laws/rectified-sine", [18.4, 18.6], 1, LENGTH);
 }

@@ -296,6 +296,7 @@ fn what_is_done_already_has_its_ends() {
 /// A damper that holds the follower on the rise lets it go on the return: of a speed between what it does without and with the best one, what
 /// does is a range, and a narrow one of nearly the best.
 #[test]
+#[ignore = "slow"]
 fn a_damper_that_does_has_two_ends() {
     // Where the best of the values that are tried is below the best one, and above it.
     has_two_ends(&valve("mass = 0.11\ndamping = 0\nstiffness = 30\npreload = 220", "cycloidal"));
@@ -326,6 +327,7 @@ fn has_two_ends(model: &Model) {
 
 /// Pairs from the first value of the other number to its last; each what is needed of a machine with that.
 #[test]
+#[ignore = "slow"]
 fn what_is_needed_against_another_number_is_what_each_needs() {
     let speed = 1.2 * rpm(OWN.leaves());
     let need = format!("no separation to {speed:?} rpm");

@@ -174,6 +174,7 @@ fn whole_powers_of_two_are_exact() {
 /// nalgebra would multiply large matrices by kernels of the crate `matrixmultiply`, which asks the processor. No part of that crate is in the
 /// program, whose symbols would name it as they name nalgebra.
 #[test]
+#[ignore = "slow"]
 fn no_product_of_matrices_asks_the_processor() {
     let program = std::fs::read(PROGRAM).unwrap();
     let program = String::from_utf8_lossy(&program);

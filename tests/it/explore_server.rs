@@ -193,6 +193,7 @@ fn it_ends_with_the_page() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn ctrl_c_ends_it_at_once() {
     for is_working in [false, true] {
         let served = Served::start(&["--hurried", "60"]);

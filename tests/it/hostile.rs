@@ -90,6 +90,7 @@ fn nothing_steers_a_terminal_or_a_page() {
 
 /// All of Unicode, letter by letter: written out where it is shown, kept where a program reads it.
 #[test]
+#[ignore = "slow"]
 fn every_letter_that_nobody_sees_is_written_out() {
     for letter in (0..=0x10_ffff).filter_map(char::from_u32) {
         let text = letter.to_string();
@@ -179,6 +180,7 @@ fn nothing_waits_for_a_pipe() {
 
 /// Every command, with the same sentence, before it writes anything.
 #[test]
+#[ignore = "slow"]
 fn a_corner_that_cannot_be_is_refused_by_every_command() {
     let folder = TempDir::new().unwrap();
     let rows: Vec<String> = (0..36)
@@ -273,6 +275,7 @@ fn a_message_is_no_longer_than_a_page() {
 
 /// A file without an end is as good as one of 50 MB; so is a line.
 #[test]
+#[ignore = "slow"]
 fn files_and_lines_have_a_limit() {
     let folder = TempDir::new().unwrap();
     let at = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();

@@ -69,6 +69,7 @@ fn the_papers_corner_impact_is_among_them() {
 
 /// After 739.32 rpm the stable motion repeats after two revolutions; one of its two impacts reaches the nose's end.
 #[test]
+#[ignore = "slow"]
 fn an_orbit_of_two_revolutions_reaches_the_noses_end() {
     let (code, document) = document(MODEL, "738:741", "2");
     assert_eq!(code, Some(0));
@@ -240,6 +241,7 @@ fn an_orbit_out_of_the_other_side_is_refused_with_the_reason() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn the_page_says_what_was_looked_at() {
     let output = locate(&[MODEL, "--rpm", "600:760"]);
     assert_eq!(output.status.code(), Some(0));

@@ -429,6 +429,7 @@ fn six_rows_at_one_lift_are_a_dwell() {
 /// Corners and dwells that are found in rows of known cams with noise, some of them with an eccentric base circle. A dwell that is found is
 /// inside of one that is there, to within a row.
 #[test]
+#[ignore = "slow"]
 fn corners_and_dwells_of_tables_are_where_they_were() {
     let cams = [
         ("cycloidal", 90.0, 60.0, 60.0),
@@ -520,6 +521,7 @@ fn a_row_beside_a_corner_is_as_far_from_the_cam_as_is_told() {
 /// A table whose angles count from elsewhere has the same corners and dwells, wherever angle 0 is: where it is between a corner as it is first found
 /// and where the spline is best as well.
 #[test]
+#[ignore = "slow"]
 fn corners_and_dwells_turn_through_angle_0() {
     let cam = Cam::new(&machine(program("harmonic", 63.689, 13.71, 40.3)).unwrap()).unwrap();
     let rows: Vec<(f64, f64)> = rounded(&cam, 2).into_iter().step_by(3).collect();

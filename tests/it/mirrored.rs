@@ -162,6 +162,7 @@ fn is_rough(case: &Case, event: &Event) -> bool {
 }
 
 #[test]
+#[ignore = "slow"]
 fn a_cam_that_is_mirrored_twice_moves_its_follower_as_the_first() {
     check(500, |case| {
         let Ok(start) = case.motion() else { return Ok(()) };

@@ -25,6 +25,7 @@ fn printed(line: &str) -> String {
 }
 
 #[test]
+#[ignore = "slow"]
 fn older_spellings_do_the_same() {
     for (old, new) in [
         ("simulate --rpm 183 --revolutions 3 --summary", "simulate --rpm 183 --revolutions 3 --json"),
@@ -242,6 +243,7 @@ fn numbers_are_taken_as_people_type_them() {
 
 /// The short page of the program and of each command, and the order in which commands are listed.
 #[test]
+#[ignore = "slow"]
 fn short_help_is_a_page() {
     let help = |words: &[&str]| text(program(words).env("COLUMNS", "80").output().unwrap().stdout);
     for command in COMMANDS {
@@ -311,6 +313,7 @@ fn a_model_alone_says_what_can_be_done_with_it() {
 
 /// A table of lifts in place of a model file: what is assumed is printed as a file that does the same.
 #[test]
+#[ignore = "slow"]
 fn a_table_of_lifts_is_enough() {
     let folder = TempDir::new().unwrap();
     let run = |words: &[&str]| {

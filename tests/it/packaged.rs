@@ -18,6 +18,7 @@ const BESIDE: [&str; 7] = [
 ];
 
 #[test]
+#[ignore = "slow"]
 fn each_package_has_what_its_code_embeds() {
     for (package, folder) in [
         ("corner-impact", "."),

@@ -148,6 +148,7 @@ fn curves_contrast_with_what_is_behind() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn every_figure_of_the_report_is_readable_in_a_column() {
     let model = Model::parse("osorio-2008.toml", OSORIO_2008).unwrap();
     let mut subject = FigureContext::new(&model, None).unwrap();

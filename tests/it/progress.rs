@@ -105,6 +105,7 @@ fn a_force_that_is_hardly_there_all_round() {
 
 /// Each impact takes a ten-millionth of the velocity: more impacts than a revolution may have, and the error says so.
 #[test]
+#[ignore = "slow"]
 fn impacts_that_hardly_die_out() {
     let cam = program(0.0, &[("dwell", 360.0, 0.0)]);
     for restitution in [0.9999999, 1.0] {

@@ -28,7 +28,7 @@ pub(crate) fn model(folder: &TempDir, table: &str, fields: &str) -> Result<Model
     fs::write(folder.path().join("lift.csv"), table).unwrap();
     let text = format!(
         "name = \"read\"\n[units]\nlength = \"mm\"\nstiffness = \"N/mm\"\n[follower]\nmass = 0.1\ndamping = 0\nstiffness = 30\npreload = 220\n\
-         gravity = 0\nrestitution = 0.5\n[cam]\nlaw = \"table\"\nfile = \"lift.csv\"\nspline = \"smoothing\"\n{fields}\n"
+         gravity = 0\nrestitution = 0.5\n[cam]\nlaw = \"table\"\nfile = \"lift.csv\"\nspline = \"cubic\"\n{fields}\n"
     );
     let file = folder.path().join("read.toml");
     fs::write(&file, text).unwrap();

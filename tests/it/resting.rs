@@ -44,6 +44,7 @@ fn held_against_simulation(model: &str, rpm: &str, revolutions: &[u64]) {
 }
 
 #[test]
+#[ignore = "slow"]
 fn motions_that_rest_are_proved_to_repeat_as_simulation_has_them() {
     // Let go where the acceleration jumps, and where that of the cam passes through what the spring can follow.
     held_against_simulation("models/osorio-2008.toml", "250", &[1, 3]);

@@ -110,6 +110,7 @@ fn agree(model: &str, rpm: u32, restitution: &str) -> usize {
 /// The window of `basins` holds what moves far faster than the cam does at the section, where no orbit of one impact says how fast that is:
 /// of these machines it did not.
 #[test]
+#[ignore = "slow"]
 fn starts_are_as_fast_as_the_machine() {
     for (model, rpm, restitution) in [("laws/table-quintic", 359, "0.818"), ("laws/polynomial", 1615, "0.8")] {
         assert!(agree(model, rpm, restitution) <= 1, "{model}");

@@ -352,6 +352,7 @@ fn without_forces(case: &Case) -> Case {
 }
 
 #[test]
+#[ignore = "slow"]
 fn what_nothing_moves_but_the_cam_ends_the_same_in_any_units() {
     check(6, |case| {
         let case = without_forces(case);

@@ -335,6 +335,7 @@ fn back_in_a_turn(
 
 /// Each impact, of whatever kind the way there was found in, is what a run finds that starts from the one before and knows of no other.
 #[test]
+#[ignore = "slow"]
 fn what_is_found_one_turn_on_is_what_is_found_from_nothing() {
     let (mut repeats, mut flights) = (0, 0);
     for index in 0..1500 {

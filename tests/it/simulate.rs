@@ -468,6 +468,7 @@ fn a_continued_cam_keeps_one_law_past_the_corner() {
 
 /// The impact of a settled motion is the same to an ulp or two after two million revolutions as after two thousand.
 #[test]
+#[ignore = "slow"]
 fn no_digit_is_lost_to_the_number_of_revolutions() {
     let model = common::osorio();
     let machine = machine(&model, 700.0);

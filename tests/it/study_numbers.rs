@@ -134,6 +134,7 @@ fn attractors_that_rest_are_as_they_were() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn attractors_that_end_at_a_corner_are_as_they_were() {
     is_as_it_was("attractors-corner", &told(&common::osorio(), [739.0, 739.4], resolution(0.2, 2)));
 }
@@ -341,6 +342,7 @@ fn a_point_of_a_branch_is_a_cause() {
 
 /// An end that is known by runs, of a machine that differs by little: there it is known by runs again.
 #[test]
+#[ignore = "slow"]
 fn an_end_by_runs_moves_with_the_machine() {
     let text = |stiffness: f64| model("laws/polynomial").with_number("follower.stiffness", stiffness).unwrap();
     let ends = |of: &Model| {

@@ -19,6 +19,7 @@ fn leaves(map: &LocalMap, most: u64) -> Option<u64> {
 /// Next to where the attractor ends, past it, motions stay for millions of steps: the second map has nearly the traces and
 /// determinants of the paper's A-.
 #[test]
+#[ignore = "slow"]
 fn a_long_transient_is_not_called_chaos() {
     for ([l, r], determinant) in [([1.8, -1.954043], 0.3), ([1.645, -26.9063], 0.64)] {
         let map = common::normal_form([l, r], [determinant; 2]);

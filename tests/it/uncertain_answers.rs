@@ -157,6 +157,7 @@ fn valve(changes: &[(&str, f64)]) -> Model {
 
 /// At each value the table has the ± of the machine with that number, and none of the number itself.
 #[test]
+#[ignore = "slow"]
 fn a_table_over_a_number_has_the_uncertainty_of_the_machine_at_each_value() {
     let model = valve(&[("mass.error", 0.001), ("stiffness.error", 0.3)]);
     for (path, values) in [("follower.stiffness", [25.0, 35.0]), ("cam.lever_ratio", [0.95, 1.05])] {

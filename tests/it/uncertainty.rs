@@ -66,6 +66,7 @@ fn every_number_of_the_follower_may_have_an_error() {
 
 /// The uncertainty of a number that a load needs is what the number moves by with the machine, and not what a separation would need.
 #[test]
+#[ignore = "slow"]
 fn a_need_of_a_load_moves_with_the_uncertain_mass() {
     let needs = |mass: Value| {
         let model = cosine(&json!({
@@ -252,6 +253,7 @@ fn the_map_has_the_parts_that_differences_of_verify_give() {
 
 /// One corner impact has one ±, whichever command is asked; and so has the first separation.
 #[test]
+#[ignore = "slow"]
 fn every_command_gives_the_same_uncertainty() {
     let model = paper(0.01);
     let verified = verify(&model, External::LeftOut).unwrap();

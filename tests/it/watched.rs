@@ -40,6 +40,7 @@ impl Told {
 
 /// A bar that runs past its end, or backwards by more than the threads that work at once, says nothing.
 #[test]
+#[ignore = "slow"]
 fn as_much_is_told_to_be_done_as_there_is_at_most() {
     let (paper, told) = (common::osorio(), Told::default());
     let narrow = Study { rpm_min: 679.0, rpm_max: 681.0 };

@@ -187,6 +187,7 @@ mod unix {
 
     /// Signals wait for the registry. As soon as the first of many names is there, nobody gets it until the last one is.
     #[test]
+    #[ignore = "slow"]
     fn signals_wait_until_all_files_have_their_names() {
         /// Number of files: a process may have about as many open.
         const MANY: usize = 800;
