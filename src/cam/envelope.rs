@@ -74,12 +74,16 @@ impl Touch {
         normal[0] += 1.0;
         let of_curvature = speed[0] / normal[0];
         let (lift, rate, angle) = match contact {
-            FollowerContact::Point => (radius, unit(), polar),
             FollowerContact::Flat if normal[0] > 0.0 => {
                 (product(&radius, &cos), normal, polar + elementary::atan2(sin[0], cos[0]))
             }
             FollowerContact::Flat => return Err(Unfollowed::Hollow { radius: of_curvature }),
-            FollowerContact::Roller { roller_radius: a, offset: e } => {
+            // A point is a roller of radius 0.
+            FollowerContact::Point | FollowerContact::Roller { .. } => {
+                let [a, e] = match contact {
+                    FollowerContact::Roller { roller_radius, offset } => [roller_radius, offset],
+                    _ => [0.0; 2],
+                };
                 // The centre moves by |P'| + a (rate of the normal): backwards if the roller is too large.
                 if !(speed[0] + a * normal[0] > 0.0) {
                     return Err(Unfollowed::Undercut { radius: of_curvature });
@@ -121,10 +125,6 @@ impl Touch {
 
 fn sum(a: &Series, b: &Series) -> Series {
     std::array::from_fn(|n| a[n] + b[n])
-}
-
-fn unit() -> Series {
-    std::array::from_fn(|n| if n == 0 { 1.0 } else { 0.0 })
 }
 
 /// Coefficients of the powers 6 to 11 of x, from the remainders at x = 1 of the lift and of `derivative/order!` up to the fifth; lower
@@ -214,26 +214,20 @@ impl Pieces {
         }
         let touch = Touch::new(law, middle, self.contact).map_err(|why| (middle, why))?;
         if halvings == 0 {
-            return Err((middle, self.nearest(&touch)));
+            return Err((middle, self.likely(&touch)));
         }
         self.add(law, [polar[0], middle], [start, &touch], false, halvings - 1)?;
         self.add(law, [middle, polar[1]], [&touch, end], rests, halvings - 1)
     }
 
-    /// Most likely reason where no piece resolves the lift.
-    fn nearest(&self, touch: &Touch) -> Unfollowed {
+    /// Likely reason where no piece resolves the lift.
+    fn likely(&self, touch: &Touch) -> Unfollowed {
         /// Tangent of a pressure angle that counts as 90 degrees.
         const STEEP: f64 = 10.0;
         let [value, slope, curvature, third, ..] = touch.lift;
-        let at = self.contact.touches(touch.angle, &Lift { value, slope, curvature, third });
-        match self.contact {
-            FollowerContact::Flat => Unfollowed::Hollow { radius: at.radius },
-            _ if elementary::sin_cos(at.pressure_angle).0.abs() > STEEP * elementary::sin_cos(at.pressure_angle).1 => {
-                Unfollowed::Beside
-            }
-            _ if at.radius < 0.0 => Unfollowed::Undercut { radius: at.radius },
-            _ => Unfollowed::Sharp,
-        }
+        let angle = self.contact.touches(touch.angle, &Lift { value, slope, curvature, third }).pressure_angle;
+        let (sin, cos) = elementary::sin_cos(angle);
+        if sin.abs() > STEEP * cos { Unfollowed::Beside } else { Unfollowed::Sharp }
     }
 
     /// Whether a piece has the lift and the second derivative of a contact.

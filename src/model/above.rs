@@ -326,7 +326,7 @@ impl<'a> LineAbove<'a> {
 
     /// Whether it has units but no names of an angle or a lift: an angle's unit, or units alone.
     fn is_units(&self) -> bool {
-        let is_of_angle = |heading: &Heading| heading.is_unit && heading.kind == Kind::Angle;
+        let is_of_angle = |heading: &Heading| heading.kind == Kind::Angle;
         let is_other = |heading: &Heading| matches!(heading.kind, Kind::Other | Kind::Unknown);
         self.headings.iter().any(|heading| heading.is_unit)
             && match self.headings.iter().any(is_of_angle) {

@@ -120,7 +120,7 @@ impl Token {
 
     /// Whether it is a single Latin letter, which is a word only as a name.
     fn is_letter(&self) -> bool {
-        self.text.len() == 1 && self.is_word() && self.text != "#"
+        self.text.len() == 1 && self.is_word()
     }
 }
 
@@ -156,8 +156,8 @@ fn first_length(text: &str) -> usize {
 /// Splits a text into tokens.
 fn tokens(text: &str) -> Vec<Token> {
     /// Signs, each with the forms in which it is typed.
-    const SIGNS: [(&str, &str); 7] =
-        [("/", "/"), ("#", "#"), ("%", "%"), ("°", "°"), ("*", "*×·⋅"), ("'", "'’′´"), ("\"", "\"″”“")];
+    const SIGNS: [(&str, &str); 8] =
+        [("/", "/"), ("#", "#"), ("%", "%"), ("°", "°"), ("±", "±"), ("*", "*×·⋅"), ("'", "'’′´"), ("\"", "\"″”“")];
     let mut text = text.replace("\"\"", "\"").replace('º', "°");
     for (power, raised) in (1..).zip(['¹', '²', '³', '⁴', '⁵', '⁶']) {
         for written in [format!("10⁻{raised}"), format!("10^-{power}")] {
@@ -264,13 +264,13 @@ fn units(tokens: &[Token]) -> Vec<FoundUnit> {
 /// Whether the word of a unit is a name or a preposition at this place.
 fn is_name(tokens: &[Token], index: usize) -> bool {
     let token = &tokens[index];
-    let is_slash = |token: &Token| token.text == "/";
+    let is_sign = |token: &Token| token.text == "/" || token.text == "^";
     let is_of_unit = |token: &Token| {
         token.is_unit() || token.number().is_some() || matches!(token.meaning(), Some(Meaning::Part(_)))
     };
     match (&*token.text, tokens.get(index + 1)) {
-        // "Lift in mm", but "in/deg" and "Lift in (intake)"
-        ("in", Some(next)) if token.bracket == 0 => !is_slash(next) && (next.bracket == 0 || is_of_unit(next)),
+        // "Lift in mm", but "in/deg", "in^2" and "Lift in (intake)"
+        ("in", Some(next)) if token.bracket == 0 => !is_sign(next) && (next.bracket == 0 || is_of_unit(next)),
         // "M (mm)"
         (_, Some(_)) => token.bracket == 0 && index == 0 && token.is_letter(),
         _ => false,
@@ -315,16 +315,14 @@ fn unit_at(tokens: &[Token], index: usize, meaning: Meaning, from: usize) -> Fou
             None => {}
         },
         (Some("^"), ..) => meaning = Meaning::OtherUnit,
-        // "[mm·10⁻²]"; outside brackets the number may be a factor of the numbers.
-        (Some("*"), Some(value), _) if tokens[index].bracket > 0 && value < 1.0 => {
-            (end, parts) = (end + 2, parts * value)
-        }
-        _ if number(end).is_some_and(|value| value < 1.0) => (end, parts) = (end + 1, f64::NAN),
-        _ if tokens[index].bracket > 0 && means(end).and_then(per) == Some(true) => (end, is_rate) = (end + 1, true),
+        // "[mm·10⁻²]"
+        (Some("*"), Some(value), _) if value < 1.0 => (end, parts) = (end + 2, parts * value),
+        _ if number(end).is_some_and(|value| value < 1.0) => parts = f64::NAN,
+        _ if tokens[index].bracket > 0 && means(end).and_then(per) == Some(true) => is_rate = true,
         _ => {}
     }
     while matches!(text(end), Some("^")) {
-        end += 1;
+        end += if number(end + 1).is_some() { 2 } else { 1 };
     }
     // In `s"` the sign may be a unit or a second derivative.
     let is_behind_word = index.checked_sub(1).is_some_and(|before| tokens[before].is_word());
@@ -374,9 +372,8 @@ impl Heading {
         let tokens = tokens(cell);
         let units = units(&tokens);
         let is_of_unit = |index: usize| units.iter().any(|unit| unit.at.contains(&index));
-        let is_preposition = |index: usize| tokens[index].text == "in" && !is_of_unit(index);
         let names: Vec<&Token> = (0..tokens.len())
-            .filter(|index| tokens[*index].bracket == 0 && !is_of_unit(*index) && !is_preposition(*index))
+            .filter(|index| tokens[*index].bracket == 0 && !is_of_unit(*index))
             .map(|index| &tokens[index])
             .filter(|token| token.is_word())
             .collect();
@@ -416,7 +413,7 @@ impl Heading {
             Meaning::LengthUnit(index) => Some(LiftUnit::part(index, places)),
             _ => None,
         };
-        let is_unread = is_unread(&tokens, &units);
+        let is_unread = is_unread(&tokens);
         let small = || units.iter().find_map(|unit| turn_of(&tokens, unit)).map(|turn| vec![turn]);
         let names_angle = |unit: &usize| AngleUnit::NAMES[*unit].to_owned();
         Self {
@@ -470,7 +467,7 @@ fn named<T: PartialEq>(
     }
     found.dedup();
     match found.len() {
-        0 if units.is_empty() && times.is_some() => {
+        0 if times.is_some() => {
             // Part of an unnamed unit: a millimetre, as on dial gauges.
             let meant = times.and_then(places_of).and_then(|places| of(MILLIMETRE, places));
             Err(meant.iter().map(name).collect())
@@ -506,19 +503,16 @@ fn places_of(times: f64) -> Option<u32> {
     (1..=MOST_PLACES).find(|places| 1.0 / times == decimal_part(*places))
 }
 
-/// Whether text in brackets, or after a slash or "in", is not a known unit.
-fn is_unread(tokens: &[Token], units: &[FoundUnit]) -> bool {
+/// Whether text in brackets, or after a slash or a last "in", is not a word of a heading. If there is no unit, it is an unknown one.
+fn is_unread(tokens: &[Token]) -> bool {
     (0..tokens.len()).any(|index| {
         let token = &tokens[index];
-        let is_used = |index: usize| units.iter().any(|unit| unit.at.contains(&index));
-        let follows = |sign: &str| index > 0 && tokens[index - 1].text == sign && tokens[index - 1].bracket == 0;
-        let is_last = index + 1 == tokens.len();
-        let is_word = |token: &Token| {
+        let follows = |sign: &str| index > 0 && tokens[index - 1].text == sign;
+        let is_word = {
             use Meaning::{Angle, Filler, Lift, Other, Radius};
             matches!(token.meaning(), Some(Angle | Filler | Lift | Other | Radius))
         };
-        let is_open = token.bracket > 0 || follows("/") || is_last && (follows("in") || follows("/"));
-        !is_used(index) && is_open && !is_word(token)
+        (token.bracket > 0 || follows("/") || index + 1 == tokens.len() && follows("in")) && !is_word
     })
 }
 

@@ -442,7 +442,7 @@ impl Thousands {
     fn are_parted(&self, rows: &mut [TableRow]) -> bool {
         /// Ratio of the bends of the curve in thousands to the bends with decimals, below which thousands are meant.
         const SMOOTH: f64 = 0.5;
-        if !(self.is_open() && self.has_whole) {
+        if !self.is_open() {
             return false;
         }
         let parted: Vec<f64> = rows

@@ -161,8 +161,7 @@ impl Table<'_> {
         fields.may_hold("cam.outside");
         let fills = fields.has("cam.outside") && fields.choice("cam.outside", &[("base", true)])?;
         let mut written = Vec::new();
-        let is_whole = self.angles.is_of_cam() && !(are_points || is_mirrored || fills || falls || merged > 0);
-        if is_whole && rows.len() <= MOST_WRITTEN {
+        if self.angles.is_of_cam() && !falls && merged == 0 && rows.len() <= MOST_WRITTEN {
             written = match (named, fields.fields.get("cam.rows")) {
                 (Some(layout), _) => rows.iter().filter_map(|row| self.cells(layout, row.line)).collect(),
                 (None, field) => field.map_or_else(Vec::new, |field| toml::pairs(&field.written)),
@@ -173,9 +172,8 @@ impl Table<'_> {
         }
         let nose_deg = if is_mirrored { self.mirror(fields, &mut rows)? } else { None };
         // Row numbers increase by 1, as degrees often do.
-        let counts = !are_points
-            && fields.has("cam.angle_column")
-            && rows.windows(2).all(|pair| pair[1].angle_deg - pair[0].angle_deg == 1.0);
+        let counts =
+            fields.has("cam.angle_column") && rows.windows(2).all(|pair| pair[1].angle_deg - pair[0].angle_deg == 1.0);
         let column = named.map_or(0, |named| named.columns[0]);
         let (repeats_first, filled) = self.turned(fields, &mut rows, fills).map_err(|error| {
             let meant =

@@ -66,7 +66,7 @@ pub(super) struct LiftUnit {
 impl LiftUnit {
     /// Part of a unit of length, as a separate unit if it has a name: a thousandth of an inch is a thou.
     pub(super) fn part(index: usize, places: u32) -> Self {
-        match LENGTHS.iter().position(|unit| places > 0 && unit.is_part_of(&LENGTHS[index], places)) {
+        match LENGTHS.iter().position(|unit| unit.is_part_of(&LENGTHS[index], places)) {
             Some(index) => Self { index, places: 0 },
             None => Self { index, places },
         }

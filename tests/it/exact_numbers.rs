@@ -1,6 +1,6 @@
 //! Do proofs get the decimals that are written, with all their digits and in the units that they are in?
 
-use corner_impact::model::{Model, Numeral, finite};
+use corner_impact::model::{CamProfile, Model, Numeral, finite};
 use serde_json::{Value, json};
 
 const FOLLOWER: &str =
@@ -215,4 +215,64 @@ fn a_pure_number_stands_alone() {
     let [pure, of_mass] = [("0.5 x", ""), ("0.5 x", "kg")].map(|(text, unit)| finite(text, unit).unwrap_err());
     assert_eq!(pure, "\"0.5 x\" is more than a number: write the number alone, in the unit of the model");
     assert_eq!(of_mass, "\"0.5 x\" is not in kg: write 0.5, or 0.5 kg, if that is meant");
+}
+
+/// However a table gives its rows, proofs get the rows of the cam: half a lobe with its mirror image, the open part with the base circle, angles
+/// that fall, or a row that is written twice.
+#[test]
+fn rows_of_a_table_are_those_of_its_cam() {
+    let lift = |degrees: i32| 4.1 * (1.0 - f64::from(degrees).to_radians().cos());
+    let rows = |degrees: &[i32]| -> Vec<String> {
+        degrees.iter().map(|degrees| format!("[{degrees}.0, {:.2}0]", lift(*degrees))).collect()
+    };
+    let (turn, half) =
+        ((0..12).map(|row| 30 * row).collect::<Vec<_>>(), (0..=6).map(|row| 30 * row).collect::<Vec<_>>());
+    let twice: Vec<i32> = [&turn[..6], &turn[5..]].concat();
+    let falling: Vec<i32> = turn.iter().rev().copied().collect();
+    let late: Vec<i32> = turn.iter().map(|degrees| degrees + 90).collect();
+    let open = [
+        "[90.0, 0.0]",
+        "[120.0, 0.01]",
+        "[150.0, 2.5]",
+        "[180.0, 4.1]",
+        "[210.0, 2.5]",
+        "[240.0, 0.01]",
+        "[270.0, 0.0]",
+    ];
+    for (rows, fields, is_written) in [
+        (rows(&turn), "", true),
+        (rows(&late), "", true),
+        (rows(&half), "mirrored = true\n", false),
+        (open.map(str::to_owned).to_vec(), "outside = \"base\"\n", false),
+        (rows(&falling), "", false),
+        (rows(&twice), "", false),
+    ] {
+        let cam = format!("law = \"table\"\nspline = \"cubic\"\nunit = \"mm\"\n{fields}rows = [{}]\n", rows.join(", "));
+        let text = format!("name = \"exact\"\n[follower]\n{FOLLOWER}[cam]\n{cam}");
+        let model = Model::parse("exact.toml", &text).unwrap();
+        let CamProfile::Table(table) = &model.cam else { panic!("{:?}", model.cam) };
+        let exact = model.exact();
+        let exact = exact["cam"]["rows"].as_array().unwrap();
+        let number = |row: &Value, name: &str| {
+            let text = row[name].as_str().unwrap();
+            let (number, by) = text.split_once(" * ").unwrap_or((text, "1/1"));
+            let [number, above, below] = [number, by.split_once('/').unwrap().0, by.split_once('/').unwrap().1]
+                .map(|text| text.parse::<f64>().unwrap());
+            number * above / below
+        };
+        let mut told: Vec<[f64; 2]> =
+            exact.iter().map(|row| [number(row, "angle_deg").rem_euclid(360.0), number(row, "lift")]).collect();
+        told.sort_by(|one, two| one[0].total_cmp(&two[0]));
+        let of_cam: Vec<[f64; 2]> = table.rows.iter().map(|row| [row.angle_deg, row.lift]).collect();
+        assert_eq!(told.len(), of_cam.len(), "{fields}{rows:?}");
+        for (told, of_cam) in told.iter().zip(&of_cam) {
+            assert!(
+                (0..2).all(|part| (told[part] - of_cam[part]).abs() <= 1e-15 * of_cam[part].abs()),
+                "{told:?} {of_cam:?}"
+            );
+        }
+        // As it is written, with the zero at its end.
+        let is_as_written = exact.iter().any(|row| row["lift"].as_str().unwrap().starts_with("8.200"));
+        assert_eq!(is_as_written, is_written, "{fields}{exact:?}");
+    }
 }

@@ -94,6 +94,22 @@ fn headers_are_read_wherever_they_stand() {
         ("Pt #  Angle  Lift", "N A L", 1.0),
         ("Angle,Lift,Pt #", "A,L,N", 1.0),
         ("Angle,Lift,#", "A,L,N", 1.0),
+        ("Cam #,Angle,Lift", "N,A,L", 1.0),
+        // Units above other columns do not count.
+        ("deg,mm,mm/s2", "A,L,0", 1.0),
+        ("angle,lift,area\n-,mm,mm^2", "A,L,0", 1.0),
+        ("angle,lift,area\n-,in,in^2", "A,L,0", 25.4),
+        // A title or a comment may have a rate, an accuracy, or a part of a unit that is not of the lift.
+        ("# cm/deg\nangle,lift", COMMA, 1.0),
+        ("# velocity in cm/s\nangle,lift", COMMA, 1.0),
+        ("# lift ± 0.01 mm\nangle,lift", COMMA, 1.0),
+        ("# dial: mm\nangle,lift", COMMA, 1.0),
+        ("# mm x10\nangle,lift", COMMA, 1.0),
+        ("# mm/100\nangle,lift", COMMA, 1.0),
+        ("5\" cam\nangle,lift", COMMA, 1.0),
+        // The column of the angle is the second.
+        ("Hub,Position θ", "L,A", 1.0),
+        ("lift,pos [deg]", "L,A", 1.0),
     ] {
         is_the_lobe(&table(head, row), "", size);
     }
@@ -150,6 +166,25 @@ fn words_and_units_are_known() {
         ("angle", "Lift [10⁻² mm]", 0.01),
         ("angle", "Lift [1e-3 m]", 1.0),
         ("angle", "Lift [0.000001 m]", 1e-3),
+        ("angle", "lift in [0.01 mm]", 0.01),
+        ("angle", "lift in [tenths mm]", 0.1),
+        ("angle", "lift in mm/100", 0.01),
+        // Other words beside a unit.
+        ("angle", "″ (lift)", 25.4),
+        ("angle", "Lift (\" valve \")", 25.4),
+        ("Angle \"deg\"", "Lift \"mm\"", 1.0),
+        ("angle in [deg]", "lift in [mm]", 1.0),
+        ("angle [deg]", "[in] lift", 25.4),
+        ("CA", "in (lift)", 25.4),
+        ("angle", "lift in (valve) net", 25.4),
+        ("angle", "lift in net x", 1.0),
+        ("angle", "lift mm 1", 1.0),
+        ("angle", "lift mm s", 1.0),
+        ("angle", "lift mm deg", 1.0),
+        ("angle", "lift no 1", 1.0),
+        ("angle", "lift '", 1.0),
+        ("angle", "5' lift", 1.0),
+        ("angle", "displ vs dθ", 1.0),
     ] {
         is_the_lobe(&table(&format!("{angle};{lift}"), SEMICOLON), "", size);
     }
@@ -184,6 +219,8 @@ fn other_columns_are_left_out() {
         "Angle (deg);Lift (mm);Temp [°C];x [kN]",
         "Angle (deg);Lift (\");v (\"/deg);()",
         "Crank angle;Lift;Cam angle;t",
+        "Angle;Lift;cam vel",
+        "θ;s;()",
     ] {
         let is_turned = head.starts_with("Crank");
         let row = if is_turned { "0;L;A;0" } else { &"A;L;0;0"[..2 * head.split(';').count() - 1] };
@@ -206,6 +243,17 @@ fn a_unit_that_is_not_understood_is_refused_with_the_line_that_says_it() {
         ("angle;Lift [mm] / 100", multiple, "unit = \"0.01 mm\"", 0.01),
         ("angle;Lift 0.01 [mm]", multiple, "unit = \"0.01 mm\"", 0.01),
         ("angle;Lift*0.01 mm", one_of, "unit = \"0.01 mm\"", 0.01),
+        ("angle;Lift mm × 0.01", one_of, "unit = \"0.01 mm\"", 0.01),
+        ("angle;Lift mm 0.01", one_of, "unit = \"0.01 mm\"", 0.01),
+        ("angle;Lift [mm × 1]", one_of, "unit = \"mm\"", 1.0),
+        ("angle;valve lift [mm × 0.01] 0.1", multiple, "unit = \"0.1 mm\"", 0.1),
+        ("angle;Hub in 1/100 1/100 mm", multiple, "unit = \"0.01 mm\"", 0.01),
+        ("angle;Hub/C", one_of, "unit = \"mm\"", 1.0),
+        ("angle;s/dθ", one_of, "unit = \"mm\"", 1.0),
+        ("angle;valve M [mm]", "name both m and mm", "unit = \"mm\"", 1.0),
+        ("angle;(M) mm", "name both m and mm", "unit = \"mm\"", 1.0),
+        ("angle % [deg];lift", "the unit of the angle must be one of", "angle_unit = \"deg\"", 1.0),
+        ("angle x 10;lift", "the unit of the angle must be one of", "angle_unit = \"deg\"", 1.0),
         ("angle;Lift in hundredths (mm)", multiple, "unit = \"0.01 mm\"", 0.01),
         ("angle;Lift thousandths (inch)", multiple, "unit = \"thou\"", 0.0254),
         ("angle;lift (1/16 in)", one_of, "unit = \"mm\"", 1.0),
@@ -238,6 +286,8 @@ fn a_unit_that_is_not_understood_is_refused_with_the_line_that_says_it() {
         ("# lifts in inches\nangle;lift", "unit = inches: is a unit of length", "unit = \"in\"", 25.4),
         ("angle;lift  # deg, inch", "unit = inch: is a unit of length", "unit = \"in\"", 25.4),
         ("# Lift in 0.01 mm\nangle;lift", "is a unit of length", "unit = \"0.01 mm\"", 0.01),
+        ("# Lift in mm × 0.01\nangle;lift", "is a unit of length", "unit = \"0.01 mm\"", 0.01),
+        ("# lift in 1/100 mm, by dial gauge\nangle;lift", "is a unit of length", "unit = \"0.01 mm\"", 0.01),
         ("# Lift in hundredths (mm)\nangle;lift", "is a unit of length", "unit = \"0.01 mm\"", 0.01),
         ("Cam Lift Data (in)\nangle;lift", "unit = in: is a unit of length", "unit = \"in\"", 25.4),
         ("highest at 0.450 in\nangle;lift", "unit = in: is a unit of length", "unit = \"in\"", 25.4),
@@ -264,9 +314,18 @@ fn a_unit_that_is_not_understood_is_refused_with_the_line_that_says_it() {
         ("angle,lift", "A,L", "unit = \"in 0.01 mm\"", "must be one of"),
         ("angle,lift", "A,L", "unit = \"0.01 deg\"", "must be one of"),
         ("angle,lift", "A,L", "unit = 5", "must be text in quotes"),
+        ("angle,lift", "A,L", "angle_column = 0", "must be the name of a column in quotes, or its number from 1"),
+        ("angle,lift", "A,L", "angle_column = -1", "or its number from 1"),
+        ("angle,lift", "A,L", "angle_column = 1.5", "or its number from 1"),
+        ("angle,lift", "A,L", "lift_column = 1e7", "or its number from 1"),
+        ("angle,lift", "A,L", "lift_column = 1000000", "has 2 columns"),
+        ("angle,lift", "A,L", "lift_column = \"lift [mm]\"", "its columns are angle, lift"),
         ("# theta h", "A L 0", "", "has 3 columns without names"),
         ("x,y", "A,L", "", "or set the columns in [cam], such as angle_column = 1 and lift_column = 2"),
         ("angle,no lift in", "A,L", "", "must name the angle"),
+        ("deg/angle,lift", "A,L", "", "must name the angle"),
+        ("cm deg,lift", "A,L", "", "must name the angle"),
+        ("angle,-,lift,-", "A,L", "", "must be two numbers"),
         ("angle [0.1 rad] lift", "A L", "", "names a part of a unit"),
     ];
     for (head, row, fields, says) in cases {
@@ -275,4 +334,7 @@ fn a_unit_that_is_not_understood_is_refused_with_the_line_that_says_it() {
     }
     is_the_lobe(&table("x,y", COMMA), "angle_column = 1\nlift_column = 2", 1.0);
     is_the_lobe(&table("angle,lift", COMMA), "unit = \"0.001 in\"", 0.0254);
+    let by_name = "angle_column = \"Angle [deg]\"\nlift_column = \"LIFT\"";
+    is_the_lobe(&table("x [mm],angle [deg],lift [mm]", "0,A,L"), by_name, 1.0);
+    is_the_lobe(&table("# deg, 0.01 mm", COMMA), "", 0.01);
 }

@@ -124,6 +124,7 @@ mod set;
 mod settled;
 mod settling;
 mod simulate;
+mod small_tables;
 mod snapshots;
 mod speeds_numbers;
 mod stability;

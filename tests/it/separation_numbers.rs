@@ -5,6 +5,7 @@ use std::f64::consts::{PI, TAU};
 use approx::assert_relative_eq;
 use corner_impact::cam::{Cam, nearest_turn};
 use corner_impact::model::Model;
+use corner_impact::study::design::SeparationPlace;
 use corner_impact::study::design::contact::{Contact, Separation};
 
 use crate::design::separation;
@@ -498,5 +499,18 @@ fn a_damper_pulls_as_near_to_the_lowest_lift_as_the_preload_lets_it() {
             let cycloid = least(near.ln(), 5e-6).0;
             assert_relative_eq!(found("cycloidal"), rpm(cycloid), max_relative = known);
         }
+    }
+}
+
+/// The end of a range that ends in the next turn is told within a turn; its width is not.
+#[test]
+fn a_place_about_angle_0_ends_in_the_next_turn() {
+    for (cam_angles, end, width) in
+        [([1.0, 1.5], 1.5, 0.5), ([6.0, TAU], 0.0, TAU - 6.0), ([6.0, TAU + 0.5], 0.5, TAU - 5.5)]
+    {
+        let ([from, to], wide) = SeparationPlace { cam_angles, share: 1.0, cams: 16 }.within_a_turn();
+        assert_eq!(from, cam_angles[0]);
+        assert_relative_eq!(to, end, epsilon = 1e-15);
+        assert_relative_eq!(wide, width, max_relative = 1e-15);
     }
 }
