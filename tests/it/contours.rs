@@ -1,6 +1,6 @@
 //! Is the lift on a measured contour that of its envelope, and is what the geometry forbids refused with its place?
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 use corner_impact::cam::{Cam, Lift, apart};
@@ -282,6 +282,57 @@ fn pieces_meet_but_at_corners() {
     }
 }
 
+/// The lift is the farthest to which any point of the contour lifts the follower, as found by trying points; under a flat face the radius of
+/// curvature at the touching point is the lift with its second derivative (whose rounding is 2e-8 mm). Between coarse rows the lift is no polynomial of degree 11.
+#[test]
+#[ignore = "slow"]
+fn the_lift_is_the_largest_over_all_points() {
+    const POINTS: usize = 2000;
+    for (count, waves, depth) in [(12, 1.0, 9.0), (18, 2.0, 4.5), (36, 3.0, 2.2), (120, 9.0, 0.3)] {
+        let contour = polar(count, |angle| 30.0 + depth * (waves * angle).cos());
+        let spline = "spline = \"quintic\"\n";
+        let point = cam(&contour, spline);
+        for (contact, radius, offset) in
+            [(FLAT.to_owned(), f64::INFINITY, 0.0), (roller((3.0, 0.0)), 3.0, 0.0), (roller((3.0, 8.0)), 3.0, 8.0)]
+        {
+            let cam = cam(&contour, &format!("{spline}{contact}"));
+            for step in 0..80 {
+                let angle = TAU * (f64::from(step) + 0.3) / 80.0;
+                // Lift to which the point at a polar angle lifts the follower, and its derivative by that angle.
+                let lifted = |from: f64| {
+                    let at = point.lift((angle + from).rem_euclid(TAU));
+                    let (sin, cos) = from.sin_cos();
+                    let [along, across] = [at.value * cos, at.value * sin - offset];
+                    let [along_rate, across_rate] = [at.slope * cos - at.value * sin, at.slope * sin + at.value * cos];
+                    if radius.is_infinite() {
+                        return (along, along_rate);
+                    }
+                    let height = (radius * radius - across * across).sqrt();
+                    (along + height, along_rate - across * across_rate / height)
+                };
+                let from = |index: usize| PI * (index as f64 / POINTS as f64 - 0.5);
+                let best = (0..=POINTS).max_by(|one, two| {
+                    let [one, two] = [*one, *two].map(|index| lifted(from(index)).0);
+                    one.max(0.0).total_cmp(&two.max(0.0))
+                });
+                let [mut low, mut high] = [best.unwrap() - 1, best.unwrap() + 1].map(from);
+                for _ in 0..60 {
+                    let middle = 0.5 * (low + high);
+                    if lifted(middle).1 > 0.0 { low = middle } else { high = middle }
+                }
+                let (found, expected) = (cam.lift(angle), lifted(low).0);
+                assert_abs_diff_eq!(found.value, expected, epsilon = 1e-12 * 2.0 * depth);
+                if radius.is_infinite() {
+                    let at = point.lift((angle + low).rem_euclid(TAU));
+                    let curvature = at.value.hypot(at.slope).powi(3)
+                        / (at.value.powi(2) + 2.0 * at.slope.powi(2) - at.value * at.curvature);
+                    assert_abs_diff_eq!(found.value + found.curvature, curvature, epsilon = 1e-9 * 2.0 * depth + 2e-8);
+                }
+            }
+        }
+    }
+}
+
 /// An ellipse under a flat face is left first at either end: angle 0 is one place, on whichever side of it likely contours have it.
 #[test]
 fn places_about_angle_0_are_one() {
@@ -294,7 +345,7 @@ fn places_about_angle_0_are_one() {
     let [one, other] = &places[..] else { panic!("{separation:?} {places:?}") };
     assert_abs_diff_eq!(one.share + other.share, 1.0, epsilon = 1e-12);
     let middle = |place: &SeparationPlace| 0.5 * (place.cam_angles[0] + place.cam_angles[1]);
-    assert_abs_diff_eq!(apart(middle(one), middle(other)), std::f64::consts::PI, epsilon = 0.1);
+    assert_abs_diff_eq!(apart(middle(one), middle(other)), PI, epsilon = 0.1);
 }
 
 /// The limit of a roller is the sharpest hollow, not the first one that is too sharp.
