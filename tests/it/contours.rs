@@ -359,6 +359,29 @@ fn the_sharpest_hollow_limits_a_roller() {
     }
 }
 
+/// A hollow is named with the row at its place, or the last row before it: the last row of all before the first.
+#[test]
+fn a_hollow_is_named_with_the_row_before_it() {
+    for (first, turned) in [(0.0, 61.5), (5.0, 63.0), (5.0, 2.5), (5.0, 118.5)] {
+        let angles: Vec<f64> = (0..72).map(|row| 5.0 * f64::from(row) + first).collect();
+        let row = |angle: &f64| {
+            let from = 3.0 * (angle - turned).to_radians();
+            format!("{angle},{:.6}\n", 30.0 - 6.0 * (1.0 + 0.1 * (from / 3.0).cos()) * from.cos())
+        };
+        let csv = "angle [deg],radius [mm]\n".to_owned() + &angles.iter().map(row).collect::<String>();
+        let refused = read(&csv, &format!("spline = \"cubic\"\n{FLAT}")).unwrap_err();
+        let number = |before: &str| -> f64 {
+            refused.split(before).nth(1).unwrap().split([' ', ',']).next().unwrap().parse().unwrap()
+        };
+        let (place, line) = (number(" near "), number(", line ") as usize);
+        let row = line - 2;
+        let [from, to] = [angles[row], angles.get(row + 1).map_or(angles[0] + 360.0, |next| *next)];
+        let place = if place < angles[0] { place + 360.0 } else { place };
+        assert!((from - 0.005..to - 0.005).contains(&place), "{place} is not from {from} to {to}: {refused}");
+        assert!(apart(place.to_radians(), turned.to_radians()) < 0.1, "{refused}");
+    }
+}
+
 #[test]
 fn what_the_geometry_forbids_is_refused_with_its_place() {
     // Hollow at 60 deg, with a radius of curvature of 24^2/(54 - 24) = 19.2 mm.

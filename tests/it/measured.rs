@@ -224,6 +224,26 @@ fn a_separation_that_errors_of_rows_decide_is_told() {
     }
 }
 
+/// On a lever an error of a row moves the follower by the error times its ratio, and the spring's force by as much times the stiffness.
+#[test]
+fn errors_of_rows_decide_a_separation_as_much_as_a_lever_makes_of_them() {
+    let exact = Cam::new(&machine(program("cycloidal", 90.0, 60.0, 60.0)).unwrap()).unwrap();
+    let noise = |row: usize| 0.01 * (2.0 * (1e4 * (1.0 + row as f64).sin()).rem_euclid(1.0) - 1.0);
+    let rows: Vec<_> =
+        rounded(&exact, 3).iter().enumerate().map(|(row, (angle, lift))| (*angle, lift + noise(row))).collect();
+    for (ratio, times, is_told) in [(2.0, 1.5, true), (2.0, 4.0, false), (0.5, 1.0, false)] {
+        let mut model = machine(smoothing(&rows, &json!({ "lever_ratio": ratio }))).unwrap();
+        let cam = Cam::new(&model).unwrap();
+        let error = PlausibleCams::of(&model).unwrap().unwrap().measured.row_error();
+        // The least force is so many times what the stiffness makes of the error of a row itself.
+        model.follower.rest_position = cam.lowest().value - times * error;
+        let machines = PlausibleMachines::of(&model, &cam).unwrap();
+        let (found, _) = known(Contact::new(&cam, model.follower).separation(), &machines);
+        let Separation::At { within_errors, .. } = found else { panic!("{found:?}") };
+        assert_eq!(within_errors, is_told, "{ratio} {times}");
+    }
+}
+
 /// Cams that all leave at 3285.37 rpm, each in three roundings: the smoothed ones leave there within what they say, the cubic
 /// splines within what is said of them, and the roundest of these by less than half of that speed.
 #[test]

@@ -8,7 +8,7 @@ use corner_impact::progress::Unwatched;
 use corner_impact::study::attractors::{Cause, Resolution};
 use corner_impact::study::design::contact::Separation;
 use corner_impact::study::design::needs::Lever;
-use corner_impact::study::design::{Asked, Design, design};
+use corner_impact::study::design::{Asked, Design, RequiredPair, design};
 use corner_impact::study::locate::locate;
 use corner_impact::study::orbit::{OrbitQuery, orbits};
 use corner_impact::study::verify::{External, Verification, verify};
@@ -79,6 +79,51 @@ fn a_need_of_a_load_moves_with_the_uncertain_mass() {
     let found = needs(with(0.5, error));
     let [high, low] = [0.5 + 2.0 * error, 0.5 - 2.0 * error].map(|mass| needs(json!(mass)).value.unwrap());
     near(part(&found.error.unwrap(), "mass"), 0.5 * (high - low), 0.1);
+}
+
+/// The document has the uncertainty of each load, with its parts.
+#[test]
+fn loads_of_a_document_have_the_uncertainty_of_the_machine() {
+    let model = cosine(&json!({
+        "mass": with(0.5, 0.005), "stiffness": with(2000.0, 30.0), "gravity": 9.81, "rest_position": -0.03, "damping": 0.0,
+        "restitution": 0.3,
+    }));
+    let asked = Asked { rpm: Some([1600.0, 1700.0]), speeds: 2, ..Asked::default() };
+    let found = design(&model, &asked, &Unwatched).unwrap();
+    let document = serde_json::to_value(&found).unwrap();
+    assert_eq!(found.loads.len(), 2);
+    for (loads, told) in found.loads.iter().zip(document["loads"].as_array().unwrap()) {
+        let errors = loads.errors.unwrap();
+        let names =
+            [["impact_speed", "m_s"], ["gap", "m"], ["off_cam", ""], ["energy_lost", "j"], ["largest_force", "n"]];
+        for ([name, unit], error) in names.into_iter().zip(errors) {
+            let unit = if unit.is_empty() { String::new() } else { format!("_{unit}") };
+            assert_eq!(told[format!("{name}_error{unit}")], json!(error.total()), "{told}");
+            assert_eq!(
+                told[format!("{name}_error_parts")][format!("mass{unit}")],
+                json!(part(&error, "mass")),
+                "{told}"
+            );
+        }
+        assert!(errors[4].total() > 0.0);
+    }
+}
+
+/// A value that is required, and the one on the other side, are each known to within their own uncertainty.
+#[test]
+fn required_values_have_bounds_on_both_sides() {
+    let of = |cam: f64, numbers: f64| Some(SourcedUncertainty { cam, numbers, each: None });
+    let pair = RequiredPair {
+        given: 1.0,
+        found: Some(20.0),
+        error: of(0.3, 0.4),
+        other: Some(50.0),
+        other_error: of(3.0, 4.0),
+        again: None,
+    };
+    assert_eq!((pair.found_bounds(), pair.other_bounds()), (Some([19.5, 20.5]), Some([45.0, 55.0])));
+    let open = RequiredPair { error: None, other: None, ..pair };
+    assert_eq!((open.found_bounds(), open.other_bounds()), (None, None));
 }
 
 /// The follower leaves where `m w^2 A = k (C + A - rest) + m g`.
