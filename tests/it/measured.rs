@@ -497,6 +497,58 @@ fn corners_and_dwells_of_tables_are_where_they_were() {
     snapshots::settings().bind(|| insta::assert_snapshot!("features", told));
 }
 
+/// The same of a hundred random tables: coarse, uneven, noisy, without a dwell, or with corners or dwells that the model gives.
+#[test]
+#[ignore = "slow"]
+fn corners_and_dwells_of_random_tables_are_where_they_were() {
+    let mut random = Random(2);
+    let mut told = String::new();
+    for table in 0..100 {
+        let motion = random.one_of(&["cycloidal", "harmonic", "poly345", "parabolic"]);
+        let top = if random.is(0.4) { 0.0 } else { random.within(5.0, 90.0) };
+        let span = random.within(30.0, 0.5 * (340.0 - top));
+        let low = random.within(5.0, 355.0 - top - 2.0 * span);
+        let exact = Cam::new(&machine(program(motion, span, low, top)).unwrap()).unwrap();
+        let count = random.one_of(&[24, 36, 48, 60, 72, 90, 120, 120, 180, 180]);
+        let noise = random.one_of(&[0.0, 0.0, 0.001, 0.002, 0.005, 0.01, 0.02, 0.05]);
+        let eccentricity = random.one_of(&[0.0, 0.0, 0.005, 0.02, 0.1, 0.3]);
+        let power = 10.0_f64.powi(random.one_of(&[2, 3, 4, 6]));
+        let (gap, uneven) = (360.0 / f64::from(count), if random.is(0.2) { 0.3 } else { 0.0 });
+        let rows: Vec<(f64, f64)> = (0..count)
+            .map(|row| {
+                let angle = gap * (f64::from(row) + 0.4 + uneven * random.within(-1.0, 1.0));
+                let lift = exact.lift(angle.to_radians()).value + eccentricity * (1.0 + angle.to_radians().sin());
+                (angle, ((lift + noise * random.normal()) * power).round() / power)
+            })
+            .collect();
+        let from = random.within(0.0, 300.0);
+        let more = match table % 10 {
+            0 => json!({ "corners_deg": [from, from + 30.0] }),
+            5 => json!({ "dwells_deg": [[from, from + 20.0]] }),
+            _ => json!({}),
+        };
+        let found = machine(smoothing(&rows, &more)).and_then(|model| {
+            let found = PlausibleCams::of(&model).map_err(|error| error.to_string())?;
+            found.ok_or_else(|| "nothing is uncertain".to_owned())
+        });
+        let degrees = |all: &[f64]| all.iter().map(|angle| format!(" {angle:.3}")).collect::<String>();
+        told += &match found {
+            Ok(found) => {
+                let found = found.measured;
+                let doubtful = found.doubtful_corners.map_or_else(Vec::new, |doubtful| doubtful.at_deg);
+                let dwells = degrees(found.dwells_deg.as_flattened());
+                format!(
+                    "{table}: corners{}, doubtful{}, dwells{dwells}\n",
+                    degrees(&found.corners_deg),
+                    degrees(&doubtful)
+                )
+            }
+            Err(words) => format!("{table}: {words}\n"),
+        };
+    }
+    snapshots::settings().bind(|| insta::assert_snapshot!("features-of-random-tables", told));
+}
+
 /// Two stretches of rest with a short ramp between them are two dwells, however near they are: their lifts differ by more than the noise.
 #[test]
 fn dwells_at_two_lifts_are_not_one() {

@@ -28,15 +28,15 @@ impl Random {
         bits ^ (bits >> 31)
     }
 
-    fn within(&mut self, from: f64, to: f64) -> f64 {
+    pub fn within(&mut self, from: f64, to: f64) -> f64 {
         from + (to - from) * (self.bits() >> 11) as f64 / 2.0_f64.powi(53)
     }
 
-    fn one_of<T: Copy>(&mut self, choices: &[T]) -> T {
+    pub fn one_of<T: Copy>(&mut self, choices: &[T]) -> T {
         choices[(self.bits() % choices.len() as u64) as usize]
     }
 
-    fn is(&mut self, part: f64) -> bool {
+    pub fn is(&mut self, part: f64) -> bool {
         self.within(0.0, 1.0) < part
     }
 
