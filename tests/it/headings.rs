@@ -110,6 +110,7 @@ fn headers_are_read_wherever_they_stand() {
         // The column of the angle is the second.
         ("Hub,Position θ", "L,A", 1.0),
         ("lift,pos [deg]", "L,A", 1.0),
+        ("lift no 1,angle", "L,A", 1.0),
     ] {
         is_the_lobe(&table(head, row), "", size);
     }
@@ -309,6 +310,7 @@ fn a_unit_that_is_not_understood_is_refused_with_the_line_that_says_it() {
         ("# angle [deg], lift [mm], lift [in]", "A,L,L", "", "set lift_column in [cam]"),
         ("angle [deg],lift [mm]", "A,L", "unit = \"in\"", "must be the unit in the header of the table: mm"),
         ("angle [deg],lift [mm]", "A,L", "unit = \"0.01 mm\"", "must be the unit in the header of the table: mm"),
+        ("angle [deg],lift [mm]", "A,L", "angle_unit = \"gon\"", "must be the unit in the header of the table: deg"),
         ("angle,lift", "A,L", "unit = \"0.5 mm\"", "must be one of: \"m\", \"cm\", \"mm\""),
         ("angle,lift", "A,L", "unit = \"1 mm\"", "must be one of"),
         ("angle,lift", "A,L", "unit = \"in 0.01 mm\"", "must be one of"),
