@@ -283,7 +283,8 @@ fn pieces_meet_but_at_corners() {
 }
 
 /// The lift is the farthest to which any point of the contour lifts the follower, as found by trying points; under a flat face the radius of
-/// curvature at the touching point is the lift with its second derivative (whose rounding is 2e-8 mm). Between coarse rows the lift is no polynomial of degree 11.
+/// curvature at the touching point is the lift with its second derivative, whose rounding is 2e-8 mm. Between coarse rows the lift is no
+/// polynomial of degree 11.
 #[test]
 #[ignore = "slow"]
 fn the_lift_is_the_largest_over_all_points() {

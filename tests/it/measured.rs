@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 use corner_impact::cam::{Cam, Corner, Law, Segment, Side, apart};
-use corner_impact::measured::{PlausibleCams, Remarks};
+use corner_impact::measured::{Measured, PlausibleCams, Remarks};
 use corner_impact::model::{Model, Study};
 use corner_impact::orbit::long_run::Budget;
 use corner_impact::orbit::{Parameter, PeriodicOrbit, Search};
@@ -204,15 +204,19 @@ fn separation(cam: Value) -> (f64, f64) {
     (found, error)
 }
 
+/// Rows with errors without a pattern, of up to a hundredth of a millimetre.
+fn with_errors(rows: &[(f64, f64)]) -> Vec<(f64, f64)> {
+    let error = |row: usize| 0.01 * (2.0 * (1e4 * (1.0 + row as f64).sin()).rem_euclid(1.0) - 1.0);
+    rows.iter().enumerate().map(|(row, (angle, lift))| (*angle, lift + error(row))).collect()
+}
+
 /// Without preload and weight, errors of rows at the ends of a dwell decide where the follower leaves first. With a preload they do not, and
 /// rounded rows have none there: their dwell is flat.
 #[test]
 fn a_separation_that_errors_of_rows_decide_is_told() {
     let exact = Cam::new(&machine(program("cycloidal", 90.0, 60.0, 60.0)).unwrap()).unwrap();
     let rows = rounded(&exact, 3);
-    // Errors without a pattern, of up to a hundredth of a millimetre.
-    let noise = |row: usize| 0.01 * (2.0 * (1e4 * (1.0 + row as f64).sin()).rem_euclid(1.0) - 1.0);
-    let noisy: Vec<_> = rows.iter().enumerate().map(|(row, (angle, lift))| (*angle, lift + noise(row))).collect();
+    let noisy = with_errors(&rows);
     for (rows, preload, is_told) in [(&noisy, 0.0, true), (&noisy, 50.0, false), (&rows, 0.0, false)] {
         let mut model = machine(smoothing(rows, &json!({}))).unwrap();
         let lowest = Cam::new(&model).unwrap().lowest().value;
@@ -228,9 +232,7 @@ fn a_separation_that_errors_of_rows_decide_is_told() {
 #[test]
 fn errors_of_rows_decide_a_separation_as_much_as_a_lever_makes_of_them() {
     let exact = Cam::new(&machine(program("cycloidal", 90.0, 60.0, 60.0)).unwrap()).unwrap();
-    let noise = |row: usize| 0.01 * (2.0 * (1e4 * (1.0 + row as f64).sin()).rem_euclid(1.0) - 1.0);
-    let rows: Vec<_> =
-        rounded(&exact, 3).iter().enumerate().map(|(row, (angle, lift))| (*angle, lift + noise(row))).collect();
+    let rows = with_errors(&rounded(&exact, 3));
     for (ratio, times, is_told) in [(2.0, 1.5, true), (2.0, 4.0, false), (0.5, 1.0, false)] {
         let mut model = machine(smoothing(&rows, &json!({ "lever_ratio": ratio }))).unwrap();
         let cam = Cam::new(&model).unwrap();
@@ -446,6 +448,14 @@ fn six_rows_at_one_lift_are_a_dwell() {
     assert_eq!(dwells.filter(within).count(), 1);
 }
 
+/// Corners, doubtful corners and dwells, in degrees.
+fn features(found: &Measured) -> String {
+    let doubtful = found.doubtful_corners.as_ref().map_or(&[][..], |doubtful| &doubtful.at_deg);
+    let degrees = |all: &[f64]| all.iter().map(|angle| format!(" {angle:.4}")).collect::<String>();
+    let [corners, doubtful, dwells] = [&found.corners_deg, doubtful, found.dwells_deg.as_flattened()].map(degrees);
+    format!("corners{corners}, doubtful{doubtful}, dwells{dwells}")
+}
+
 /// Corners and dwells that are found in rows of known cams with noise, some of them with an eccentric base circle. A dwell that is found is
 /// inside of one that is there, to within a row.
 #[test]
@@ -484,20 +494,16 @@ fn corners_and_dwells_of_tables_are_where_they_were() {
                 };
                 assert!(rests.iter().any(is_inside), "{motion} {count} {places} {by} {eccentricity}: {from} {to}");
             }
-            let doubtful = found.doubtful_corners.map_or_else(Vec::new, |doubtful| doubtful.at_deg);
-            let degrees = |all: &[f64]| all.iter().map(|angle| format!(" {angle:.4}")).collect::<String>();
             told += &format!(
-                "{motion}, {eccentricity} mm eccentric, {count} rows from {by} to {places} places with {noise} mm: corners{}, doubtful{}, dwells{}\n",
-                degrees(&found.corners_deg),
-                degrees(&doubtful),
-                degrees(found.dwells_deg.as_flattened())
+                "{motion}, {eccentricity} mm eccentric, {count} rows from {by} to {places} places with {noise} mm: {}\n",
+                features(&found)
             );
         }
     }
     snapshots::settings().bind(|| insta::assert_snapshot!("features", told));
 }
 
-/// The same of a hundred random tables: coarse, uneven, noisy, without a dwell, or with corners or dwells that the model gives.
+/// Corners and dwells of a hundred random tables: coarse, uneven, noisy, without a dwell, or with corners or dwells that the model gives.
 #[test]
 #[ignore = "slow"]
 fn corners_and_dwells_of_random_tables_are_where_they_were() {
@@ -531,20 +537,8 @@ fn corners_and_dwells_of_random_tables_are_where_they_were() {
             let found = PlausibleCams::of(&model).map_err(|error| error.to_string())?;
             found.ok_or_else(|| "nothing is uncertain".to_owned())
         });
-        let degrees = |all: &[f64]| all.iter().map(|angle| format!(" {angle:.3}")).collect::<String>();
-        told += &match found {
-            Ok(found) => {
-                let found = found.measured;
-                let doubtful = found.doubtful_corners.map_or_else(Vec::new, |doubtful| doubtful.at_deg);
-                let dwells = degrees(found.dwells_deg.as_flattened());
-                format!(
-                    "{table}: corners{}, doubtful{}, dwells{dwells}\n",
-                    degrees(&found.corners_deg),
-                    degrees(&doubtful)
-                )
-            }
-            Err(words) => format!("{table}: {words}\n"),
-        };
+        let found = found.map_or_else(|words| words, |found| features(&found.measured));
+        told += &format!("{table}: {found}\n");
     }
     snapshots::settings().bind(|| insta::assert_snapshot!("features-of-random-tables", told));
 }

@@ -25,10 +25,15 @@ pub(crate) fn plain(angle: f64, lift: f64) -> String {
 
 /// A follower in millimetres on the cam of a table, with these fields beside it.
 pub(crate) fn model(folder: &TempDir, table: &str, fields: &str) -> Result<Model, String> {
+    model_of("table", folder, table, fields)
+}
+
+/// A follower on the cam of a table by this law: `table` or `contour`.
+pub(crate) fn model_of(law: &str, folder: &TempDir, table: &str, fields: &str) -> Result<Model, String> {
     fs::write(folder.path().join("lift.csv"), table).unwrap();
     let text = format!(
         "name = \"read\"\n[units]\nlength = \"mm\"\nstiffness = \"N/mm\"\n[follower]\nmass = 0.1\ndamping = 0\nstiffness = 30\npreload = 220\n\
-         gravity = 0\nrestitution = 0.5\n[cam]\nlaw = \"table\"\nfile = \"lift.csv\"\nspline = \"cubic\"\n{fields}\n"
+         gravity = 0\nrestitution = 0.5\n[cam]\nlaw = \"{law}\"\nfile = \"lift.csv\"\nspline = \"cubic\"\n{fields}\n"
     );
     let file = folder.path().join("read.toml");
     fs::write(&file, text).unwrap();

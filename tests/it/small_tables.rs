@@ -4,8 +4,9 @@
 
 use std::fmt::Write;
 
-use corner_impact::model::{CamProfile, Model};
+use corner_impact::model::CamProfile;
 
+use crate::reading::model_of;
 use crate::snapshots;
 
 /// Law of the cam, text of the table, and fields beside it.
@@ -119,15 +120,8 @@ fn small_tables_are_read_or_refused_as_they_were() {
     let folder = tempfile::tempdir().unwrap();
     let mut told = String::new();
     for (law, csv, fields) in TABLES {
-        std::fs::write(folder.path().join("lift.csv"), csv).unwrap();
-        let text = format!(
-            "[units]\nlength = \"mm\"\n[follower]\nmass = 0.1\ndamping = 0\nstiffness = 30000\npreload = 220\ngravity = 0\nrestitution = 0.5\n\
-             [cam]\nlaw = \"{law}\"\nfile = \"lift.csv\"\nspline = \"cubic\"\n{fields}\n"
-        );
-        let file = folder.path().join("read.toml");
-        std::fs::write(&file, text).unwrap();
-        let said = match Model::read(&file) {
-            Err(error) => error.to_string().replace(&*folder.path().to_string_lossy(), ""),
+        let said = match model_of(law, &folder, csv, fields) {
+            Err(words) => words.replace(&*folder.path().to_string_lossy(), ""),
             Ok(model) => {
                 let table = match &model.cam {
                     CamProfile::Table(table) => table,

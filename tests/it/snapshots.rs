@@ -108,3 +108,22 @@ fn the_verify_page() {
     settings.add_filter(r"condition number \d+\.\d", "condition number [about 31]");
     settings.bind(|| insta::assert_snapshot!("verify-page", page));
 }
+
+/// `make review` runs every test that has a snapshot, slow ones as well.
+#[test]
+fn every_snapshot_is_reviewed() {
+    let makefile = std::fs::read_to_string(concat!(env!("PROJECT"), "/Makefile")).unwrap();
+    let words = makefile.split("insta test").nth(1).unwrap().split("\n\n").next().unwrap();
+    let words: Vec<&str> = words.split(" -- --include-ignored ").nth(1).unwrap().split_whitespace().collect();
+    for entry in std::fs::read_dir(concat!(env!("PROJECT"), "/tests/it")).unwrap() {
+        let path = entry.unwrap().path();
+        let module = path.file_stem().unwrap().to_string_lossy().into_owned();
+        let Ok(text) = std::fs::read_to_string(&path) else { continue };
+        // Split in two, so that this line is none of them.
+        for (at, _) in text.match_indices(concat!("insta::assert", "_")) {
+            let function = text[..at].rsplit("\nfn ").next().unwrap().rsplit("\npub(crate) fn ").next().unwrap();
+            let name = format!("{module}::{}", function.split('(').next().unwrap());
+            assert!(words.iter().any(|word| name.contains(word)), "`make review` leaves out {name}");
+        }
+    }
+}
